@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use signorini_fem_mesh::History;
 
 use super::timeline::{Span, Timeline};
-use crate::error::{DeckError, Fault, Location};
+use crate::error::{DeckError, Fault, Word};
 use crate::model::{Amplitude, Model};
 
 /// A value of the deck and the position of its amplitude.
@@ -26,23 +26,17 @@ pub(super) struct Track {
     events: Vec<(usize, Option<Given>)>,
     /// Its place among all conditions of the deck.
     pub(super) order: usize,
-    location: Location,
-    word: String,
+    /// Where it appears first.
+    pub(super) word: Word,
 }
 
 impl Track {
-    pub(super) fn new(order: usize, (location, word): (&Location, &str)) -> Self {
+    pub(super) fn new(order: usize, word: &Word) -> Self {
         Self {
             events: Vec::new(),
             order,
-            location: location.clone(),
-            word: word.to_owned(),
+            word: word.clone(),
         }
-    }
-
-    /// Where it appears first, and the word there.
-    pub(super) fn at(&self) -> (&Location, &str) {
-        (&self.location, &self.word)
     }
 
     /// The value that this step gives, if it does.
@@ -218,14 +212,13 @@ impl Histories {
         }
         let key = points.iter().map(|p| (p.0.to_bits(), p.1.to_bits()));
         let next = self.list.len();
-        let location = *self.places.entry(key.collect()).or_insert(next);
-        if location == next {
+        let position = *self.places.entry(key.collect()).or_insert(next);
+        if position == next {
             // numbers are finite but for quotients that overflow
             let table = History::table(points);
-            let fault = |e| DeckError::at(&track.location, &track.word, Fault::History(e));
-            self.list.push(table.map_err(fault)?);
+            self.list.push(table.map_err(|e| track.word.fault(Fault::History(e)))?);
         }
-        Ok(Some((reference, location)))
+        Ok(Some((reference, position)))
     }
 
     pub(super) fn at(&self, position: usize) -> History {

@@ -7,8 +7,9 @@ use signorini_fem_mesh::{FacetTag, LoadDensity};
 
 use super::faces::{FaceTable, Known};
 use super::history::{Given, Histories, Track};
+use super::materials::sections;
 use super::timeline::Timeline;
-use crate::error::{DeckError, Fault, Location};
+use crate::error::{DeckError, Word};
 use crate::model::{Conditions, Distributed, DistributedKind, Force, Target};
 
 /// Most different pressures that get tags of their own. More become forces at nodes, which are the same for
@@ -52,18 +53,17 @@ impl<K: Ord> Tracks<K> {
         key: K,
         (step, order, adds): (usize, usize, bool),
         mut given: Given,
-        at: (&Location, &str),
+        word: &Word,
     ) -> Result<(), DeckError> {
-        let track = self.0.entry(key).or_insert_with(|| Track::new(order, at));
+        let track = self.0.entry(key).or_insert_with(|| Track::new(order, word));
         if let Some(before) = track.given_in(step) {
             if !adds || before.amplitude != given.amplitude {
-                let text = if adds {
+                return Err(word.cannot(if adds {
                     "a force along this component is given in this step already, with another amplitude; \
                     put them on different nodes, or give one amplitude"
                 } else {
                     "such a load is given there in this step already; add the values and give their sum once"
-                };
-                return Err(DeckError::at(at.0, at.1, Fault::Cannot(text.into())));
+                }));
             }
             given.value += before.value;
         }
@@ -99,14 +99,11 @@ impl Loads {
             }
         }
         let mut loads = Self::default();
-        for ((node, component), track) in &forces.0 {
+        for (&(node, component), track) in &forces.0 {
             if let Some((value, history)) = loads.histories.add(model, timeline, track)? {
-                let (first, list) = loads
-                    .forces
-                    .entry(history)
-                    .or_insert_with(|| (track.order, BTreeMap::new()));
-                *first = track.order.min(*first);
-                list.entry(*node).or_insert([0.0; 3])[*component] = value;
+                let mut force = [0.0; 3];
+                force[component] = value;
+                loads.force(history, track.order, node, force);
             }
         }
         loads.pressures(context, &pressures, faces)?;
@@ -165,7 +162,7 @@ impl Loads {
         }
         for ((target, gravity, history), (order, value, track)) in groups {
             let Known { model, sets, raw, .. } = context.known;
-            let elements = sets.elements(model, &target, track.at())?;
+            let elements = sets.elements(model, &target, &track.word)?;
             // rigid ones are held, whatever pulls them
             let elements: Vec<u32> = elements.into_iter().filter_map(|e| raw.tet(e)).collect();
             if elements.is_empty() {
@@ -239,21 +236,18 @@ impl Context<'_> {
         }
         for line in &given.lines {
             *order += 1;
-            let at = (&line.location, line.word.as_str());
             let value = Given {
                 value: line.value,
                 amplitude: line.amplitude,
             };
-            for node in self.known.sets.nodes(self.known.model, &line.target, at)? {
+            for node in self.known.sets.nodes(self.known.model, &line.target, &line.word)? {
                 let Some(node) = self.known.raw.in_mesh(node) else {
-                    let text = format!(
-                        "no elastic element uses node {}, so that a force there acts on nothing; load nodes \
-                        of the body",
+                    return Err(line.word.cannot(format!(
+                        "no elastic element uses node {}, so that a force there acts on nothing; load nodes of the body",
                         self.known.model.nodes[node as usize].label
-                    );
-                    return Err(DeckError::at(at.0, at.1, Fault::Cannot(text)));
+                    )));
                 };
-                tracks.set((node, line.component), (step, *order, true), value, at)?;
+                tracks.set((node, line.component), (step, *order, true), value, &line.word)?;
             }
         }
         Ok(())
@@ -267,7 +261,7 @@ impl Context<'_> {
         surfaces: &[Vec<u32>],
         table: &mut FaceTable,
     ) -> Result<(), DeckError> {
-        let at = (&line.location, line.word.as_str());
+        let word = &line.word;
         let when = (step, order, false);
         let given = |value: f64| Given {
             value,
@@ -276,60 +270,55 @@ impl Context<'_> {
         let faces = match &line.kind {
             DistributedKind::Face(number) => {
                 let target = (&line.target, *number);
-                table.of_target(self.known, target, at)?
+                table.of_target(self.known, target, word)?
             }
             DistributedKind::Surface => {
                 let Target::Name(name) = &line.target else {
                     return Ok(());
                 };
-                let found = self.known.model.surfaces.find("surface", name, at)?;
+                let found = self.known.model.surfaces.find("surface", name, word)?;
                 if surfaces[found].is_empty() {
-                    let text = "a pressure on a rigid surface acts on nothing; load an elastic one";
-                    return Err(DeckError::at(at.0, at.1, Fault::Cannot(text.into())));
+                    return Err(word.cannot("a pressure on a rigid surface acts on nothing; load an elastic one"));
                 }
                 surfaces[found].clone()
             }
             DistributedKind::Gravity(direction) => {
                 // so that an unknown set is refused here
-                self.known.sets.elements(self.known.model, &line.target, at)?;
+                self.known.sets.elements(self.known.model, &line.target, word)?;
                 let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
                 for (c, d) in direction.iter().enumerate() {
                     let key = (line.target.clone(), true, c);
-                    bodies.set(key, when, given(line.value * (d / length)), at)?;
+                    bodies.set(key, when, given(line.value * (d / length)), word)?;
                 }
                 return Ok(());
             }
             DistributedKind::Body(component) => {
-                self.known.sets.elements(self.known.model, &line.target, at)?;
+                self.known.sets.elements(self.known.model, &line.target, word)?;
                 let key = (line.target.clone(), false, *component);
-                return bodies.set(key, when, given(line.value), at);
+                return bodies.set(key, when, given(line.value), word);
             }
         };
         for face in faces {
-            pressures.set(face, when, given(line.value), at)?;
+            pressures.set(face, when, given(line.value), word)?;
         }
         Ok(())
     }
 
     /// Densities of elements, that of the material of their section.
     fn densities(self, elements: &[u32], track: &Track) -> Result<Vec<f64>, DeckError> {
-        let fault = |text: String| {
-            let (location, word) = track.at();
-            DeckError::at(location, word, Fault::Cannot(text))
-        };
         let Known { model, raw, sets, .. } = self.known;
-        let sections = super::materials::sections(model, raw, sets)?;
-        let sections = sections.ok_or_else(|| fault("gravity needs materials; give *SOLID SECTION".into()))?;
+        let sections = sections(model, raw, sets)?;
+        let sections = sections.ok_or_else(|| track.word.cannot("gravity needs materials; give *SOLID SECTION"))?;
         let mut of_section = Vec::with_capacity(model.sections.len());
         for section in &model.sections {
-            let (name, word) = &section.material;
-            let at = (&section.location, word.as_str());
-            let found = model.materials.find("material", name, at)?;
-            of_section.push((model.materials.at(found).density, name));
+            of_section.push((model.material(section)?.density, &section.material.name));
         }
         let density = |&element: &u32| {
             let (density, name) = of_section[sections[element as usize] as usize];
-            density.ok_or_else(|| fault(format!("gravity needs a density; give material {name} *DENSITY")))
+            density.ok_or_else(|| {
+                let why = format!("gravity needs a density; give material {name} *DENSITY");
+                track.word.cannot(why)
+            })
         };
         elements.iter().map(density).collect()
     }

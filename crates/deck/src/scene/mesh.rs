@@ -21,10 +21,11 @@ pub(super) struct Raw {
     /// Number in the mesh of each node and element of the deck, by position.
     of_node: Vec<Option<u32>>,
     of_element: Vec<Option<u32>>,
-    node_labels: Vec<u32>,
-    /// Positions of the elements of the deck.
-    elements: Vec<u32>,
-    element_labels: Vec<u32>,
+    /// Numbers in the deck of the nodes of the mesh.
+    pub(super) node_labels: Vec<u32>,
+    /// Positions and numbers in the deck of the tetrahedra.
+    pub(super) elements: Vec<u32>,
+    pub(super) element_labels: Vec<u32>,
 }
 
 impl Raw {
@@ -39,19 +40,16 @@ impl Raw {
             }
             if element.kind != Kind::Solid {
                 let why = "the facet is in no rigid body; put it into the ELSET of a *RIGID BODY";
-                let word = element.label.to_string();
-                return Err(DeckError::at(&element.location, &word, Fault::Empty(why)));
+                return Err(element.word().cannot(why));
             }
             let volume = tet_volume(&nodes.map(|n| model.nodes[n as usize].point));
             if !(volume > 0.0 && volume.is_finite()) {
-                let word = element.label.to_string();
-                return Err(DeckError::at(&element.location, &word, Fault::Volume));
+                return Err(element.word().fault(Fault::Volume));
             }
             let own = bodies.mids(sets, element)?;
             if !tets.is_empty() && own.is_some() == mids.is_empty() {
-                let text = "the deck has elastic elements of first and of second order; mesh all in one order";
-                let word = element.label.to_string();
-                return Err(DeckError::at(&element.location, &word, Fault::Cannot(text.into())));
+                let why = "the deck has elastic elements of first and of second order; mesh all in one order";
+                return Err(element.word().cannot(why));
             }
             nodes
                 .iter()
@@ -95,24 +93,9 @@ impl Raw {
         self.of_element[element as usize]
     }
 
-    /// The position in the deck of each tetrahedron.
-    pub(super) fn elements(&self) -> &[u32] {
-        &self.elements
-    }
-
     /// The number in the mesh of a node of the deck, by its position; `None` if no elastic element uses it.
     pub(super) fn in_mesh(&self, node: u32) -> Option<u32> {
         self.of_node[node as usize]
-    }
-
-    /// The number in the deck of each node of the mesh.
-    pub(super) fn node_labels(&self) -> &[u32] {
-        &self.node_labels
-    }
-
-    /// The number in the deck of each tetrahedron.
-    pub(super) fn element_labels(&self) -> &[u32] {
-        &self.element_labels
     }
 
     /// The sets of nodes and of elements by name, in the numbers of the mesh.

@@ -2,7 +2,7 @@
 
 use std::collections::HashSet;
 
-use crate::error::{DeckError, Fault, Location};
+use crate::error::{DeckError, Fault, Location, Word};
 use crate::model::{Member, Model, Names, Set, Target};
 
 /// Most members of all sets together.
@@ -66,20 +66,15 @@ impl Sets {
     }
 
     /// Positions of the nodes of a target.
-    pub(super) fn nodes(&self, model: &Model, target: &Target, at: (&Location, &str)) -> Result<Vec<u32>, DeckError> {
+    pub(super) fn nodes(&self, model: &Model, target: &Target, word: &Word) -> Result<Vec<u32>, DeckError> {
         let what = ("node", "node set");
-        find(what, target, &self.node_numbers, &model.nsets, &self.nodes, at)
+        find(what, target, &self.node_numbers, &model.nsets, &self.nodes, word)
     }
 
     /// Positions of the elements of a target.
-    pub(super) fn elements(
-        &self,
-        model: &Model,
-        target: &Target,
-        at: (&Location, &str),
-    ) -> Result<Vec<u32>, DeckError> {
+    pub(super) fn elements(&self, model: &Model, target: &Target, word: &Word) -> Result<Vec<u32>, DeckError> {
         let what = ("element", "element set");
-        find(what, target, &self.element_numbers, &model.elsets, &self.elements, at)
+        find(what, target, &self.element_numbers, &model.elsets, &self.elements, word)
     }
 }
 
@@ -93,8 +88,7 @@ fn numbers<'a>(
     Numbers::new(pairs.collect()).map_err(|[first, second]| {
         let (label, location) = at(second as usize);
         let first = at(first as usize).1.line;
-        let fault = Fault::Repeated { first, remedy };
-        DeckError::at(location, &label.to_string(), fault)
+        Word::new(location, label.to_string()).fault(Fault::Repeated { first, remedy })
     })
 }
 
@@ -104,22 +98,18 @@ fn find(
     numbers: &Numbers,
     names: &Names<Set>,
     sets: &[Vec<u32>],
-    (location, word): (&Location, &str),
+    word: &Word,
 ) -> Result<Vec<u32>, DeckError> {
-    let name = match target {
+    match target {
         Target::Number(number) => {
             let found = numbers.get(*number);
-            let found = found.ok_or_else(|| DeckError::at(location, word, Fault::UnknownNumber(what)))?;
-            return Ok(vec![found]);
+            Ok(vec![found.ok_or_else(|| word.fault(Fault::UnknownNumber(what)))?])
         }
-        Target::Name(name) => name,
-    };
-    let set = &sets[names.find(what_set, name, (location, word))?];
-    if set.is_empty() {
-        let fault = Fault::Empty("the set is empty; fill it, or remove this line");
-        return Err(DeckError::at(location, word, fault));
+        Target::Name(name) => match &sets[names.find(what_set, name, word)?][..] {
+            [] => Err(word.cannot("the set is empty; fill it, or remove this line")),
+            set => Ok(set.to_vec()),
+        },
     }
-    Ok(set.clone())
 }
 
 /// The members of each set, ascending.
@@ -131,6 +121,7 @@ fn resolve(
     room: &mut u64,
 ) -> Result<Vec<Vec<u32>>, DeckError> {
     const NOT_YET: u32 = u32::MAX;
+    let unknown = |location: &Location, word: String| Word::new(location, word).fault(Fault::UnknownNumber(what));
     let mut sets: Vec<Vec<u32>> = Vec::new();
     let mut last = vec![NOT_YET; count];
     for (index, (_, set)) in names.iter().enumerate() {
@@ -145,24 +136,21 @@ fn resolve(
             match member {
                 Member::One(number) => match numbers.get(*number) {
                     Some(position) => add(position),
-                    None => {
-                        let fault = Fault::UnknownNumber(what);
-                        return Err(DeckError::at(location, &number.to_string(), fault));
-                    }
+                    None => return Err(unknown(location, number.to_string())),
                 },
                 Member::Range { from, to, step } => {
                     let mut inside = numbers.range(*from, *to, *step).peekable();
                     if inside.peek().is_none() {
-                        let fault = Fault::UnknownNumber(what);
-                        return Err(DeckError::at(location, &format!("{from}, {to}, {step}"), fault));
+                        return Err(unknown(location, format!("{from}, {to}, {step}")));
                     }
                     inside.for_each(&mut add);
                 }
                 Member::Set(name) => {
-                    let other = names.find("set", name, (location, name))?;
+                    let word = Word::new(location, name);
+                    let other = names.find("set", name, &word)?;
                     if other >= index {
                         let why = "a set may name only sets that are defined before it; move the other one up";
-                        return Err(DeckError::at(location, name, Fault::Misplaced(why)));
+                        return Err(word.cannot(why));
                     }
                     if taken.insert(other) {
                         sets[other].iter().copied().for_each(&mut add);
@@ -174,13 +162,12 @@ fn resolve(
         match room.checked_sub(members.len() as u64) {
             Some(left) => *room = left,
             None => {
-                let fault = Fault::TooMany {
+                let (member, location) = &set[0];
+                return Err(Word::new(location, format!("{member:?}")).fault(Fault::TooMany {
                     what: "members of sets",
                     most: MEMBERS,
                     remedy: "remove sets that are not needed",
-                };
-                let (member, location) = &set[0];
-                return Err(DeckError::at(location, &format!("{member:?}"), fault));
+                }));
             }
         }
         sets.push(members);

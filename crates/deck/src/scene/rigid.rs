@@ -13,7 +13,7 @@ use signorini_fem_mesh::{FacetTag, History};
 use super::history::{Histories, Track};
 use super::numbers::Sets;
 use super::timeline::Timeline;
-use crate::error::{DeckError, Fault, Location};
+use crate::error::{DeckError, Fault, Word};
 use crate::model::{Element, FACES, Kind, Model, Side, Target};
 
 /// Deviation from a plane, and of a node from the rim of a surface, over its size, that is rounding.
@@ -48,21 +48,17 @@ impl RigidBodies {
         let mut of_element = vec![None; model.elements.len()];
         let mut list = Vec::with_capacity(model.rigid.len());
         for (index, body) in model.rigid.iter().enumerate() {
-            let (name, word) = &body.elset;
-            let at = (&body.location, word.as_str());
-            for element in sets.elements(model, &Target::Name(name.clone()), at)? {
+            let word = &body.elset.word;
+            for element in sets.elements(model, &Target::Name(body.elset.name.clone()), word)? {
                 if of_element[element as usize].replace(index as u32).is_some() {
                     let label = model.elements[element as usize].label;
-                    let text = format!("element {label} is in another rigid body; keep one of them");
-                    return Err(DeckError::at(at.0, at.1, Fault::Cannot(text)));
+                    let why = format!("element {label} is in another rigid body; keep one of them");
+                    return Err(word.cannot(why));
                 }
             }
-            let node = |(target, word): &(Target, String)| {
-                let at = (&body.location, word.as_str());
-                match sets.nodes(model, target, at)?[..] {
-                    [node] => Ok(node),
-                    _ => Err(DeckError::at(at.0, at.1, Fault::Expected("one node"))),
-                }
+            let node = |(target, word): &(Target, Word)| match sets.nodes(model, target, word)?[..] {
+                [node] => Ok(node),
+                _ => Err(word.expected("one node")),
             };
             list.push(Body {
                 reference: node(&body.reference)?,
@@ -86,25 +82,24 @@ impl RigidBodies {
     /// Refuses bodies that share nodes with elastic elements, which would be bonded to them; `elastic` are the nodes
     /// that such elements use.
     pub(super) fn check_apart(&self, model: &Model, sets: &Sets, elastic: &[bool]) -> Result<(), DeckError> {
-        let fault = |location: &Location, word: &str, node: u32| {
-            let text = format!(
-                "node {} is of a rigid body and of elastic elements, and rigid parts of elastic bodies are not \
-                here; hold or move the nodes with *BOUNDARY, or give the rigid body nodes of its own",
+        let fault = |word: &Word, node: u32| {
+            Err(word.cannot(format!(
+                "node {} is of a rigid body and of elastic elements, and rigid parts of elastic bodies are not here; \
+                hold or move the nodes with *BOUNDARY, or give the rigid body nodes of its own",
                 model.nodes[node as usize].label
-            );
-            Err(DeckError::at(location, word, Fault::Cannot(text)))
+            )))
         };
         for (body, said) in self.list.iter().zip(&model.rigid) {
             let own = [Some(body.reference), body.rotation].into_iter().flatten();
             if let Some(node) = own.into_iter().find(|n| elastic[*n as usize]) {
-                return fault(&said.location, &said.reference.1, node);
+                return fault(&said.reference.1, node);
             }
         }
         let all = model.elements.iter().zip(&self.of_element);
         for (element, _) in all.filter(|(_, body)| body.is_some()) {
             let nodes = self.nodes(sets, element)?;
             if let Some(node) = nodes.into_iter().find(|n| elastic[*n as usize]) {
-                return fault(&element.location, &element.label.to_string(), node);
+                return fault(&element.word(), node);
             }
         }
         Ok(())
@@ -127,9 +122,8 @@ impl RigidBodies {
         model: &Model,
         sets: &Sets,
         (element, side): (u32, Side),
-        at: (&Location, &str),
+        word: &Word,
     ) -> Result<RigidFace, DeckError> {
-        let wanted = |wanted| DeckError::at(at.0, at.1, Fault::Expected(wanted));
         let body = self.of_element(element).unwrap_or(0);
         let element = &model.elements[element as usize];
         let nodes = self.nodes(sets, element)?;
@@ -140,8 +134,8 @@ impl RigidBodies {
                 // these faces are numbered counter-clockwise seen from inside
                 vec![p[a], p[c], p[b]]
             }
-            (Kind::Solid, _) => return Err(wanted("faces S1 to S4 of solid elements")),
-            (_, Side::Face(_)) => return Err(wanted("SPOS or SNEG of rigid facets")),
+            (Kind::Solid, _) => return Err(word.expected("faces S1 to S4 of solid elements")),
+            (_, Side::Face(_)) => return Err(word.expected("SPOS or SNEG of rigid facets")),
             (Kind::Triangle, _) => p[..3].to_vec(),
             (Kind::Quadrilateral, _) => p.to_vec(),
         };
@@ -160,10 +154,7 @@ impl RigidBodies {
     ) -> Result<Vec<Motion>, DeckError> {
         let mut out = Vec::with_capacity(self.list.len());
         for (body, said) in self.list.iter().zip(&model.rigid) {
-            let fault = |text: String| {
-                let word = &said.reference.1;
-                DeckError::at(&said.location, word, Fault::Cannot(text))
-            };
+            let word = &said.reference.1;
             let mut histories = Histories::default();
             let mut value = [0.0; 3];
             for component in 0..6 {
@@ -171,7 +162,7 @@ impl RigidBodies {
                 let other = body.rotation.filter(|_| component >= 3);
                 let turned = other.and_then(|n| held.get(&(n, component - 3)));
                 let Some(track) = own.or(turned) else {
-                    return Err(fault(format!(
+                    return Err(word.cannot(format!(
                         "the rigid body is not held along component {} (of 6, rotations are 4 to 6); give \
                         its node *BOUNDARY, since only a held or moved obstacle can be said",
                         component + 1
@@ -181,14 +172,12 @@ impl RigidBodies {
                     continue;
                 };
                 if component >= 3 {
-                    return Err(fault(
-                        "a rigid body that turns cannot be said; hold its rotations".into(),
-                    ));
+                    return Err(word.cannot("a rigid body that turns cannot be said; hold its rotations"));
                 }
                 if history > 0 {
-                    let text = "the components of a rigid body's motion have different histories, and an \
-                    obstacle has one; give them one amplitude";
-                    return Err(fault(text.into()));
+                    let why = "the components of a rigid body's motion have different histories, and an obstacle has \
+                    one; give them one amplitude";
+                    return Err(word.cannot(why));
                 }
                 value[component] = size;
             }
@@ -274,10 +263,8 @@ fn contains(triangle: &[[f64; 3]; 3], normal: [f64; 3], x: [f64; 3]) -> bool {
 fn positions<const N: usize>(sets: &Sets, element: &Element, labels: [u32; N]) -> Result<[u32; N], DeckError> {
     let mut nodes = [0; N];
     for (position, label) in nodes.iter_mut().zip(labels) {
-        *position = sets.node_numbers.get(label).ok_or_else(|| {
-            let fault = Fault::UnknownNumber("node");
-            DeckError::at(&element.location, &label.to_string(), fault)
-        })?;
+        let unknown = || Word::new(&element.location, label.to_string()).fault(Fault::UnknownNumber("node"));
+        *position = sets.node_numbers.get(label).ok_or_else(unknown)?;
     }
     Ok(nodes)
 }

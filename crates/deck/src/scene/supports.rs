@@ -8,7 +8,7 @@ use super::faces::Known;
 use super::history::{Given, Histories, Track};
 use super::rigid::Motion;
 use super::timeline::Timeline;
-use crate::error::{DeckError, Fault};
+use crate::error::DeckError;
 use crate::model::{Boundary, COMPONENT, Ignored, Model, Target};
 
 /// Name of what is given on nodes by their numbers.
@@ -57,22 +57,17 @@ pub(super) fn supports(known: Known, timeline: &Timeline) -> Result<Supports, De
         for line in &given.boundary.lines {
             table.add(known, Some(step), line)?;
         }
-        let elastic = table.held.iter().map(|(key, held)| {
-            let label = known.raw.node_labels()[key.0 as usize];
-            (label, key.1, held)
-        });
-        let rigid = table.rigid.iter().map(|(key, held)| {
-            let label = known.model.nodes[key.0 as usize].label;
-            (label, key.1, held)
-        });
+        let elastic = table.held.iter();
+        let elastic = elastic.map(|(key, held)| (known.raw.node_labels[key.0 as usize], key.1, held));
+        let rigid = table.rigid.iter();
+        let rigid = rigid.map(|(key, held)| (known.model.nodes[key.0 as usize].label, key.1, held));
         let released = elastic.chain(rigid).find(|r| r.2.track.is_removed_in(step));
-        if let (Some((label, component, _)), Some((location, word, _))) = (released, &given.boundary.first) {
-            let text = format!(
-                "this releases component {} of node {label}; what is held in the first step is held to the \
-                end, so give it again here",
+        if let (Some((label, component, _)), Some((word, _))) = (released, &given.boundary.first) {
+            return Err(word.cannot(format!(
+                "this releases component {} of node {label}; what is held in the first step is held to the end, so \
+                give it again here",
                 component + 1,
-            );
-            return Err(DeckError::at(location, word, Fault::Cannot(text)));
+            )));
         }
     }
     let rigid = std::mem::take(&mut table.rigid);
@@ -124,15 +119,13 @@ impl Table {
 
     /// Notes a line of a step, or of the part before the first.
     fn add(&mut self, known: Known, step: Option<usize>, line: &Boundary) -> Result<(), DeckError> {
-        let at = (&line.location, line.word.as_str());
-        let fault = |text: String| DeckError::at(at.0, at.1, Fault::Cannot(text));
         let owner = self.owner(&line.target);
         let given = Given {
             value: line.value,
             amplitude: line.amplitude,
         };
         let (mut found, mut turned) = (false, None);
-        for node in known.sets.nodes(known.model, &line.target, at)? {
+        for node in known.sets.nodes(known.model, &line.target, &line.word)? {
             let (map, key, components) = match known.raw.in_mesh(node) {
                 _ if known.bodies.has(node) => (&mut self.rigid, node, 6),
                 Some(inside) => (&mut self.held, inside, 3),
@@ -141,7 +134,7 @@ impl Table {
             found = true;
             if let (3, Some(word)) = (components, &line.rotation) {
                 if line.value != 0.0 {
-                    return Err(DeckError::at(at.0, word, Fault::Expected(COMPONENT)));
+                    return Err(word.expected(COMPONENT));
                 }
                 turned = Some(word);
             }
@@ -151,29 +144,26 @@ impl Table {
                 let next = map.len();
                 let new = !map.contains_key(&(key, component));
                 if new && step.is_some_and(|step| step > 0) {
-                    return Err(fault(format!(
+                    return Err(line.word.cannot(format!(
                         "{what} is free in the steps before; what is held in one step has to be held from \
                         the first one on"
                     )));
                 }
                 let held = map.entry((key, component)).or_insert_with(|| Held {
                     owner,
-                    track: Track::new(next, at),
+                    track: Track::new(next, &line.word),
                     before: step.is_none(),
                 });
-                held.give(step, given, &what).map_err(fault)?;
+                held.give(step, given, &what).map_err(|why| line.word.cannot(why))?;
             }
         }
         if let Some(word) = turned {
-            self.ignored.push(Ignored::new(
-                &line.location,
-                word,
-                "nodes of solid elements have no rotations to be held",
-            ));
+            let why = "nodes of solid elements have no rotations to be held";
+            self.ignored.push(Ignored::new(word, why));
         }
         if !found {
-            let text = "no elastic element uses these nodes; hold nodes of the body";
-            return Err(fault(text.into()));
+            let why = "no elastic element uses these nodes; hold nodes of the body";
+            return Err(line.word.cannot(why));
         }
         Ok(())
     }

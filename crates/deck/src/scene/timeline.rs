@@ -27,24 +27,22 @@ impl Timeline {
         let (mut spans, mut times) = (Vec::new(), Vec::new());
         let mut start = 0.0;
         for step in &model.steps {
-            let Some((location, increments)) = &step.time else {
+            let Some((word, increments)) = &step.time else {
                 continue;
             };
             if (times.len() + increments.count) as f64 > INCREMENTS {
-                let fault = Fault::TooMany {
+                return Err(word.fault(Fault::TooMany {
                     what: "increments in all steps",
                     most: INCREMENTS as u64,
                     remedy: "make the increments larger",
-                };
-                return Err(DeckError::at(location, "*STATIC", fault));
+                }));
             }
             for i in 1..=increments.count {
                 let time = start + increments.time(i);
                 if !(time.is_finite() && times.last().is_none_or(|before| time > *before)) {
-                    let text = format!(
+                    return Err(word.cannot(format!(
                         "increment {i} does not end later than the one before, by rounding; its step starts at {start}"
-                    );
-                    return Err(DeckError::at(location, "*STATIC", Fault::Cannot(text)));
+                    )));
                 }
                 times.push(time);
             }
