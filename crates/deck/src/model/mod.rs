@@ -18,7 +18,9 @@ use signorini_fem_mesh::{History, Hooke};
 
 pub(crate) use keywords::read;
 pub(crate) use names::Names;
-pub(crate) use step::{Boundary, COMPONENT, Conditions, Distributed, DistributedKind, Force, INCREMENTS, Step, Target};
+pub(crate) use step::{
+    Boundary, COMPONENT, Conditions, Distributed, DistributedKind, Force, Given, INCREMENTS, Step, Target,
+};
 
 /// A request of the deck that has no meaning here.
 #[derive(Debug, Clone, PartialEq, Eq)]

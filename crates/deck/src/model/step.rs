@@ -27,6 +27,13 @@ impl fmt::Display for Target {
     }
 }
 
+/// A value and the position of its amplitude.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Given {
+    pub(crate) value: f64,
+    pub(crate) amplitude: Option<usize>,
+}
+
 /// Components of nodes that are held or moved.
 #[derive(Debug, Clone)]
 pub(crate) struct Boundary {
@@ -36,9 +43,7 @@ pub(crate) struct Boundary {
     pub(crate) components: [bool; 6],
     /// The word that asks for a rotation by its number.
     pub(crate) rotation: Option<Word>,
-    pub(crate) value: f64,
-    /// Position of the amplitude.
-    pub(crate) amplitude: Option<usize>,
+    pub(crate) given: Given,
 }
 
 /// A force at nodes.
@@ -48,8 +53,7 @@ pub(crate) struct Force {
     pub(crate) target: Target,
     /// 0 to 2.
     pub(crate) component: usize,
-    pub(crate) value: f64,
-    pub(crate) amplitude: Option<usize>,
+    pub(crate) given: Given,
 }
 
 #[derive(Debug, Clone)]
@@ -71,8 +75,7 @@ pub(crate) struct Distributed {
     /// Elements, or the surface.
     pub(crate) target: Target,
     pub(crate) kind: DistributedKind,
-    pub(crate) value: f64,
-    pub(crate) amplitude: Option<usize>,
+    pub(crate) given: Given,
 }
 
 /// What the cards of one kind of condition say in a step.
@@ -262,7 +265,7 @@ pub(super) fn boundary(model: &mut Model, step: Option<&mut Step>, card: &Card) 
     let mut lines = Vec::with_capacity(card.lines.len());
     for line in &card.lines {
         let given = boundary_line(line, amplitude)?;
-        if step.is_none() && given.value != 0.0 {
+        if step.is_none() && given.given.value != 0.0 {
             let why = "before the first *STEP a support cannot move; give its value in a step";
             return Err(line.cannot(why));
         }
@@ -330,8 +333,7 @@ fn boundary_line(line: &Word, amplitude: Option<usize>) -> Result<Boundary, Deck
         target,
         components,
         rotation,
-        value,
-        amplitude,
+        given: Given { value, amplitude },
     })
 }
 
@@ -352,8 +354,10 @@ pub(super) fn forces(model: &Model, step: &mut Step, card: &Card) -> Result<(), 
             word: line.part(fields[0]),
             target,
             component,
-            value: line.real(&fields, 2, wanted)?,
-            amplitude,
+            given: Given {
+                value: line.real(&fields, 2, wanted)?,
+                amplitude,
+            },
         });
     }
     Ok(())
@@ -407,8 +411,7 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
             word: line.part(fields[0]),
             target,
             kind,
-            value,
-            amplitude,
+            given: Given { value, amplitude },
         });
     }
     Ok(())

@@ -40,7 +40,7 @@ pub(super) struct FaceTable {
 #[derive(Clone, Copy)]
 pub(super) struct Known<'a> {
     pub(super) model: &'a Model,
-    pub(super) sets: &'a Sets,
+    pub(super) sets: &'a Sets<'a>,
     pub(super) bodies: &'a RigidBodies,
     pub(super) raw: &'a Raw,
 }
@@ -78,7 +78,7 @@ impl FaceTable {
         word: &Word,
     ) -> Result<Vec<u32>, DeckError> {
         let mut faces = Vec::new();
-        for element in known.sets.elements(known.model, target, word)? {
+        for element in known.sets.elements(target, word)? {
             let Some(tet) = known.raw.tet(element) else {
                 return Err(word.cannot("a pressure on a rigid body acts on nothing; load elastic elements"));
             };
@@ -94,10 +94,10 @@ impl FaceTable {
             let (mut all, mut rigid) = (Vec::new(), Vec::new());
             for faces in faces {
                 let word = &faces.word;
-                for element in known.sets.elements(known.model, &faces.target, word)? {
+                for element in known.sets.elements(&faces.target, word)? {
                     let Some(tet) = known.raw.tet(element) else {
                         let side = (element, faces.side);
-                        rigid.push(known.bodies.face(known.model, known.sets, side, word)?);
+                        rigid.push(known.bodies.face(known.sets, side, word)?);
                         continue;
                     };
                     let Side::Face(number) = faces.side else {

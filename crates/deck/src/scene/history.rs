@@ -11,14 +11,7 @@ use signorini_fem_mesh::History;
 
 use super::timeline::{Span, Timeline};
 use crate::error::{DeckError, Fault, Word};
-use crate::model::{Amplitude, Model};
-
-/// A value of the deck and the position of its amplitude.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Given {
-    pub(super) value: f64,
-    pub(super) amplitude: Option<usize>,
-}
+use crate::model::{Amplitude, Given, Model};
 
 /// What the steps say about one condition: by step, a value or its removal.
 #[derive(Debug, Clone)]

@@ -6,11 +6,11 @@ use signorini_contact::Load;
 use signorini_fem_mesh::{FacetTag, LoadDensity};
 
 use super::faces::{FaceTable, Known};
-use super::history::{Given, Histories, Track};
+use super::history::{Histories, Track};
 use super::materials::sections;
 use super::timeline::Timeline;
 use crate::error::{DeckError, Word};
-use crate::model::{Conditions, Distributed, DistributedKind, Force, Target};
+use crate::model::{Conditions, Distributed, DistributedKind, Force, Given, Target};
 
 /// Most different pressures that get tags of their own. More become forces at nodes, which are the same for
 /// linear elements.
@@ -161,8 +161,8 @@ impl Loads {
             }
         }
         for ((target, gravity, history), (order, value, track)) in groups {
-            let Known { model, sets, raw, .. } = context.known;
-            let elements = sets.elements(model, &target, &track.word)?;
+            let Known { sets, raw, .. } = context.known;
+            let elements = sets.elements(&target, &track.word)?;
             // rigid ones are held, whatever pulls them
             let elements: Vec<u32> = elements.into_iter().filter_map(|e| raw.tet(e)).collect();
             if elements.is_empty() {
@@ -236,18 +236,14 @@ impl Context<'_> {
         }
         for line in &given.lines {
             *order += 1;
-            let value = Given {
-                value: line.value,
-                amplitude: line.amplitude,
-            };
-            for node in self.known.sets.nodes(self.known.model, &line.target, &line.word)? {
+            for node in self.known.sets.nodes(&line.target, &line.word)? {
                 let Some(node) = self.known.raw.in_mesh(node) else {
                     return Err(line.word.cannot(format!(
                         "no elastic element uses node {}, so that a force there acts on nothing; load nodes of the body",
                         self.known.model.nodes[node as usize].label
                     )));
                 };
-                tracks.set((node, line.component), (step, *order, true), value, &line.word)?;
+                tracks.set((node, line.component), (step, *order, true), line.given, &line.word)?;
             }
         }
         Ok(())
@@ -263,10 +259,7 @@ impl Context<'_> {
     ) -> Result<(), DeckError> {
         let word = &line.word;
         let when = (step, order, false);
-        let given = |value: f64| Given {
-            value,
-            amplitude: line.amplitude,
-        };
+        let given = line.given;
         let faces = match &line.kind {
             DistributedKind::Face(number) => {
                 let target = (&line.target, *number);
@@ -284,22 +277,23 @@ impl Context<'_> {
             }
             DistributedKind::Gravity(direction) => {
                 // so that an unknown set is refused here
-                self.known.sets.elements(self.known.model, &line.target, word)?;
+                self.known.sets.elements(&line.target, word)?;
                 let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
                 for (c, d) in direction.iter().enumerate() {
                     let key = (line.target.clone(), true, c);
-                    bodies.set(key, when, given(line.value * (d / length)), word)?;
+                    let value = given.value * (d / length);
+                    bodies.set(key, when, Given { value, ..given }, word)?;
                 }
                 return Ok(());
             }
             DistributedKind::Body(component) => {
-                self.known.sets.elements(self.known.model, &line.target, word)?;
+                self.known.sets.elements(&line.target, word)?;
                 let key = (line.target.clone(), false, *component);
-                return bodies.set(key, when, given(line.value), word);
+                return bodies.set(key, when, given, word);
             }
         };
         for face in faces {
-            pressures.set(face, when, given(line.value), word)?;
+            pressures.set(face, when, given, word)?;
         }
         Ok(())
     }
@@ -307,7 +301,7 @@ impl Context<'_> {
     /// Densities of elements, that of the material of their section.
     fn densities(self, elements: &[u32], track: &Track) -> Result<Vec<f64>, DeckError> {
         let Known { model, raw, sets, .. } = self.known;
-        let sections = sections(model, raw, sets)?;
+        let sections = sections(raw, sets)?;
         let sections = sections.ok_or_else(|| track.word.cannot("gravity needs materials; give *SOLID SECTION"))?;
         let mut of_section = Vec::with_capacity(model.sections.len());
         for section in &model.sections {

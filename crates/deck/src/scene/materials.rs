@@ -5,20 +5,18 @@ use signorini_fem_mesh::Materials;
 use super::mesh::Raw;
 use super::numbers::Sets;
 use crate::error::{DeckError, Word};
-use crate::model::{Model, Target};
 
 const NONE: u32 = u32::MAX;
 
 /// The region of each tetrahedron, which is the number of its section from 0, and the materials; none for a
 /// deck without sections.
-pub(super) fn materials(model: &Model, raw: &Raw, sets: &Sets) -> Result<(Vec<u32>, Option<Materials>), DeckError> {
-    let sections = sections(model, raw, sets)?;
-    let Some(sections) = sections else {
+pub(super) fn materials(raw: &Raw, sets: &Sets) -> Result<(Vec<u32>, Option<Materials>), DeckError> {
+    let Some(sections) = sections(raw, sets)? else {
         return Ok((vec![0; raw.tets.len()], None));
     };
     let mut laws = Vec::new();
-    for section in &model.sections {
-        let material = model.material(section)?;
+    for section in &sets.model.sections {
+        let material = sets.model.material(section)?;
         let Some((_, law)) = &material.elastic else {
             let word = Word::new(&material.location, &section.material.name);
             return Err(word.cannot("the material has no *ELASTIC; put it behind *MATERIAL"));
@@ -26,28 +24,23 @@ pub(super) fn materials(model: &Model, raw: &Raw, sets: &Sets) -> Result<(Vec<u3
         laws.push(*law);
     }
     let materials = match laws[..] {
-        [law] => Materials::uniform(law),
-        _ => {
-            let table = (0..).zip(laws).collect();
-            match Materials::new(table) {
-                Ok(materials) => materials,
-                // the numbers 0, 1, ... do not repeat
-                Err(_) => return Ok((sections, None)),
-            }
-        }
+        [law] => Some(Materials::uniform(law)),
+        // the numbers 0, 1, ... do not repeat
+        _ => Materials::new((0..).zip(laws).collect()).ok(),
     };
-    Ok((sections, Some(materials)))
+    Ok((sections, materials))
 }
 
 /// The section of each element, by position; `None` for a deck without sections.
-pub(super) fn sections(model: &Model, raw: &Raw, sets: &Sets) -> Result<Option<Vec<u32>>, DeckError> {
+pub(super) fn sections(raw: &Raw, sets: &Sets) -> Result<Option<Vec<u32>>, DeckError> {
+    let model = sets.model;
     if model.sections.is_empty() {
         return Ok(None);
     }
     let mut of_element = vec![NONE; raw.tets.len()];
     for (index, section) in model.sections.iter().enumerate() {
         let word = &section.elset.word;
-        let elements = sets.elements(model, &Target::Name(section.elset.name.clone()), word)?;
+        let elements = sets.elements_of(&section.elset)?;
         // rigid ones need no material
         for tet in elements.into_iter().filter_map(|e| raw.tet(e)) {
             let before = std::mem::replace(&mut of_element[tet as usize], index as u32);

@@ -9,7 +9,7 @@ use signorini_fem_mesh::{Facet, TetMesh};
 use super::numbers::{Numbers, Sets};
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Fault};
-use crate::model::{Kind, Model, Names};
+use crate::model::{Kind, Names};
 
 /// The mesh before its facets are known: elastic tetrahedra, without nodes that none of them uses.
 #[derive(Debug)]
@@ -29,12 +29,13 @@ pub(super) struct Raw {
 }
 
 impl Raw {
-    pub(super) fn new(path: &Path, model: &Model, sets: &Sets, bodies: &RigidBodies) -> Result<Self, DeckError> {
+    pub(super) fn new(path: &Path, sets: &Sets, bodies: &RigidBodies) -> Result<Self, DeckError> {
+        let model = sets.model;
         let (mut tets, mut mids, mut elements) = (Vec::new(), Vec::new(), Vec::new());
         let mut of_element = vec![None; model.elements.len()];
         let mut used = vec![false; model.nodes.len()];
         for (position, element) in model.elements.iter().enumerate() {
-            let nodes = bodies.nodes(sets, element)?;
+            let nodes = sets.corners(element)?;
             if bodies.of_element(position as u32).is_some() {
                 continue;
             }
@@ -46,7 +47,7 @@ impl Raw {
             if !(volume > 0.0 && volume.is_finite()) {
                 return Err(element.word().fault(Fault::Volume));
             }
-            let own = bodies.mids(sets, element)?;
+            let own = sets.mids(element)?;
             if !tets.is_empty() && own.is_some() == mids.is_empty() {
                 let why = "the deck has elastic elements of first and of second order; mesh all in one order";
                 return Err(element.word().cannot(why));
@@ -64,7 +65,7 @@ impl Raw {
             let path = path.to_owned();
             return Err(DeckError::NoElements { path });
         }
-        bodies.check_apart(model, sets, &used)?;
+        bodies.check_apart(sets, &used)?;
         let (mut points, mut node_labels) = (Vec::new(), Vec::new());
         let mut of_node = vec![None; used.len()];
         for ((node, used), number) in model.nodes.iter().zip(used).zip(&mut of_node) {
@@ -99,12 +100,12 @@ impl Raw {
     }
 
     /// The sets of nodes and of elements by name, in the numbers of the mesh.
-    pub(super) fn names(&self, model: &Model, sets: Sets) -> (Names<Vec<u32>>, Names<Vec<u32>>) {
+    pub(super) fn names(&self, sets: Sets) -> (Names<Vec<u32>>, Names<Vec<u32>>) {
         let [mut nodes, mut elements] = [Names::default(), Names::default()];
-        for (name, set) in model.nsets.names().into_iter().zip(sets.nodes) {
+        for (name, set) in sets.model.nsets.names().into_iter().zip(sets.nodes) {
             nodes.add(name, set.into_iter().filter_map(|n| self.in_mesh(n)).collect());
         }
-        for (name, set) in model.elsets.names().into_iter().zip(sets.elements) {
+        for (name, set) in sets.model.elsets.names().into_iter().zip(sets.elements) {
             elements.add(name, set.into_iter().filter_map(|e| self.tet(e)).collect());
         }
         (nodes, elements)

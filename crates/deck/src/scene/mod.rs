@@ -46,8 +46,8 @@ pub(crate) struct Translated {
 /// The mesh and the scene of a model.
 pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckError> {
     let sets = numbers::Sets::new(model)?;
-    let bodies = rigid::RigidBodies::new(model, &sets)?;
-    let raw = mesh::Raw::new(path, model, &sets, &bodies)?;
+    let bodies = rigid::RigidBodies::new(&sets)?;
+    let raw = mesh::Raw::new(path, &sets, &bodies)?;
     let timeline = timeline::Timeline::new(model)?;
     let known = faces::Known {
         model,
@@ -60,7 +60,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     let loads = loads::Loads::new(known, &timeline, &surfaces, &mut faces)?;
     faces.check_outside(&raw)?;
     let tags = faces.tags();
-    let (regions, materials) = materials::materials(model, &raw, &sets)?;
+    let (regions, materials) = materials::materials(&raw, &sets)?;
     let mesh = raw.mesh(path, faces.facets(&tags), regions)?;
     let surfaces = faces.tags_of(&tags, model);
 
@@ -73,7 +73,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         let scene = loads.into_iter().fold(scene, Scene::with_load);
         contacts.into_iter().fold(scene, Scene::with_contact)
     });
-    let (node_sets, element_sets) = raw.names(model, sets);
+    let (node_sets, element_sets) = raw.names(sets);
     Ok(Translated {
         mesh,
         scene,

@@ -3,7 +3,8 @@
 use std::collections::HashSet;
 
 use crate::error::{DeckError, Fault, Location, Word};
-use crate::model::{Member, Model, Names, Set, Target};
+use crate::lexer::Named;
+use crate::model::{Element, Member, Model, Names, Set, Target};
 
 /// Most members of all sets together.
 const MEMBERS: u64 = 200_000_000;
@@ -38,15 +39,16 @@ impl Numbers {
 
 /// All numbers and sets, as positions in the tables of nodes and elements of the deck.
 #[derive(Debug)]
-pub(super) struct Sets {
-    pub(super) node_numbers: Numbers,
+pub(super) struct Sets<'a> {
+    pub(super) model: &'a Model,
+    node_numbers: Numbers,
     element_numbers: Numbers,
     pub(super) nodes: Vec<Vec<u32>>,
     pub(super) elements: Vec<Vec<u32>>,
 }
 
-impl Sets {
-    pub(super) fn new(model: &Model) -> Result<Self, DeckError> {
+impl<'a> Sets<'a> {
+    pub(super) fn new(model: &'a Model) -> Result<Self, DeckError> {
         let at = |n: usize| (model.nodes[n].label, &model.nodes[n].location);
         let remedy = "give each node a number of its own";
         let node_numbers = numbers(model.nodes.len(), at, remedy)?;
@@ -58,6 +60,7 @@ impl Sets {
         let count = model.elements.len();
         let elements = resolve("element", &model.elsets, &element_numbers, count, &mut room)?;
         Ok(Self {
+            model,
             node_numbers,
             element_numbers,
             nodes,
@@ -66,15 +69,47 @@ impl Sets {
     }
 
     /// Positions of the nodes of a target.
-    pub(super) fn nodes(&self, model: &Model, target: &Target, word: &Word) -> Result<Vec<u32>, DeckError> {
+    pub(super) fn nodes(&self, target: &Target, word: &Word) -> Result<Vec<u32>, DeckError> {
         let what = ("node", "node set");
-        find(what, target, &self.node_numbers, &model.nsets, &self.nodes, word)
+        find(what, target, &self.node_numbers, &self.model.nsets, &self.nodes, word)
     }
 
     /// Positions of the elements of a target.
-    pub(super) fn elements(&self, model: &Model, target: &Target, word: &Word) -> Result<Vec<u32>, DeckError> {
+    pub(super) fn elements(&self, target: &Target, word: &Word) -> Result<Vec<u32>, DeckError> {
         let what = ("element", "element set");
-        find(what, target, &self.element_numbers, &model.elsets, &self.elements, word)
+        find(
+            what,
+            target,
+            &self.element_numbers,
+            &self.model.elsets,
+            &self.elements,
+            word,
+        )
+    }
+
+    /// Positions of the corners of an element.
+    pub(super) fn corners(&self, element: &Element) -> Result<[u32; 4], DeckError> {
+        self.positions(element, element.nodes)
+    }
+
+    /// Positions of the nodes on the edges of an element C3D10; `None` for others.
+    pub(super) fn mids(&self, element: &Element) -> Result<Option<[u32; 6]>, DeckError> {
+        let quadratic = element.mids != [0; 6];
+        quadratic.then(|| self.positions(element, element.mids)).transpose()
+    }
+
+    fn positions<const N: usize>(&self, element: &Element, labels: [u32; N]) -> Result<[u32; N], DeckError> {
+        let mut nodes = [0; N];
+        for (position, label) in nodes.iter_mut().zip(labels) {
+            let unknown = || Word::new(&element.location, label.to_string()).fault(Fault::UnknownNumber("node"));
+            *position = self.node_numbers.get(label).ok_or_else(unknown)?;
+        }
+        Ok(nodes)
+    }
+
+    /// Positions of the elements of a set.
+    pub(super) fn elements_of(&self, set: &Named) -> Result<Vec<u32>, DeckError> {
+        self.elements(&Target::Name(set.name.clone()), &set.word)
     }
 }
 

@@ -13,8 +13,8 @@ use signorini_fem_mesh::{FacetTag, History};
 use super::history::{Histories, Track};
 use super::numbers::Sets;
 use super::timeline::Timeline;
-use crate::error::{DeckError, Fault, Word};
-use crate::model::{Element, FACES, Kind, Model, Side, Target};
+use crate::error::{DeckError, Word};
+use crate::model::{FACES, Kind, Model, Side, Target};
 
 /// Deviation from a plane, and of a node from the rim of a surface, over its size, that is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -44,19 +44,20 @@ pub(super) struct RigidFace {
 pub(super) type Motion = Option<([f64; 3], History)>;
 
 impl RigidBodies {
-    pub(super) fn new(model: &Model, sets: &Sets) -> Result<Self, DeckError> {
+    pub(super) fn new(sets: &Sets) -> Result<Self, DeckError> {
+        let model = sets.model;
         let mut of_element = vec![None; model.elements.len()];
         let mut list = Vec::with_capacity(model.rigid.len());
         for (index, body) in model.rigid.iter().enumerate() {
             let word = &body.elset.word;
-            for element in sets.elements(model, &Target::Name(body.elset.name.clone()), word)? {
+            for element in sets.elements_of(&body.elset)? {
                 if of_element[element as usize].replace(index as u32).is_some() {
                     let label = model.elements[element as usize].label;
                     let why = format!("element {label} is in another rigid body; keep one of them");
                     return Err(word.cannot(why));
                 }
             }
-            let node = |(target, word): &(Target, Word)| match sets.nodes(model, target, word)?[..] {
+            let node = |(target, word): &(Target, Word)| match sets.nodes(target, word)?[..] {
                 [node] => Ok(node),
                 _ => Err(word.expected("one node")),
             };
@@ -81,7 +82,8 @@ impl RigidBodies {
 
     /// Refuses bodies that share nodes with elastic elements, which would be bonded to them; `elastic` are the nodes
     /// that such elements use.
-    pub(super) fn check_apart(&self, model: &Model, sets: &Sets, elastic: &[bool]) -> Result<(), DeckError> {
+    pub(super) fn check_apart(&self, sets: &Sets, elastic: &[bool]) -> Result<(), DeckError> {
+        let model = sets.model;
         let fault = |word: &Word, node: u32| {
             Err(word.cannot(format!(
                 "node {} is of a rigid body and of elastic elements, and rigid parts of elastic bodies are not here; \
@@ -97,7 +99,7 @@ impl RigidBodies {
         }
         let all = model.elements.iter().zip(&self.of_element);
         for (element, _) in all.filter(|(_, body)| body.is_some()) {
-            let nodes = self.nodes(sets, element)?;
+            let nodes = sets.corners(element)?;
             if let Some(node) = nodes.into_iter().find(|n| elastic[*n as usize]) {
                 return fault(&element.word(), node);
             }
@@ -105,29 +107,12 @@ impl RigidBodies {
         Ok(())
     }
 
-    /// The nodes of an element, by position.
-    pub(super) fn nodes(&self, sets: &Sets, element: &Element) -> Result<[u32; 4], DeckError> {
-        positions(sets, element, element.nodes)
-    }
-
-    /// The nodes on the edges of an element C3D10, by position; `None` for others.
-    pub(super) fn mids(&self, sets: &Sets, element: &Element) -> Result<Option<[u32; 6]>, DeckError> {
-        let quadratic = element.mids != [0; 6];
-        quadratic.then(|| positions(sets, element, element.mids)).transpose()
-    }
-
     /// A side of a rigid element, by its position.
-    pub(super) fn face(
-        &self,
-        model: &Model,
-        sets: &Sets,
-        (element, side): (u32, Side),
-        word: &Word,
-    ) -> Result<RigidFace, DeckError> {
+    pub(super) fn face(&self, sets: &Sets, (element, side): (u32, Side), word: &Word) -> Result<RigidFace, DeckError> {
         let body = self.of_element(element).unwrap_or(0);
-        let element = &model.elements[element as usize];
-        let nodes = self.nodes(sets, element)?;
-        let p = nodes.map(|n| model.nodes[n as usize].point);
+        let element = &sets.model.elements[element as usize];
+        let nodes = sets.corners(element)?;
+        let p = nodes.map(|n| sets.model.nodes[n as usize].point);
         let mut corners = match (element.kind, side) {
             (Kind::Solid, Side::Face(number)) => {
                 let [a, b, c] = FACES[usize::from(number) - 1];
@@ -257,14 +242,4 @@ fn contains(triangle: &[[f64; 3]; 3], normal: [f64; 3], x: [f64; 3]) -> bool {
         let edge = norm(sub(b, a));
         inside >= -ROUNDING * edge * (edge + norm(sub(x, a)))
     })
-}
-
-/// The positions of nodes of an element by their labels.
-fn positions<const N: usize>(sets: &Sets, element: &Element, labels: [u32; N]) -> Result<[u32; N], DeckError> {
-    let mut nodes = [0; N];
-    for (position, label) in nodes.iter_mut().zip(labels) {
-        let unknown = || Word::new(&element.location, label.to_string()).fault(Fault::UnknownNumber("node"));
-        *position = sets.node_numbers.get(label).ok_or_else(unknown)?;
-    }
-    Ok(nodes)
 }

@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use signorini_contact::{Directions, Support};
 
 use super::faces::Known;
-use super::history::{Given, Histories, Track};
+use super::history::{Histories, Track};
 use super::rigid::Motion;
 use super::timeline::Timeline;
 use crate::error::DeckError;
-use crate::model::{Boundary, COMPONENT, Ignored, Model, Target};
+use crate::model::{Boundary, COMPONENT, Given, Ignored, Model, Target};
 
 /// Name of what is given on nodes by their numbers.
 const SINGLE: &str = "nodes";
@@ -120,12 +120,8 @@ impl Table {
     /// Notes a line of a step, or of the part before the first.
     fn add(&mut self, known: Known, step: Option<usize>, line: &Boundary) -> Result<(), DeckError> {
         let owner = self.owner(&line.target);
-        let given = Given {
-            value: line.value,
-            amplitude: line.amplitude,
-        };
         let (mut found, mut turned) = (false, None);
-        for node in known.sets.nodes(known.model, &line.target, &line.word)? {
+        for node in known.sets.nodes(&line.target, &line.word)? {
             let (map, key, components) = match known.raw.in_mesh(node) {
                 _ if known.bodies.has(node) => (&mut self.rigid, node, 6),
                 Some(inside) => (&mut self.held, inside, 3),
@@ -133,7 +129,7 @@ impl Table {
             };
             found = true;
             if let (3, Some(word)) = (components, &line.rotation) {
-                if line.value != 0.0 {
+                if line.given.value != 0.0 {
                     return Err(word.expected(COMPONENT));
                 }
                 turned = Some(word);
@@ -154,7 +150,8 @@ impl Table {
                     track: Track::new(next, &line.word),
                     before: step.is_none(),
                 });
-                held.give(step, given, &what).map_err(|why| line.word.cannot(why))?;
+                held.give(step, line.given, &what)
+                    .map_err(|why| line.word.cannot(why))?;
             }
         }
         if let Some(word) = turned {
