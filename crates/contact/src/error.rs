@@ -24,6 +24,22 @@ fn held_remedy(friction: Option<f64>) -> String {
     }
 }
 
+impl ContactError {
+    /// Refuses a setting unless it is good.
+    pub(crate) fn check(good: bool, name: &'static str, value: f64, range: &'static str) -> Result<(), Self> {
+        let error = Self::Setting { name, value, range };
+        good.then_some(()).ok_or(error)
+    }
+
+    /// The same checkpoint with more to say of it.
+    pub(crate) fn explained(self, text: impl FnOnce(String) -> String) -> Self {
+        match self {
+            Self::Checkpoint { reason } => Self::Checkpoint { reason: text(reason) },
+            other => other,
+        }
+    }
+}
+
 signorini_fem_mesh::errors! {
     /// A scene or a setting is wrong, or a solver broke down. Each message names the place and the remedy.
     ///

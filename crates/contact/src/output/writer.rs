@@ -23,28 +23,6 @@ use std::path::PathBuf;
 ///
 /// A run that is resumed goes on with its files: of a first step that is not the first of the scene, files and rows of
 /// earlier steps are kept, later ones replaced.
-///
-/// ```
-/// use signorini_contact::{Contact, Load, ResultField, ResultWriter, Scene, Settings, Simulation};
-/// use signorini_fem_mesh::{Brick, Hooke, Materials, brick};
-/// use signorini_contact::Support;
-///
-/// # let directory = tempfile::tempdir()?;
-/// # let folder = directory.path();
-/// let mesh = Brick::new([1.0; 3], [2; 3]).build()?;
-/// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(2.1e11, 0.3)?))
-///     .with_support(Support::fixed(brick::X_MIN))
-///     .with_load(Load::pressure(brick::Z_MAX, 1e6))
-///     .with_contact(Contact::rigid(brick::Z_MIN));
-/// let mut writer = ResultWriter::new(folder, "block")
-///     .with_field(ResultField::Stress)
-///     .with_probe(26);
-/// Simulation::new(scene, Settings::default())?.run(&mut writer)?;
-/// assert!(folder.join("block.pvd").is_file() && folder.join("block_contact_0001.vtu").is_file());
-/// let table = std::fs::read_to_string(folder.join("block.csv"))?;
-/// assert!(table.contains("node_26_uz") && table.lines().count() == 4);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug)]
 pub struct ResultWriter {
     folder: PathBuf,

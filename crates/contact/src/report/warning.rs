@@ -16,21 +16,6 @@ use std::path::PathBuf;
 /// does of its strain, 6 % at the free corner, and of its mesh. Strain is judged tetrahedron by tetrahedron: at clamped
 /// edges that of linear theory grows without bound as the mesh is refined.
 ///
-/// ```
-/// use signorini_contact::{Contact, Friction, Plan, Scene, Settings, Support, Warning};
-/// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
-///
-/// let floor = Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(20.0));
-/// let mesh = Brick::new([1.0; 3], [2; 3]).build()?;
-/// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(1e9, 0.3)?))
-///     .with_support(Support::fixed(brick::X_MIN))
-///     .with_contact(floor);
-/// let plan = Plan::new(&scene, &Settings::default())?;
-/// assert!(matches!(plan.warnings(), [Warning::LargeCoefficient { coefficient: 20.0, .. }]));
-/// assert!(plan.to_string().contains("20 in per cent is 0.2"));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-///
 /// Fields: `step` from 0; `node`, `tet` and `contact` are numbers in mesh and scene; `place` in m.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(

@@ -9,21 +9,6 @@ impl Contact {
     ///
     /// Contacts that meet a node along one direction need the same compliances and gaps. A node that a support holds
     /// along the normal still may not be inside the obstacle: no pressure is known there.
-    ///
-    /// ```
-    /// use signorini_contact::{Contact, Load, Scene, Settings, Simulation, Support};
-    /// use signorini_fem_mesh::{Brick, Hooke, brick};
-    ///
-    /// // a column on a rough floor: 1 MPa on 100 MPa/mm
-    /// let mesh = Brick::new([1.0; 3], [2; 3]).build()?;
-    /// let scene = Scene::new(mesh, Hooke::isotropic(2.1e11, 0.0)?.into())
-    ///     .with_support(Support::components(brick::X_MIN, [true, true, false]))
-    ///     .with_load(Load::pressure(brick::Z_MAX, 1e6))
-    ///     .with_contact(Contact::rigid(brick::Z_MIN).with_normal_compliance(1e-11));
-    /// let result = Simulation::new(scene, Settings::default())?.step()?;
-    /// assert!(result.points().iter().all(|p| (p.gap + 1e-5).abs() < 1e-10));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn with_normal_compliance(mut self, compliance: f64) -> Self {
         self.compliance[0] = compliance;

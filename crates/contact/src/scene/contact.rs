@@ -83,22 +83,6 @@ impl Contact {
     /// curvature. Motions that turn the obstacle's normal at a node by more than 0.1 are refused
     /// ([`TurnedNormal`](ContactError::TurnedNormal)), displacements that do so at a node that touches are
     /// [warned](crate::Warning::TurnedNormal) of.
-    ///
-    /// ```
-    /// use signorini_contact::{Contact, Load, Obstacle, Scene, Settings, Simulation, Support};
-    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
-    ///
-    /// // a ball of radius 10 m pressed 0.02 m into a block from above
-    /// let ball = Obstacle::sphere([0.5, 0.5, 11.0 - 0.02], 10.0);
-    /// let mesh = Brick::new([1.0; 3], [4; 3]).build()?;
-    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(1e6, 0.3)?))
-    ///     .with_support(Support::fixed(brick::Z_MIN))
-    ///     .with_contact(Contact::obstacle(brick::Z_MAX, ball));
-    /// let mut simulation = Simulation::new(scene, Settings::default())?;
-    /// let result = simulation.step()?;
-    /// assert!(result.summary().normal_force > 1e3);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn obstacle(tag: FacetTag, obstacle: Obstacle) -> Self {
         Self {
@@ -123,29 +107,6 @@ impl Contact {
     /// the body with `tag`. The gap is measured between the sides, unless [`with_gap`](Self::with_gap) or
     /// [`with_gap_field`](Self::with_gap_field) tell another; sides may coincide. Displacements are small: a node keeps
     /// its partner, however far it slides.
-    ///
-    /// ```
-    /// use signorini_contact::{Contact, Friction, Load, Scene, Settings, Simulation, Support};
-    /// use signorini_fem_mesh::{brick, Brick, FacetTag, Hooke, Materials};
-    ///
-    /// // a cube on a cube; tags of the upper one are 10 larger
-    /// let lower = Brick::new([1.0, 1.0, 1.0], [2, 2, 2]).build()?;
-    /// let upper = lower
-    ///     .map_points(|[x, y, z]| [x, y, z + 1.0])?
-    ///     .map_tags(|tag| FacetTag(tag.0 + 10));
-    /// let top = FacetTag(brick::Z_MAX.0 + 10);
-    /// let scene = Scene::new(lower.append(&upper)?, Materials::uniform(Hooke::isotropic(1e9, 0.3)?))
-    ///     .with_support(Support::fixed(brick::Z_MIN))
-    ///     .with_load(Load::traction(top, [1e5, 0.0, -1e6]))
-    ///     .with_contact(
-    ///         Contact::between(FacetTag(brick::Z_MIN.0 + 10), brick::Z_MAX)
-    ///             .with_friction(Friction::coulomb(0.3)),
-    ///     );
-    /// let mut simulation = Simulation::new(scene, Settings::default())?;
-    /// let frame = simulation.step()?;
-    /// assert!((frame.summary().normal_force - 1e6).abs() < 10.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn between(tag: FacetTag, partner: FacetTag) -> Self {
         Self {
@@ -219,16 +180,6 @@ impl Contact {
     /// again. Before the first step the factor is that at time 0. For obstacles and between bodies. What the growing
     /// interference does to the bodies is part of
     /// [`obstacle_work`](crate::result::ContactSummary::obstacle_work).
-    ///
-    /// ```
-    /// use signorini_contact::Contact;
-    /// use signorini_fem_mesh::{FacetTag, History};
-    ///
-    /// let (hub, shaft) = (FacetTag(1), FacetTag(2));
-    /// // 20 micrometres of interference, within a second
-    /// let fit = Contact::between(hub, shaft).with_gap(-20e-6).with_gap_history(History::ramp(1.0, 1.0)?);
-    /// # Ok::<(), signorini_fem_mesh::HistoryError>(())
-    /// ```
     #[must_use]
     pub fn with_gap_history(mut self, history: History) -> Self {
         self.gap_history = Some(history);
@@ -337,16 +288,6 @@ impl Contact {
     /// to it there is `ratio` times as much. Friction forces are bounded by an ellipse, and points slide along its
     /// normal (the associated rule), not against the force. [`PointState::slip_bound`](crate::PointState::slip_bound)
     /// is the bound along the axis.
-    ///
-    /// ```
-    /// use signorini_contact::{Contact, Friction};
-    /// use signorini_fem_mesh::brick;
-    ///
-    /// // ground along x: 0.3 there, 0.6 across
-    /// let floor = Contact::rigid(brick::Z_MIN)
-    ///     .with_friction(Friction::coulomb(0.3))
-    ///     .with_friction_axis([1.0, 0.0, 0.0], 0.6 / 0.3);
-    /// ```
     #[must_use]
     pub fn with_friction_axis(mut self, axis: [f64; 3], ratio: f64) -> Self {
         self.friction_axis = Some((axis, ratio));

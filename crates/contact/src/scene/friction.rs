@@ -145,34 +145,33 @@ impl Coefficient {
 
     /// Checks what can be checked without a place; `contact` is whose law it is.
     pub(crate) fn validate(&self, contact: usize) -> Result<(), ContactError> {
-        let numbers: Vec<(&'static str, f64)> = match self {
-            Self::Field(_) | Self::RateField(_) => Vec::new(),
-            Self::Constant(value) => vec![("coefficient", *value)],
-            Self::Exponential { fixed, kinetic, .. } => {
-                vec![("coefficient at rest", *fixed), ("kinetic coefficient", *kinetic)]
+        let check = |good: bool, what, value| {
+            let error = ContactError::Coefficient { contact, what, value };
+            good.then_some(()).ok_or(error)
+        };
+        match self {
+            Self::Field(_) | Self::RateField(_) => Ok(()),
+            Self::Constant(value) => check(is_good(*value), "coefficient", *value),
+            Self::Exponential { fixed, kinetic, decay } => {
+                check(is_good(*fixed), "coefficient at rest", *fixed)?;
+                check(is_good(*kinetic), "kinetic coefficient", *kinetic)?;
+                check(is_good(*decay) && *decay > 0.0, "decay rate", *decay)
             }
             Self::Table(points) => {
-                let mut before = f64::NEG_INFINITY;
-                for (entry, &(rate, _)) in points.iter().enumerate() {
-                    if !(rate.is_finite() && rate > before) {
-                        return Err(ContactError::TableRate { contact, entry, rate });
-                    }
-                    before = rate;
-                }
                 if points.is_empty() {
                     return Err(ContactError::EmptyTable { contact });
                 }
-                points.iter().map(|p| ("coefficient in the table", p.1)).collect()
+                let mut before = f64::NEG_INFINITY;
+                for (entry, &(rate, value)) in points.iter().enumerate() {
+                    if !(rate.is_finite() && rate > before) {
+                        return Err(ContactError::TableRate { contact, entry, rate });
+                    }
+                    check(is_good(value), "coefficient in the table", value)?;
+                    before = rate;
+                }
+                Ok(())
             }
-        };
-        let mut bad = numbers.into_iter().find(|(_, value)| !is_good(*value));
-        if let Self::Exponential { decay, .. } = self
-            && !(decay.is_finite() && *decay > 0.0)
-        {
-            bad = bad.or(Some(("decay rate", *decay)));
         }
-        let error = |(what, value)| Err(ContactError::Coefficient { contact, what, value });
-        bad.map_or(Ok(()), error)
     }
 
     /// The coefficient at a node, checked. `rate` in m/s.

@@ -27,19 +27,6 @@ impl Load {
 
     /// A force on a tag, N, spread evenly over its facets: a bolt force on the print of its head, say. The sum of the
     /// load is this force to rounding, whatever area the facets of a curved surface have.
-    ///
-    /// ```
-    /// use signorini_contact::{Load, Scene, Settings, Simulation, Support};
-    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
-    ///
-    /// let mesh = Brick::new([1.0, 0.3, 0.7], [4, 2, 3]).build()?;
-    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(2.1e11, 0.3)?))
-    ///     .with_support(Support::fixed(brick::X_MIN))
-    ///     .with_load(Load::force(brick::X_MAX, [0.0, 0.0, -1500.0]));
-    /// let result = Simulation::new(scene, Settings::default())?.step()?;
-    /// assert!((result.load_resultant()[2] + 1500.0).abs() < 1e-9);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn force(tag: FacetTag, value: [f64; 3]) -> Self {
         Self::new(LoadDensity::force(tag, value))

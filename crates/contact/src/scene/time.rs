@@ -26,24 +26,21 @@ impl DifferenceFormula {
     /// [`ContactError::Formula`] unless `alpha > 0`, `alpha + beta + gamma = 0` (a body at rest has rate 0) and
     /// `-beta - 2 gamma = 1` (uniform motion has its rate).
     pub fn new(alpha: f64, beta: f64, gamma: f64) -> Result<Self, ContactError> {
-        let error = |rule| {
-            Err(ContactError::Formula {
-                alpha,
-                beta,
-                gamma,
-                rule,
-            })
+        let rule = if !(alpha.is_finite() && beta.is_finite() && gamma.is_finite() && alpha > 0.0) {
+            "alpha must be positive and all three finite"
+        } else if (alpha + beta + gamma).abs() > ROUNDING * alpha {
+            "the sum must be 0"
+        } else if (-beta - 2.0 * gamma - 1.0).abs() > ROUNDING {
+            "-beta - 2 gamma must be 1"
+        } else {
+            return Ok(Self([alpha, beta, gamma]));
         };
-        if !(alpha.is_finite() && beta.is_finite() && gamma.is_finite() && alpha > 0.0) {
-            return error("alpha must be positive and all three finite");
-        }
-        if (alpha + beta + gamma).abs() > ROUNDING * alpha {
-            return error("the sum must be 0");
-        }
-        if (-beta - 2.0 * gamma - 1.0).abs() > ROUNDING {
-            return error("-beta - 2 gamma must be 1");
-        }
-        Ok(Self([alpha, beta, gamma]))
+        Err(ContactError::Formula {
+            alpha,
+            beta,
+            gamma,
+            rule,
+        })
     }
 
     /// The weights `alpha`, `beta`, `gamma` of the new displacement, the last one and the one before.
@@ -201,23 +198,17 @@ impl Analysis {
         self.times().get(step).copied()
     }
 
-    /// Length of a step, s; `None` for a static scene.
-    fn step_size(&self, step: usize) -> Option<f64> {
-        let Self::Quasistatic { times, .. } = self else {
-            return None;
-        };
-        let end = times.get(step)?;
-        Some(end - step.checked_sub(1).map_or(0.0, |before| times[before]))
-    }
-
     /// A whole step; `None` after the last.
     pub(crate) fn increment(&self, step: usize) -> Option<Increment> {
+        let end = self.time(step)?;
+        let start = step.checked_sub(1).and_then(|before| self.time(before));
+        let formula = self.formula();
         Some(Increment {
             index: step,
-            start: step.checked_sub(1).and_then(|before| self.time(before)),
-            end: self.time(step)?,
-            length: self.step_size(step),
-            formula: self.formula(),
+            start,
+            end,
+            length: formula.map(|_| end - start.unwrap_or(0.0)),
+            formula,
         })
     }
 

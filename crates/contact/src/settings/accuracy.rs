@@ -40,14 +40,15 @@ impl Accuracy {
     }
 
     pub(crate) fn validate(self) -> Result<(), ContactError> {
-        let (name, value, range, good) = match self {
-            Self::Tolerance => return Ok(()),
-            Self::Balanced { fraction: f } => ("accuracy.fraction", f, "(0, 1]", f > 0.0 && f <= 1.0),
-            Self::Relative(x) => ("accuracy.relative", x, "[1e-11, 0.5]", (1e-11..=0.5).contains(&x)),
-        };
-        match good {
-            true => Ok(()),
-            false => Err(ContactError::Setting { name, value, range }),
+        match self {
+            Self::Tolerance => Ok(()),
+            Self::Balanced { fraction: f } => {
+                ContactError::check(f > 0.0 && f <= 1.0, "accuracy.fraction", f, "(0, 1]")
+            }
+            Self::Relative(x) => {
+                let good = (1e-11..=0.5).contains(&x);
+                ContactError::check(good, "accuracy.relative", x, "[1e-11, 0.5]")
+            }
         }
     }
 }

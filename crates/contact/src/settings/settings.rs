@@ -35,7 +35,6 @@ pub struct Settings {
     pub(crate) method: Method,
     pub(crate) tolerance: f64,
     pub(crate) accuracy: Accuracy,
-    pub(crate) max_fixed_point: usize,
     pub(crate) extrapolate: bool,
     pub(crate) share_translates: bool,
     pub(crate) inverse: InverseSettings,
@@ -51,7 +50,6 @@ impl Default for Settings {
             method: Method::default(),
             tolerance: 1e-6,
             accuracy: Accuracy::default(),
-            max_fixed_point: 200,
             extrapolate: true,
             share_translates: true,
             inverse: InverseSettings::default(),
@@ -83,13 +81,6 @@ impl Settings {
     #[must_use]
     pub fn with_accuracy(mut self, accuracy: Accuracy) -> Self {
         self.accuracy = accuracy;
-        self
-    }
-
-    /// Most evaluations of the Coulomb map a step, at least 1, by default 200.
-    #[must_use]
-    pub fn with_max_fixed_point(mut self, max: usize) -> Self {
-        self.max_fixed_point = max;
         self
     }
 
@@ -164,30 +155,18 @@ impl Settings {
     }
 
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
-        let check = |good, name, value, range| match good {
-            true => Ok(()),
-            false => Err(ContactError::Setting { name, value, range }),
-        };
+        let check = ContactError::check;
         let tolerance = self.tolerance;
-        check(
-            (1e-12..=0.1).contains(&tolerance),
-            "tolerance",
-            tolerance,
-            "[1e-12, 0.1]",
-        )?;
+        let good = (1e-12..=0.1).contains(&tolerance);
+        check(good, "tolerance", tolerance, "[1e-12, 0.1]")?;
         self.accuracy.validate()?;
-        check(self.max_fixed_point > 0, "max_fixed_point", 0.0, "at least 1")?;
+        let products = self.max_fallback_products;
+        check(products > 0, "max_fallback_products", 0.0, "at least 1")?;
+        let halvings = self.step_halving;
         check(
-            self.max_fallback_products > 0,
-            "max_fallback_products",
-            0.0,
-            "at least 1",
-        )?;
-        let most = f64::from(self.step_halving);
-        check(
-            self.step_halving <= MOST_HALVINGS,
+            halvings <= MOST_HALVINGS,
             "step_halving",
-            most,
+            halvings.into(),
             "of at most 20",
         )?;
         match &self.method {

@@ -92,19 +92,6 @@ impl StepResult {
 
     /// What in this result is allowed but hardly meant, each kind at its worst place: large displacements, strains and
     /// slips. Looked for when asked; a [run](crate::Simulation::run) asks at every step.
-    ///
-    /// ```
-    /// use signorini_contact::{Scene, Settings, Simulation, Support, Warning};
-    /// use signorini_fem_mesh::{brick, Brick, History, Hooke, Materials};
-    ///
-    /// let mesh = Brick::new([3.0, 1.0, 1.0], [3, 1, 1]).build()?;
-    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(1e9, 0.3)?))
-    ///     .with_support(Support::fixed(brick::X_MIN))
-    ///     .with_support(Support::fixed(brick::X_MAX).with_motion([0.2, 0.0, 0.0], History::constant(1.0)));
-    /// let result = Simulation::new(scene, Settings::default())?.step()?;
-    /// assert!(matches!(result.warnings()[..], [Warning::LargeStrain { .. }]));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn warnings(&self) -> Vec<Warning> {
         self.warnings_but(&[])
@@ -200,24 +187,6 @@ impl StepResult {
     /// obstacle and the loads do. Computed from the multipliers when asked for.
     ///
     /// Signs: forces *on the body*. A column that stands on a support and is pressed down has an upward reaction.
-    ///
-    /// ```
-    /// use signorini_contact::{Load, Scene, Settings, Simulation, Support};
-    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
-    ///
-    /// let mesh = Brick::new([1.0, 1.0, 3.0], [2, 2, 6]).build()?;
-    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(2.1e11, 0.3)?))
-    ///     .with_support(Support::fixed(brick::Z_MIN))
-    ///     .with_load(Load::pressure(brick::Z_MAX, 1e6));
-    /// let mut simulation = Simulation::new(scene, Settings::default())?;
-    /// let reactions = simulation.step()?.reactions_about([0.5, 0.5, 0.0]);
-    /// for support in &reactions.supports {
-    ///     let resultant = support.resultant;
-    ///     assert!((resultant.force[2] - 1e6).abs() < 1.0);
-    ///     assert!(resultant.moment.iter().all(|m| m.abs() < 1.0));
-    /// }
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     #[must_use]
     pub fn reactions_about(&self, point: [f64; 3]) -> Reactions {
         reactions_about(&self.model, &self.problem, &self.recovered, point)

@@ -17,26 +17,6 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// A scene being simulated, step by step.
-///
-/// ```
-/// use signorini_contact::{Analysis, Contact, Friction, Load, Scene, Settings, Simulation, Support};
-/// use signorini_fem_mesh::{brick, Brick, History, Hooke, Materials};
-///
-/// let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build()?;
-/// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(211.9e9, 0.277)?))
-///     .with_support(Support::fixed(brick::X_MIN))
-///     .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -3e9]).with_history(History::ramp(1.0, 1.0)?))
-///     .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.1).with_friction(Friction::coulomb(0.3)))
-///     .with_boxes([3, 1, 1])
-///     .with_analysis(Analysis::quasistatic(1.0, 4));
-/// let mut simulation = Simulation::new(scene, Settings::default())?;
-/// while !simulation.is_finished() {
-///     let result = simulation.step()?;
-///     assert!(result.report().status.converged());
-///     assert!(result.certificate().largest() < 1e-6);
-/// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub struct Simulation {
     pub(crate) model: Arc<Model>,
     pub(crate) caches: Arc<Caches>,

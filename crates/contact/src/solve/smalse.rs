@@ -21,6 +21,9 @@ use signorini_tfeti::{DualOperator, OrthonormalCoarse};
 /// How often a step may tighten the inner tolerance tenfold.
 const MAX_TIGHTENINGS: usize = 3;
 
+/// Most evaluations of the Coulomb map in a step.
+const MAX_EVALUATIONS: usize = 200;
+
 pub(crate) struct SmalseSolver {
     rows: OrthonormalRows,
     norm: f64,
@@ -188,8 +191,8 @@ impl SmalseSolver {
             x.copy_from_slice(&iterate.lambda[normal.clone()]);
             Ok(tolerances.is_full(tolerance))
         };
-        let (least, most) = (problem.least()[1], settings.max_fixed_point);
-        let outcome = successive_approximations(&mut x, settings.tolerance, least, most, map);
+        let least = problem.least()[1];
+        let outcome = successive_approximations(&mut x, settings.tolerance, least, MAX_EVALUATIONS, map);
         let mut outcome = match outcome {
             Ok(outcome) => outcome,
             // no products left

@@ -101,7 +101,7 @@ impl StepProblem {
         let start = model.tangential_start();
         for point in &model.points {
             if effects.gap {
-                self.offset[point.row] += point.scale * self.gap(&model.scene, point)?;
+                self.offset[point.row] += point.scale * self.gap(&model.scene, point, 0)?;
             }
             if let Some(formula) = formula {
                 for (_, k, scale) in point.along() {
@@ -165,14 +165,12 @@ impl StepProblem {
     }
 
     /// The gap of a point with what an obstacle that moves along the surface has brought and its factor in time,
-    /// without what the obstacle opens, m.
-    pub(crate) fn gap(&self, scene: &Scene, point: &ConstrainedPoint) -> Result<f64, ContactError> {
-        gap_brought(scene, point, &self.obstacles[0])
-    }
-
-    /// The same a step before.
-    pub(crate) fn gap_before(&self, scene: &Scene, point: &ConstrainedPoint) -> Result<f64, ContactError> {
-        gap_brought(scene, point, &self.obstacles[1])
+    /// without what the obstacle opens, m: now (0), or an increment before (1).
+    pub(crate) fn gap(&self, scene: &Scene, point: &ConstrainedPoint, ago: usize) -> Result<f64, ContactError> {
+        match self.obstacles[ago].get(point.surface()) {
+            Some(pose) => point.contact.gap_brought(scene, pose),
+            None => Ok(point.contact.gap),
+        }
     }
 
     /// Where the obstacle of a point is; at rest where none moves.
@@ -224,13 +222,6 @@ impl StepProblem {
     pub(crate) fn forces(&self, model: &Model) -> Vec<f64> {
         let loads: Vec<_> = self.factors.iter().copied().zip(&model.loads).collect();
         model.tfeti.combine_forces(&loads)
-    }
-}
-
-fn gap_brought(scene: &Scene, point: &ConstrainedPoint, obstacles: &[Pose]) -> Result<f64, ContactError> {
-    match obstacles.get(point.contact.surface) {
-        Some(pose) => point.contact.gap_brought(scene, pose),
-        None => Ok(point.contact.gap),
     }
 }
 

@@ -279,7 +279,6 @@ fn times_and_settings() {
         "a formula of another rate": made(DifferenceFormula::new(2.0, -2.0, 0.0)) => Error::Contact(ContactError::Formula { .. }), "must be 1";
         "a tolerance of zero": with(Settings::default().with_tolerance(0.0)) => Error::Contact(ContactError::Setting { name: "tolerance", .. }), "tolerance";
         "a tolerance that is NaN": with(Settings::default().with_tolerance(f64::NAN)) => Error::Contact(ContactError::Setting { .. }), "tolerance", "NaN";
-        "no evaluation of the map": with(Settings::default().with_max_fixed_point(0)) => Error::Contact(ContactError::Setting { .. }), "max_fixed_point";
         "an accuracy factor above one": with(Settings::default().with_method(Method::SuccessiveApproximations {
             smalse: SmalseSettings::default(), accuracy
         })) => Error::Contact(ContactError::Setting { .. }), "accuracy.factor";
