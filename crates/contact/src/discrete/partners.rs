@@ -61,14 +61,14 @@ impl Paired {
     pub(super) fn new(mesh: &TetMesh, index: usize, contact: &Contact) -> Result<Self, ContactError> {
         let surface = Surface::new(mesh, &contact.tags)?;
         let fixed = fixed_frame(index, contact, &surface)?;
-        let paired = |surface, fixed, partners, swapped| Self {
+        let mut paired = Self {
             surface,
             fixed,
-            partners,
-            swapped,
+            partners: Partners::Obstacle,
+            swapped: false,
         };
         if contact.partner.is_empty() {
-            return Ok(paired(surface, fixed, Partners::Obstacle, false));
+            return Ok(paired);
         }
         if let Some(tag) = contact.tags.iter().find(|t| contact.partner.contains(t)) {
             return Err(ContactError::SameSide {
@@ -77,30 +77,27 @@ impl Paired {
             });
         }
         let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
-        if let Some(nodes) = nodes(mesh, index, contact, &surface, fixed.as_ref(), &other)? {
-            return Ok(paired(surface, fixed, Partners::Nodes(nodes), false));
+        if let Some(nodes) = nodes(mesh, index, contact, &paired.surface, fixed.as_ref(), &other)? {
+            paired.partners = Partners::Nodes(nodes);
+            return Ok(paired);
         }
         let facet = |s: &Surface| s.total_area() / s.triangles().len() as f64;
-        let swapped = facet(&other.surface) > COARSER * facet(&surface);
-        let [own, partner] = if swapped {
-            [&other.surface, &surface]
-        } else {
-            [&surface, &other.surface]
+        paired.swapped = facet(&other.surface) > COARSER * facet(&paired.surface);
+        let mortar = match paired.swapped {
+            true => mortar_nodes(mesh, &other.surface, &paired.surface),
+            false => mortar_nodes(mesh, &paired.surface, &other.surface),
         };
-        let mortar = mortar_nodes(mesh, own, partner);
         if mortar.iter().all(Option::is_none) {
-            let distance = other.distance(&surface);
-            return Err(ContactError::NoPartner {
-                contact: index,
-                distance,
-            });
+            let distance = other.distance(&paired.surface);
+            let contact = index;
+            return Err(ContactError::NoPartner { contact, distance });
         }
-        let partners = Partners::Mortar(mortar);
-        if !swapped {
-            return Ok(paired(surface, fixed, partners, false));
+        paired.partners = Partners::Mortar(mortar);
+        if paired.swapped {
+            paired.surface = other.surface;
+            paired.fixed = fixed.and_then(|frame| SurfaceFrame::from_normal(frame.normal.map(|c| -c)));
         }
-        let turned = fixed.and_then(|frame| SurfaceFrame::from_normal(frame.normal.map(|c| -c)));
-        Ok(paired(other.surface, turned, partners, true))
+        Ok(paired)
     }
 }
 

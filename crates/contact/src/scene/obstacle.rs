@@ -3,8 +3,8 @@
 use super::facets::Facets;
 use crate::error::ContactError;
 use crate::tolerances::{NEWTON, RAY, STEEP};
+use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
-use std::fmt;
 use std::sync::Arc;
 
 type Field = dyn Fn([f64; 3]) -> (f64, [f64; 3]) + Send + Sync;
@@ -27,19 +27,11 @@ type Field = dyn Fn([f64; 3]) -> (f64, [f64; 3]) + Send + Sync;
 /// // a socket: the body is inside
 /// assert_eq!(ball.hollow().distance([0.0, 0.0, -1.0]), (0.5, [-0.0, -0.0, -1.0]));
 /// ```
-#[derive(Clone)]
+#[derive(Debug, Clone)]
 pub struct Obstacle {
-    field: Arc<Field>,
+    field: Function<Field>,
     /// What has to be finite and positive, with its name.
     sizes: Vec<(&'static str, f64)>,
-}
-
-impl fmt::Debug for Obstacle {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Obstacle")
-            .field("sizes", &self.sizes)
-            .finish_non_exhaustive()
-    }
 }
 
 impl Obstacle {
@@ -111,7 +103,7 @@ impl Obstacle {
         sizes: Vec<(&'static str, f64)>,
         field: impl Fn([f64; 3]) -> (f64, [f64; 3]) + Send + Sync + 'static,
     ) -> Self {
-        let field = Arc::new(field);
+        let field = Function(Arc::new(field) as Arc<Field>);
         Self { field, sizes }
     }
 
