@@ -44,7 +44,6 @@ signorini_fem_mesh::errors! {
 
 impl DeckError {
     /// The line that is wrong, if it is one.
-    #[must_use]
     pub fn location(&self) -> Option<&Location> {
         match self {
             Self::At { location, .. } => Some(location),
@@ -53,7 +52,6 @@ impl DeckError {
     }
 
     /// The word that is wrong, if it is one.
-    #[must_use]
     pub fn word(&self) -> Option<&str> {
         match self {
             Self::At { word, .. } => Some(word),

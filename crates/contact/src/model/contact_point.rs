@@ -25,13 +25,11 @@ pub struct ConstrainedPoint {
 
 impl ConstrainedPoint {
     /// Mesh node.
-    #[must_use]
     pub fn node(&self) -> u32 {
         self.contact.node()
     }
 
     /// Its partner on another body, of several nodes the one with the largest weight; `None` for a rigid obstacle.
-    #[must_use]
     pub fn partner(&self) -> Option<u32> {
         self.contact.sides.partner()
     }
@@ -44,31 +42,26 @@ impl ConstrainedPoint {
     }
 
     /// Position of its contact surface in [`Scene::contacts`](crate::Scene::contacts).
-    #[must_use]
     pub fn surface(&self) -> usize {
         self.contact.surface
     }
 
     /// Its place, m.
-    #[must_use]
     pub fn position(&self) -> [f64; 3] {
         self.contact.position
     }
 
     /// Normal into the obstacle and two tangents.
-    #[must_use]
     pub fn frame(&self) -> &SurfaceFrame {
         &self.contact.frame
     }
 
     /// A third of the areas of the adjacent facets, m².
-    #[must_use]
     pub fn area(&self) -> f64 {
         self.contact.area
     }
 
     /// Initial distance to the obstacle or the partner, m.
-    #[must_use]
     pub fn gap(&self) -> f64 {
         self.contact.gap
     }

@@ -53,7 +53,6 @@ impl ResultField {
     ];
 
     /// Name in the files.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Displacement => "displacement",

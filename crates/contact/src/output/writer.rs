@@ -24,6 +24,7 @@ use std::path::PathBuf;
 /// A run that is resumed goes on with its files: of a first step that is not the first of the scene, files and rows of
 /// earlier steps are kept, later ones replaced.
 #[derive(Debug)]
+#[must_use]
 pub struct ResultWriter {
     folder: PathBuf,
     name: String,
@@ -49,7 +50,6 @@ struct Files {
 impl ResultWriter {
     /// Files of this name (no folders in it) in a folder, which is created if it does not exist. Nothing is written
     /// before the first step.
-    #[must_use]
     pub fn new(folder: impl Into<PathBuf>, name: impl Into<String>) -> Self {
         let name = name.into();
         Self {
@@ -64,7 +64,6 @@ impl ResultWriter {
     }
 
     /// Writes this field, too.
-    #[must_use]
     pub fn with_field(mut self, field: ResultField) -> Self {
         if !self.fields.contains(&field) {
             self.fields.push(field);
@@ -73,14 +72,12 @@ impl ResultWriter {
     }
 
     /// Writes these fields and no other.
-    #[must_use]
     pub fn with_fields(mut self, fields: impl IntoIterator<Item = ResultField>) -> Self {
         self.fields.clear();
         fields.into_iter().fold(self, Self::with_field)
     }
 
     /// A column of the table for each component of the displacement of this mesh node.
-    #[must_use]
     pub fn with_probe(mut self, node: u32) -> Self {
         if !self.probes.contains(&node) {
             self.probes.push(node);
@@ -89,21 +86,18 @@ impl ResultWriter {
     }
 
     /// Series with every `steps`-th step and the last one only; 0 for none. The table has a row for each step.
-    #[must_use]
     pub fn with_every(mut self, steps: usize) -> Self {
         self.every = steps;
         self
     }
 
     /// Another name for the series of the contact surfaces.
-    #[must_use]
     pub fn with_contact_name(mut self, name: impl Into<String>) -> Self {
         self.contact_name = name.into();
         self
     }
 
     /// The series of the bodies, to open in ParaView.
-    #[must_use]
     pub fn path(&self) -> PathBuf {
         self.folder.join(format!("{}.pvd", self.name))
     }

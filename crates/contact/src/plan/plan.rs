@@ -84,13 +84,11 @@ impl Plan {
     }
 
     /// What in the scene is allowed but hardly meant, each kind once. [`Display`](std::fmt::Display) prints them, too.
-    #[must_use]
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
 
     /// All rows that are solved for: n_d of full rank, but for nodes with several normals or in the grip of a support.
-    #[must_use]
     pub fn dual(&self) -> usize {
         self.normal_rows + self.tangential_rows + self.interface_rows + self.tied_rows + self.dirichlet_rows
     }

@@ -20,7 +20,6 @@ pub struct AlgebraicError {
 impl AlgebraicError {
     /// Error relative to the displacement, both in the energy norm: `sqrt(energy / scale)`. 0 where nothing is wrong,
     /// infinite where something is and there is no scale: no load, no displacement, no step before.
-    #[must_use]
     pub fn relative(&self) -> f64 {
         relative(self.energy, self.scale)
     }
@@ -103,7 +102,6 @@ impl AccumulatedError {
 
     /// Likely error relative to the last displacement, both in the energy norm. 0 and infinity as in
     /// [`AlgebraicError::relative`].
-    #[must_use]
     pub fn likely(&self) -> f64 {
         relative(self.energy, self.scale)
     }
@@ -119,7 +117,6 @@ impl AccumulatedError {
     }
 
     /// The same if the errors of all steps point in the same direction.
-    #[must_use]
     pub fn at_most(&self) -> f64 {
         relative(self.sum * self.sum, self.scale)
     }

@@ -44,7 +44,6 @@ impl RunReport {
     }
 
     /// What an engineer should look at, in scene and results: each kind once, where it was first met.
-    #[must_use]
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }

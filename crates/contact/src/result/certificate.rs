@@ -32,7 +32,6 @@ pub struct Violation {
 
 impl Violation {
     /// `value / reference`; 0 if nothing is violated.
-    #[must_use]
     pub fn relative(&self) -> f64 {
         if self.value == 0.0 {
             0.0
@@ -72,19 +71,16 @@ pub struct Certificate {
 
 impl Certificate {
     /// The largest relative violation; not a number if one is none.
-    #[must_use]
     pub fn largest(&self) -> f64 {
         self.worst().1.relative()
     }
 
     /// The condition that is violated most, relatively; one whose violation is not a number before all others.
-    #[must_use]
     pub fn worst(&self) -> (&'static str, Violation) {
         worst(self.parts())
     }
 
     /// Name and violation of every condition.
-    #[must_use]
     pub fn parts(&self) -> [(&'static str, Violation); 7] {
         [
             ("equilibrium", self.equilibrium),

@@ -88,7 +88,6 @@ pub struct Reactions {
 
 impl Reactions {
     /// What all supports do together.
-    #[must_use]
     pub fn of_supports(&self) -> Resultant {
         let mut sum = Resultant::default();
         self.supports.iter().for_each(|s| sum += s.resultant);
@@ -96,7 +95,6 @@ impl Reactions {
     }
 
     /// Supports, springs, contact and loads together: zero in equilibrium.
-    #[must_use]
     pub fn imbalance(&self) -> Resultant {
         let mut sum = self.of_supports();
         self.springs.iter().for_each(|s| sum += s.resultant);

@@ -9,7 +9,6 @@ impl Contact {
     ///
     /// Contacts that meet a node along one direction need the same compliances and gaps. A node that a support holds
     /// along the normal still may not be inside the obstacle: no pressure is known there.
-    #[must_use]
     pub fn with_normal_compliance(mut self, compliance: f64) -> Self {
         self.compliance[0] = compliance;
         self
@@ -20,14 +19,12 @@ impl Contact {
     /// Coulomb's law as it stands. Without friction it has no effect.
     ///
     /// Differences, slip rates and friction work of results are those of the slip beyond it, which is lost.
-    #[must_use]
     pub fn with_tangential_compliance(mut self, compliance: f64) -> Self {
         self.compliance[1] = compliance;
         self
     }
 
     /// Compliance along the normal and along the surface, m/Pa; zero for the exact law.
-    #[must_use]
     pub fn compliance(&self) -> [f64; 2] {
         self.compliance
     }

@@ -14,6 +14,7 @@ pub type RateField = Function<dyn Fn([f64; 3], f64) -> f64 + Send + Sync>;
 /// The friction on a contact surface.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
+#[must_use]
 pub enum Friction {
     /// No friction: no tangential rows, no slip bounds, no history of the tangential displacement.
     #[default]
@@ -27,19 +28,16 @@ pub enum Friction {
 
 impl Friction {
     /// Coulomb friction with one coefficient everywhere.
-    #[must_use]
     pub fn coulomb(coefficient: f64) -> Self {
         Self::Coulomb(Coefficient::Constant(coefficient))
     }
 
     /// Given friction with one bound of the friction stress, in Pa.
-    #[must_use]
     pub fn tresca(stress: f64) -> Self {
         Self::Tresca(SlipBound::Stress(stress))
     }
 
     /// Whether there are tangential forces at all.
-    #[must_use]
     pub fn is_some(&self) -> bool {
         !matches!(self, Self::None)
     }
@@ -62,6 +60,7 @@ impl Friction {
 /// Bound of the friction stress in given friction.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
+#[must_use]
 pub enum SlipBound {
     /// The same bound everywhere, in Pa; a node carries it times its area.
     Stress(f64),
@@ -71,7 +70,6 @@ pub enum SlipBound {
 
 impl SlipBound {
     /// A function of the place.
-    #[must_use]
     pub fn field(f: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
         Self::StressField(Function(Arc::new(f)))
     }
@@ -93,6 +91,7 @@ impl SlipBound {
 /// rate 0 in the first step, as in the paper (after (2.11)).
 #[derive(Debug, Clone)]
 #[non_exhaustive]
+#[must_use]
 pub enum Coefficient {
     /// The same everywhere.
     Constant(f64),
@@ -115,13 +114,11 @@ pub enum Coefficient {
 
 impl Coefficient {
     /// A function of the place.
-    #[must_use]
     pub fn field(f: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
         Self::Field(Function(Arc::new(f)))
     }
 
     /// A function of place and slip rate.
-    #[must_use]
     pub fn rate_field(f: impl Fn([f64; 3], f64) -> f64 + Send + Sync + 'static) -> Self {
         Self::RateField(Function(Arc::new(f)))
     }

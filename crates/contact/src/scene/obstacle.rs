@@ -28,6 +28,7 @@ type Field = dyn Fn([f64; 3]) -> (f64, [f64; 3]) + Send + Sync;
 /// assert_eq!(ball.hollow().distance([0.0, 0.0, -1.0]), (0.5, [-0.0, -0.0, -1.0]));
 /// ```
 #[derive(Debug, Clone)]
+#[must_use]
 pub struct Obstacle {
     field: Function<Field>,
     /// What has to be finite and positive, with its name.
@@ -37,7 +38,6 @@ pub struct Obstacle {
 impl Obstacle {
     /// Any shape: its signed distance (m, positive outside) and the gradient of that. Both are asked at nodes of the
     /// body, where the gradient must have length 1 to within a thousandth.
-    #[must_use]
     pub fn from_distance(
         distance: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static,
         gradient: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static,
@@ -46,7 +46,6 @@ impl Obstacle {
     }
 
     /// The half-space below a plane: `point` lies on the plane, `outward` points out of the obstacle.
-    #[must_use]
     pub fn half_space(point: [f64; 3], outward: [f64; 3]) -> Self {
         let length = norm(outward);
         let unit = outward.map(|c| c / length);
@@ -57,7 +56,6 @@ impl Obstacle {
     }
 
     /// A ball; its radius in m.
-    #[must_use]
     pub fn sphere(centre: [f64; 3], radius: f64) -> Self {
         Self::new(vec![("radius of an obstacle", radius)], move |x| {
             from_core(sub(x, centre), radius)
@@ -65,7 +63,6 @@ impl Obstacle {
     }
 
     /// An endless cylinder about an axis through `point`; its radius in m.
-    #[must_use]
     pub fn cylinder(point: [f64; 3], axis: [f64; 3], radius: f64) -> Self {
         let length = norm(axis);
         let unit = axis.map(|c| c / length);
@@ -90,7 +87,6 @@ impl Obstacle {
     }
 
     /// What this obstacle leaves free is the obstacle: of a ball a socket, of a cylinder a bore.
-    #[must_use]
     pub fn hollow(self) -> Self {
         let field = self.field;
         Self::new(self.sizes, move |x| {
@@ -108,7 +104,6 @@ impl Obstacle {
     }
 
     /// The signed distance of a place, m, and its gradient.
-    #[must_use]
     pub fn distance(&self, place: [f64; 3]) -> (f64, [f64; 3]) {
         (self.field)(place)
     }

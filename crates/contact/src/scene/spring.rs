@@ -13,6 +13,7 @@ use signorini_fem_mesh::FacetTag;
 /// that are contact nodes as well (edges) may be; where springs are very soft or stiff against the body they cost many
 /// products there.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[must_use]
 pub struct Spring {
     pub(crate) tag: FacetTag,
     pub(crate) stiffness: Stiffness,
@@ -27,7 +28,6 @@ pub(crate) enum Stiffness {
 
 impl Spring {
     /// Along the normal of each facet.
-    #[must_use]
     pub fn normal(tag: FacetTag, stiffness: f64) -> Self {
         Self {
             tag,
@@ -36,7 +36,6 @@ impl Spring {
     }
 
     /// Along x, y and z; zero for none.
-    #[must_use]
     pub fn components(tag: FacetTag, stiffness: [f64; 3]) -> Self {
         Self {
             tag,

@@ -44,13 +44,11 @@ impl DifferenceFormula {
     }
 
     /// The weights `alpha`, `beta`, `gamma` of the new displacement, the last one and the one before.
-    #[must_use]
     pub fn weights(&self) -> [f64; 3] {
         self.0
     }
 
     /// Whether only one old displacement is needed.
-    #[must_use]
     pub fn is_one_step(&self) -> bool {
         self.0[2] == 0.0
     }
@@ -68,7 +66,6 @@ impl DifferenceFormula {
     }
 
     /// `z` of section 3: the displacement at which the difference vanishes, `-(beta u[i] + gamma u[i-1]) / alpha`.
-    #[must_use]
     pub fn offset(&self, last: f64, before: f64) -> f64 {
         let [alpha, beta, gamma] = self.0;
         -(beta * last + gamma * before) / alpha
@@ -85,6 +82,7 @@ impl Default for DifferenceFormula {
 /// Whether the scene has a history.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub enum Analysis {
     /// One state of equilibrium at one time; friction acts against the displacement from the rest position.
     Static {
@@ -141,7 +139,6 @@ const MOST: usize = 100_000_000;
 
 impl Analysis {
     /// One state at time 1.
-    #[must_use]
     pub fn statics() -> Self {
         Self::Static { time: 1.0 }
     }
@@ -149,7 +146,6 @@ impl Analysis {
     /// `steps` equal steps up to `end` seconds, by backward Euler. The paper's [`PAPER`](DifferenceFormula::PAPER) is
     /// asked for with [`with_formula`](Self::with_formula): it remembers the step before the last, so that points
     /// that slid creep on where loads are held, and its first step sees one and a half times the slip rate.
-    #[must_use]
     pub fn quasistatic(end: f64, steps: usize) -> Self {
         // none, which is refused when the scene is used
         let steps = if steps > MOST { 0 } else { steps };
@@ -161,7 +157,6 @@ impl Analysis {
     }
 
     /// The same with another difference formula (static scenes have none).
-    #[must_use]
     pub fn with_formula(mut self, new: DifferenceFormula) -> Self {
         if let Self::Quasistatic { formula, .. } = &mut self {
             *formula = new;
@@ -187,13 +182,11 @@ impl Analysis {
     }
 
     /// Number of steps.
-    #[must_use]
     pub fn steps(&self) -> usize {
         self.times().len()
     }
 
     /// Time to which a step leads, counted from 0, s.
-    #[must_use]
     pub fn time(&self, step: usize) -> Option<f64> {
         self.times().get(step).copied()
     }
@@ -213,7 +206,6 @@ impl Analysis {
     }
 
     /// The difference formula; `None` for a static scene.
-    #[must_use]
     pub fn formula(&self) -> Option<DifferenceFormula> {
         match self {
             Self::Static { .. } => None,

@@ -17,6 +17,7 @@ use crate::error::ContactError;
 /// need `Tolerance`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
+#[must_use]
 pub enum Accuracy {
     /// At the tolerance of the settings. No error is estimated.
     #[default]
@@ -34,7 +35,6 @@ pub enum Accuracy {
 
 impl Accuracy {
     /// Balanced with fraction 0.1.
-    #[must_use]
     pub fn balanced() -> Self {
         Self::Balanced { fraction: 0.1 }
     }

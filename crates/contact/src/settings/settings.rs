@@ -31,6 +31,7 @@ pub enum Preconditioner {
 /// let settings = Settings::default().with_method(Method::paper()).with_tolerance(1e-8);
 /// ```
 #[derive(Debug, Clone)]
+#[must_use]
 pub struct Settings {
     pub(crate) method: Method,
     pub(crate) tolerance: f64,
@@ -63,7 +64,6 @@ impl Default for Settings {
 
 impl Settings {
     /// The solver of a step; [`Method::ActiveSet`] by default.
-    #[must_use]
     pub fn with_method(mut self, method: Method) -> Self {
         self.method = method;
         self
@@ -71,42 +71,36 @@ impl Settings {
 
     /// Relative accuracy of the multipliers at every step, and of the fixed point: `eps` of the paper, in [1e-12, 0.1],
     /// 1e-6 by default.
-    #[must_use]
     pub fn with_tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
         self
     }
 
     /// Whether a step ends at that tolerance (the default) or by an estimate of its error.
-    #[must_use]
     pub fn with_accuracy(mut self, accuracy: Accuracy) -> Self {
         self.accuracy = accuracy;
         self
     }
 
     /// Whether a step starts from the line through the last two, as it does by default, or from the last one.
-    #[must_use]
     pub fn with_extrapolation(mut self, on: bool) -> Self {
         self.extrapolate = on;
         self
     }
 
     /// Whether equal subdomains share factors, as translates do by default.
-    #[must_use]
     pub fn with_share_translates(mut self, share: bool) -> Self {
         self.share_translates = share;
         self
     }
 
     /// How the generalised inverse is held, by cost unless told otherwise.
-    #[must_use]
     pub fn with_inverse(mut self, inverse: InverseSettings) -> Self {
         self.inverse = inverse;
         self
     }
 
     /// Preconditioner of the default method, lumped by default.
-    #[must_use]
     pub fn with_preconditioner(mut self, preconditioner: Preconditioner) -> Self {
         self.preconditioner = preconditioner;
         self
@@ -114,7 +108,6 @@ impl Settings {
 
     /// Most products with F of one call of the active-set method's fall-back (SMALSE), after which a step ends as
     /// [`IterationLimit`](crate::StepStatus::IterationLimit); at least 1, by default 20,000.
-    #[must_use]
     pub fn with_max_fallback_products(mut self, max: usize) -> Self {
         self.max_fallback_products = max;
         self
@@ -129,7 +122,6 @@ impl Settings {
     /// [`between`](crate::report::Counters::between)), works of friction and obstacles are its sums. With a difference
     /// formula of three displacements unequal increments have weights of their own. Where the shortest increment does
     /// not converge either, the step ends with its status. Static scenes have nothing to halve.
-    #[must_use]
     pub fn with_step_halving(mut self, most: u32) -> Self {
         self.step_halving = most;
         self
@@ -142,14 +134,12 @@ impl Settings {
     /// spread over the ranks. Observers are told on every rank; a run ends where any of them ends it. The library's own
     /// files (`ResultWriter`, checkpoints) and lines ([`Progress`](crate::Progress)) are those of
     /// rank 0; checkpoints are read by all.
-    #[must_use]
     pub fn with_communicator(mut self, communicator: Arc<dyn Communicator>) -> Self {
         self.communicator = communicator;
         self
     }
 
     /// The relative accuracy of a step.
-    #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }

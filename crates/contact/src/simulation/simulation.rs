@@ -88,75 +88,63 @@ impl Simulation {
     }
 
     /// The plan.
-    #[must_use]
     pub fn plan(&self) -> &Plan {
         &self.model.plan
     }
 
     /// The scene.
-    #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.model.scene
     }
 
     /// The decomposition.
-    #[must_use]
     pub fn decomposition(&self) -> &Decomposition {
         &self.model.discrete.decomposition
     }
 
     /// The T-FETI system, with its set-up report: for those who measure the solver.
     #[doc(hidden)]
-    #[must_use]
     pub fn tfeti(&self) -> &Tfeti {
         &self.model.tfeti
     }
 
     /// The contact points with their rows.
-    #[must_use]
     pub fn constrained_points(&self) -> &[ConstrainedPoint] {
         &self.model.points
     }
 
     /// The settings.
-    #[must_use]
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
     /// Wall-clock time of the set-up.
-    #[must_use]
     pub fn setup_time(&self) -> Duration {
         self.setup
     }
 
     /// Wall-clock time, within the set-up, of the search for what the sides of the contacts face.
-    #[must_use]
     pub fn search_time(&self) -> Duration {
         self.model.discrete.search
     }
 
     /// Counters of all steps so far.
-    #[must_use]
     pub fn counters(&self) -> &Counters {
         &self.total
     }
 
     /// The state between steps; store it to continue later.
-    #[must_use]
     pub fn state(&self) -> &State {
         &self.state
     }
 
     /// Whether all steps are solved.
-    #[must_use]
     pub fn is_finished(&self) -> bool {
         self.state.step() >= self.model.scene.analysis.steps()
     }
 
     /// The result of the last step; `None` before the first one, after [`resume`](Self::resume) and after a step that
     /// failed.
-    #[must_use]
     pub fn result(&self) -> Option<&Arc<StepResult>> {
         self.result.as_ref()
     }

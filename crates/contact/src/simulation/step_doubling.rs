@@ -44,7 +44,6 @@ pub struct TimeError {
 
 impl TimeError {
     /// Difference of the displacements relative to the displacement, in the energy norm. 0 where nothing differs.
-    #[must_use]
     pub fn displacement(&self) -> f64 {
         relative(self.energy, self.scale)
     }
@@ -52,7 +51,6 @@ impl TimeError {
     /// Estimated error of the displacement after the whole step, relative, in the energy norm: the difference to the
     /// quarter steps, extrapolated with the measured order (taken into its admissible range), or with order one if none
     /// was measured.
-    #[must_use]
     pub fn whole_error(&self) -> f64 {
         let order = self.order.unwrap_or(1.0).clamp(ORDERS[0], ORDERS[1]);
         relative(self.quarter_energy, self.scale) / (1.0 - 4.0_f64.powf(-order))
@@ -61,7 +59,6 @@ impl TimeError {
     /// Whether the difference of the two finest runs is no more than what their solver may have left in it: at most
     /// three times the algebraic error. The error of the time steps is then as small as that or smaller; how small only
     /// a smaller tolerance can tell.
-    #[must_use]
     pub fn is_below_solver(&self) -> bool {
         self.finest_energy <= ABOVE_SOLVER * ABOVE_SOLVER * self.algebraic
     }
@@ -69,7 +66,6 @@ impl TimeError {
     /// Whether the error falls with the step: the measured order is at least 0.5. Where it does not, smaller steps lead
     /// to another sequence of sticking and sliding, and the estimate tells no more than that the results still differ.
     /// `None` where the difference [is no more than the solver's error](Self::is_below_solver).
-    #[must_use]
     pub fn is_reliable(&self) -> Option<bool> {
         (!self.is_below_solver()).then(|| self.order.is_some_and(|order| order >= ORDERS[0]))
     }
@@ -113,25 +109,21 @@ impl StepDoubling {
     }
 
     /// Whether all steps are solved.
-    #[must_use]
     pub fn is_finished(&self) -> bool {
         self.whole.is_finished()
     }
 
     /// The run with whole steps.
-    #[must_use]
     pub fn whole(&self) -> &Simulation {
         &self.whole
     }
 
     /// The run with half steps.
-    #[must_use]
     pub fn half(&self) -> &Simulation {
         &self.half
     }
 
     /// What all runs have cost.
-    #[must_use]
     pub fn counters(&self) -> Counters {
         let mut sum = *self.whole.counters();
         sum += *self.half.counters();
