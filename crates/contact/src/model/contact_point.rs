@@ -73,27 +73,23 @@ impl ConstrainedPoint {
 
     /// Directions of the tangential rows, with row and scale.
     pub(crate) fn along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
-        let stretch = self.stretch.into_iter();
-        self.rows_along()
-            .zip(stretch)
-            .map(|((d, row, scale), factor)| (d, row, scale * factor))
+        let rows = self.rows_along();
+        rows.map(|(direction, row, scale, factor)| (direction, row, scale * factor))
     }
 
     /// The same with lengths in which friction is the same in all directions: vectors that need not have length one,
     /// with row and the scale of the disc.
     pub(crate) fn isotropic(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
-        let stretch = self.stretch.into_iter();
-        self.rows_along()
-            .zip(stretch)
-            .map(|((d, row, scale), factor)| (d.map(|c| c * factor), row, scale))
+        let rows = self.rows_along();
+        rows.map(|(direction, row, scale, factor)| (direction.map(|c| c * factor), row, scale))
     }
 
-    /// Unit vectors, rows, and the scale of the disc.
-    fn rows_along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
-        let [a, b] = self.contact.frame.tangents;
+    /// Unit vectors, rows, the scale of the disc, and the factor of each row beside it.
+    fn rows_along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64, f64)> + use<> {
+        let ([a, b], [p, q]) = (self.contact.frame.tangents, self.stretch);
         let list = match self.tangential {
-            TangentialRows::Disc { row, scale } => [Some((a, row, scale)), Some((b, row + 1, scale))],
-            TangentialRows::Interval { row, direction, scale } => [Some((direction, row, scale)), None],
+            TangentialRows::Disc { row, scale } => [Some((a, row, scale, p)), Some((b, row + 1, scale, q))],
+            TangentialRows::Interval { row, direction, scale } => [Some((direction, row, scale, p)), None],
             _ => [None, None],
         };
         list.into_iter().flatten()

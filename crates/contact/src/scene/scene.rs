@@ -68,12 +68,6 @@ impl Scene {
         self
     }
 
-    /// One contact surface in the place of those there are; `None` for no contact.
-    pub fn replace_contact(mut self, contact: Option<Contact>) -> Self {
-        self.contacts = contact.into_iter().collect();
-        self
-    }
-
     /// Cuts the body into boxes. Empty boxes are dropped and disconnected ones split (see
     /// [`Decomposition::boxes`]), so any mesh and any positive counts will do.
     pub fn with_boxes(mut self, boxes: [usize; 3]) -> Self {

@@ -85,26 +85,13 @@ pub(crate) fn paper_smalse() -> SmalseSettings {
 }
 
 /// Accuracy of the Tresca problems inside the fixed-point loop.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum InnerAccuracy {
     /// The final tolerance each time.
     Fixed,
-    /// `factor` times the last relative change of the normal multipliers, never looser than `loosest` and never tighter
-    /// than the final tolerance.
-    Adaptive {
-        /// In (0, 1).
-        factor: f64,
-        /// In (0, 1).
-        loosest: f64,
-    },
-}
-
-impl Default for InnerAccuracy {
-    fn default() -> Self {
-        Self::Adaptive {
-            factor: 0.1,
-            loosest: 1e-3,
-        }
-    }
+    /// A tenth of the last relative change of the normal multipliers, never looser than 1e-3 and never tighter than the
+    /// final tolerance.
+    #[default]
+    Adaptive,
 }

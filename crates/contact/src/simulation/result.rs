@@ -207,23 +207,6 @@ impl StepResult {
     /// and at nodes that two surfaces share. The edge of contact is widened by two facets: pressures there, and forces
     /// of few nodes, are the less to be trusted the fewer facets touch. At a crease it is that of the side
     /// that is pressed most, and nothing is averaged around it.
-    ///
-    /// ```
-    /// use signorini_contact::{Contact, Load, Scene, Settings, Simulation, Support};
-    /// use signorini_fem_mesh::{Brick, Hooke, Materials, brick};
-    ///
-    /// let mesh = Brick::new([1.0; 3], [4; 3]).perturbed(0.15, 1).build()?;
-    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(2.1e11, 0.3)?))
-    ///     .with_support(Support::components(brick::X_MIN, [true, false, false]))
-    ///     .with_support(Support::components(brick::Y_MIN, [false, true, false]))
-    ///     .with_load(Load::pressure(brick::Z_MAX, 1e6))
-    ///     .with_contact(Contact::rigid(brick::Z_MIN));
-    /// let mut simulation = Simulation::new(scene, Settings::default())?;
-    /// let result = simulation.step()?;
-    /// let pressure = result.contact_pressure(0).expect("a contact surface");
-    /// assert!(pressure.iter().all(|p| (p - 1e6).abs() < 10.0));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
     pub fn contact_pressure(&self, surface: usize) -> Option<Vec<f64>> {
         self.surface_stress(surface).map(|stress| stress.pressure)
     }

@@ -9,7 +9,7 @@ use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::{InnerAccuracy, Method, Settings, paper_smalse};
 use crate::status::StepStatus;
-use crate::tolerances::{BALANCED, BALANCING, INNER_STALL, SMALSE_SAFETY};
+use crate::tolerances::{BALANCED, BALANCING, INNER_FACTOR, INNER_LOOSEST, INNER_STALL, SMALSE_SAFETY};
 use signorini_qp::internal::Contraction;
 use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
@@ -306,9 +306,7 @@ impl InnerTolerance {
         }
         self.last = change;
         match self.accuracy {
-            InnerAccuracy::Adaptive { factor, loosest } if self.exact == 0 => {
-                (factor * change).min(loosest).max(self.full)
-            }
+            InnerAccuracy::Adaptive if self.exact == 0 => (INNER_FACTOR * change).min(INNER_LOOSEST).max(self.full),
             // once at full accuracy, always: a looser solve would undo it
             _ => self.full,
         }
