@@ -10,8 +10,6 @@ use signorini_tfeti::{ContactRows, Gluing, TangentialRows};
 pub struct ConstrainedPoint {
     /// What the scene says of it.
     pub(crate) contact: ContactPoint,
-    /// Place among all contact points of the scene.
-    pub(crate) place: usize,
     /// Normal row.
     pub(crate) row: usize,
     /// Row value over normal displacement, and nodal force over multiplier.
@@ -120,7 +118,6 @@ pub(super) fn constrained_points(points: &[ContactPoint], gluing: &Gluing) -> Ve
         }
         ConstrainedPoint {
             contact,
-            place: rows.point,
             row: rows.row,
             scale: rows.scale,
             tangential,

@@ -12,7 +12,6 @@ use crate::discrete::{ContactPoint, area_vector};
 use crate::model::Model;
 use crate::vec3::norm;
 use signorini_fem_mesh::Surface;
-use std::collections::HashMap;
 
 /// Averages: the scatter is gone after two, and each widens an edge of contact by about a facet.
 const AVERAGES: usize = 2;
@@ -84,20 +83,13 @@ impl<'a> Conditions<'a> {
         let from = all.partition_point(|c| c.surface < surface);
         let until = all.partition_point(|c| c.surface <= surface);
         let all = &all[from..until];
-        let mut around: HashMap<u32, Vec<usize>> = HashMap::new();
-        for (k, point) in model.points.iter().enumerate() {
-            around.entry(point.node()).or_default().push(k);
-        }
-        let rounding = model.discrete.rounding;
-        let point = |condition: &ContactPoint| {
-            let same = |k: &&usize| model.points[**k].contact.is_same(condition);
-            let near = |k: &&usize| (model.points[**k].contact.gap - condition.gap).abs() <= rounding;
-            let found = around.get(&condition.node())?;
-            let own = found.iter().find(|k| same(k) && model.points[**k].surface() == surface);
-            own.or_else(|| found.iter().find(|k| same(k) && near(k))).copied()
+        let stands = |(condition, point): (&ContactPoint, &Option<usize>)| {
+            let own = &model.points[(*point)?].contact;
+            let near = (own.gap - condition.gap).abs() <= model.discrete.rounding;
+            point.filter(|_| own.surface == surface || near)
         };
         Self {
-            points: all.iter().map(point).collect(),
+            points: all.iter().zip(&model.standing[from..until]).map(stands).collect(),
             all,
         }
     }
