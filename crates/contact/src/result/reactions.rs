@@ -62,6 +62,13 @@ pub struct SupportReaction {
     pub nodes: Vec<NodalForce>,
 }
 
+impl SupportReaction {
+    fn add(&mut self, node: u32, arm: [f64; 3], force: [f64; 3]) {
+        self.resultant.add(arm, force);
+        self.nodes.push(NodalForce { node, force });
+    }
+}
+
 /// Forces on the body at the end of a step, and their moments about a point.
 ///
 /// Each force is counted once: at a node that several supports hold, a direction that an earlier support fixes belongs
@@ -263,9 +270,7 @@ fn by_spring(model: &Model, recovered: &Recovered, arm: impl Fn(u32) -> [f64; 3]
                     stiffness * inverse * whole
                 }
             };
-            let force = [part[0], part[1], part[2]];
-            reaction.resultant.add(arm(node), force);
-            reaction.nodes.push(NodalForce { node, force });
+            reaction.add(node, arm(node), part.into());
         }
         reaction
     });
@@ -293,8 +298,7 @@ fn by_support(
                 let along = dot(whole, direction);
                 (0..3).for_each(|c| force[c] += along * direction[c]);
             }
-            reaction.resultant.add(arm(*node), force);
-            reaction.nodes.push(NodalForce { node: *node, force });
+            reaction.add(*node, arm(*node), force);
         }
         reaction
     };

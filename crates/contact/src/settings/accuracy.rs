@@ -1,20 +1,13 @@
-//! When the solve of a step ends.
-//!
-//! `Relative` and `Balanced` solve loosely, estimate the algebraic error by the duality gap, tighten the solver's
-//! tolerance by what is missing, and go on from the present iterate. The error of the mesh is estimated again once the
-//! elastic energy has changed by a factor of four, and at every eighth step. Where steps inherit errors each has an
-//! equal share of the squared error that is left. An error in the energy norm is a mean: a few points may weigh little
-//! in it. So a step also needs a [`Certificate`](crate::Certificate) whose contact conditions are violated by at most
-//! five times the target ([`certificate_limit`](crate::report::AccuracyReport::certificate_limit)), and ends as
-//! [`NotCertified`](crate::StepStatus::NotCertified) where no tolerance reaches that.
+//! When the solve of a step ends; docs/theory.md, section 10, tells how `Relative` and `Balanced` decide.
 
 use crate::error::ContactError;
 
 /// When the solve of a step ends.
 ///
-/// Estimates are those of the energy of the whole body, beside a loose bound on the contact conditions: forces that
-/// carry little of it (a light touch after a long rigid motion, friction of a drag far below the elastic displacement)
-/// need `Tolerance`.
+/// Estimates are those of the energy of the whole body, beside a
+/// [bound](crate::report::AccuracyReport::certificate_limit) of five times the target on the contact conditions: forces
+/// that carry little of it (a light touch after a long rigid motion, friction of a drag far below the elastic
+/// displacement) need `Tolerance`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 #[must_use]

@@ -1,11 +1,8 @@
 //! Estimate of the error of the time steps by step doubling.
 //!
-//! Every step is taken once, as two half steps and as four quarter steps, each run going on from its own last state. If
-//! the error falls like the step to the power `p`, that of the *whole* step is the difference to the quarter steps
-//! times `1 / (1 - 4^-p)`, and the two differences measure `p`. Both difference formulas are of first order where
-//! sliding begins, ends and turns, better where nothing changes, and without order where another step leads to another
-//! sequence of sticking and sliding. A difference that is not three times as large as what the solver has left in both
-//! runs ([`AccumulatedError::likely`]) says nothing of the time steps, and does not enter the order.
+//! Every step is taken once, as two half steps and as four quarter steps, each run going on from its own last state
+//! (docs/theory.md, section 11). Both difference formulas are of first order where sliding begins, ends and turns, better
+//! where nothing changes, and without order where another step leads to another sequence of sticking and sliding.
 
 use super::result::StepResult;
 use super::simulation::Simulation;
