@@ -30,14 +30,6 @@ impl ContactError {
         let error = Self::Setting { name, value, range };
         good.then_some(()).ok_or(error)
     }
-
-    /// The same checkpoint with more to say of it.
-    pub(crate) fn explained(self, text: impl FnOnce(String) -> String) -> Self {
-        match self {
-            Self::Checkpoint { reason } => Self::Checkpoint { reason: text(reason) },
-            other => other,
-        }
-    }
 }
 
 signorini_fem_mesh::errors! {

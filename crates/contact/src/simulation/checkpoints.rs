@@ -7,7 +7,7 @@ use super::observer::Observer;
 use super::simulation::Simulation;
 use crate::error::ContactError;
 use crate::report::{RunReport, Warning};
-use crate::state::{State, failed};
+use crate::state::{State, explained, failed};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -119,7 +119,7 @@ impl Simulation {
                 Ok(state) => {
                     let foreign =
                         |reason: String| format!("{}: {reason}; or give this run a folder of its own", path.display());
-                    self.resume(state).map_err(|error| error.explained(foreign))?;
+                    self.resume(state).map_err(|error| explained(error, foreign))?;
                     return set_aside(damaged, path);
                 }
                 Err(ContactError::Checkpoint { reason }) => damaged.push((path, reason)),

@@ -87,7 +87,15 @@ impl State {
         let path = path.as_ref();
         let bytes = std::fs::read(path).map_err(failed("read", path))?;
         let named = |reason| format!("{}: {reason}", path.display());
-        Self::from_bytes(&bytes).map_err(|error| error.explained(named))
+        Self::from_bytes(&bytes).map_err(|error| explained(error, named))
+    }
+}
+
+/// The same error with more to say of the checkpoint.
+pub(crate) fn explained(error: ContactError, text: impl FnOnce(String) -> String) -> ContactError {
+    match error {
+        ContactError::Checkpoint { reason } => ContactError::Checkpoint { reason: text(reason) },
+        other => other,
     }
 }
 

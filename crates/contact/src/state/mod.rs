@@ -13,7 +13,7 @@ mod state;
 mod tolerance;
 
 #[cfg(feature = "checkpoint")]
-pub(crate) use bytes::failed;
+pub(crate) use bytes::{explained, failed};
 pub(crate) use fingerprint::{Fingerprint, operator_hash};
 pub use state::State;
 pub(crate) use state::{Kept, Peak};

@@ -19,7 +19,7 @@ use signorini_fem_mesh::{History, Hooke};
 pub(crate) use keywords::read;
 pub(crate) use names::Names;
 pub(crate) use step::{
-    Boundary, COMPONENT, Conditions, Distributed, DistributedKind, Force, Given, INCREMENTS, Step, Target,
+    COMPONENT, Component, Components, Condition, Conditions, DistributedKind, Given, INCREMENTS, Step, Target,
 };
 
 /// A request of the deck that has no meaning here.
@@ -187,7 +187,7 @@ pub(crate) struct Model {
     pub(crate) pairs: Vec<Pair>,
     pub(crate) rigid: Vec<RigidBody>,
     /// Supports that hold before the first step.
-    pub(crate) supports: Vec<Boundary>,
+    pub(crate) supports: Vec<Condition<Components>>,
     pub(crate) steps: Vec<Step>,
     pub(crate) ignored: Vec<Ignored>,
 }

@@ -34,28 +34,29 @@ pub(crate) struct Given {
     pub(crate) amplitude: Option<usize>,
 }
 
+/// What a line says of a target.
+#[derive(Debug, Clone)]
+pub(crate) struct Condition<K> {
+    /// The word that names the target.
+    pub(crate) word: Word,
+    pub(crate) target: Target,
+    pub(crate) kind: K,
+    pub(crate) given: Given,
+}
+
 /// Components of nodes that are held or moved.
 #[derive(Debug, Clone)]
-pub(crate) struct Boundary {
-    pub(crate) word: Word,
-    pub(crate) target: Target,
+pub(crate) struct Components {
     /// Displacements, then rotations, which nodes of rigid bodies have.
-    pub(crate) components: [bool; 6],
+    pub(crate) on: [bool; 6],
     /// The word that asks for a rotation by its number.
     pub(crate) rotation: Option<Word>,
-    pub(crate) given: Given,
 }
 
-/// A force at nodes.
-#[derive(Debug, Clone)]
-pub(crate) struct Force {
-    pub(crate) word: Word,
-    pub(crate) target: Target,
-    /// 0 to 2.
-    pub(crate) component: usize,
-    pub(crate) given: Given,
-}
+/// A component, 0 to 2, of a force at nodes.
+pub(crate) type Component = usize;
 
+/// A pressure, on elements or a surface, or a load of the volume.
 #[derive(Debug, Clone)]
 pub(crate) enum DistributedKind {
     /// Pressure on face 1 to 4 of elements.
@@ -68,32 +69,22 @@ pub(crate) enum DistributedKind {
     Body(usize),
 }
 
-/// A pressure or a load of the volume.
-#[derive(Debug, Clone)]
-pub(crate) struct Distributed {
-    pub(crate) word: Word,
-    /// Elements, or the surface.
-    pub(crate) target: Target,
-    pub(crate) kind: DistributedKind,
-    pub(crate) given: Given,
-}
-
 /// What the cards of one kind of condition say in a step.
 #[derive(Debug)]
-pub(crate) struct Conditions<T> {
+pub(crate) struct Conditions<K> {
     /// The first card, or its OP, and whether it removes what was there before.
     pub(crate) first: Option<(Word, bool)>,
-    pub(crate) lines: Vec<T>,
+    pub(crate) lines: Vec<Condition<K>>,
 }
 
-impl<T> Default for Conditions<T> {
+impl<K> Default for Conditions<K> {
     fn default() -> Self {
         let (first, lines) = (None, Vec::new());
         Self { first, lines }
     }
 }
 
-impl<T> Conditions<T> {
+impl<K> Conditions<K> {
     /// Notes the parameter OP of a card: that of the first one counts.
     fn card(&mut self, card: &Card) -> Result<(), DeckError> {
         let wanted = "OP=MOD or OP=NEW";
@@ -153,9 +144,9 @@ pub(crate) struct Step {
     increments: Option<(f64, Word)>,
     /// The procedure, and its increments.
     pub(crate) time: Option<(Word, Increments)>,
-    pub(crate) boundary: Conditions<Boundary>,
-    pub(crate) forces: Conditions<Force>,
-    pub(crate) distributed: Conditions<Distributed>,
+    pub(crate) boundary: Conditions<Components>,
+    pub(crate) forces: Conditions<Component>,
+    pub(crate) distributed: Conditions<DistributedKind>,
 }
 
 impl Step {
@@ -285,7 +276,7 @@ pub(super) fn boundary(model: &mut Model, step: Option<&mut Step>, card: &Card) 
 pub(crate) const COMPONENT: &str = "a component: 1, 2 or 3 (solid elements have no rotations), ENCASTRE, \
 PINNED, XSYMM, YSYMM or ZSYMM";
 
-fn boundary_line(line: &Word, amplitude: Option<usize>) -> Result<Boundary, DeckError> {
+fn boundary_line(line: &Word, amplitude: Option<usize>) -> Result<Condition<Components>, DeckError> {
     let wanted = "a node or node set, first and last component (1 to 3), and a value";
     let fields = line.at_most(4, wanted)?;
     let target = target(line, fields[0])?;
@@ -298,7 +289,7 @@ fn boundary_line(line: &Word, amplitude: Option<usize>) -> Result<Boundary, Deck
         _ => None,
     };
     let mut rotation = None;
-    let (components, value) = match by_name {
+    let (on, value) = match by_name {
         Some(on) => {
             if let Some(extra) = fields.get(2) {
                 return Err(line.part(extra).expected("nothing after the name of a condition"));
@@ -328,11 +319,10 @@ fn boundary_line(line: &Word, amplitude: Option<usize>) -> Result<Boundary, Deck
             (on, value.unwrap_or(0.0))
         }
     };
-    Ok(Boundary {
+    Ok(Condition {
         word: line.part(fields[0]),
         target,
-        components,
-        rotation,
+        kind: Components { on, rotation },
         given: Given { value, amplitude },
     })
 }
@@ -350,10 +340,10 @@ pub(super) fn forces(model: &Model, step: &mut Step, card: &Card) -> Result<(), 
             Some(number @ 1..=3) => number as usize - 1,
             _ => return Err(line.entry(&fields, 1).expected(wanted)),
         };
-        step.forces.lines.push(Force {
+        step.forces.lines.push(Condition {
             word: line.part(fields[0]),
             target,
-            component,
+            kind: component,
             given: Given {
                 value: line.real(&fields, 2, wanted)?,
                 amplitude,
@@ -407,7 +397,7 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
             true => Target::Name(name(fields[0])),
             false => target(line, fields[0])?,
         };
-        step.distributed.lines.push(Distributed {
+        step.distributed.lines.push(Condition {
             word: line.part(fields[0]),
             target,
             kind,

@@ -11,6 +11,7 @@ use signorini_fem_mesh::{Facet, FacetTag, vec3};
 use super::mesh::Raw;
 use super::numbers::Sets;
 use super::rigid::{RigidBodies, RigidFace};
+use super::timeline::Timeline;
 use crate::error::{DeckError, Fault, Word};
 use crate::model::{FACES, Model, Names, Side, Target};
 
@@ -36,13 +37,14 @@ pub(super) struct FaceTable {
     pub(super) rigid: Vec<Vec<RigidFace>>,
 }
 
-/// What is known of the model where faces are looked up.
+/// What is known of the model where faces are looked up and conditions followed.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'a> {
     pub(super) model: &'a Model,
     pub(super) sets: &'a Sets<'a>,
     pub(super) bodies: &'a RigidBodies,
     pub(super) raw: &'a Raw,
+    pub(super) timeline: &'a Timeline<'a>,
 }
 
 fn key(mut nodes: [u32; 3]) -> [u32; 3] {

@@ -11,7 +11,7 @@ use signorini_fem_mesh::History;
 
 use super::timeline::{Span, Timeline};
 use crate::error::{DeckError, Fault, Word};
-use crate::model::{Amplitude, Given, Model};
+use crate::model::{Amplitude, Given};
 
 /// What the steps say about one condition: by step, a value or its removal.
 #[derive(Debug, Clone)]
@@ -72,14 +72,15 @@ impl Track {
     }
 
     /// The points of the factor, times strictly ascending.
-    fn points(&self, model: &Model, spans: &[Span], reference: f64) -> Vec<(f64, f64)> {
+    fn points(&self, timeline: &Timeline, reference: f64) -> Vec<(f64, f64)> {
+        let spans = &timeline.spans;
         let mut points = Vec::new();
         let (mut value, mut follows) = (0.0, None);
         for (step, span) in spans.iter().enumerate() {
             let law = match self.event(step) {
                 Some(Some(given)) => match given.amplitude {
                     Some(amplitude) => {
-                        let amplitude = model.amplitudes.at(amplitude);
+                        let amplitude = timeline.model.amplitudes.at(amplitude);
                         Law::Amplitude(given.value / reference, amplitude)
                     }
                     None => Law::to(value, given.value / reference, span.ramp),
@@ -190,16 +191,11 @@ pub(super) struct Histories {
 
 impl Histories {
     /// The value of a condition and the position of its history; `None` if it is zero at all times.
-    pub(super) fn add(
-        &mut self,
-        model: &Model,
-        timeline: &Timeline,
-        track: &Track,
-    ) -> Result<Option<(f64, usize)>, DeckError> {
+    pub(super) fn add(&mut self, timeline: &Timeline, track: &Track) -> Result<Option<(f64, usize)>, DeckError> {
         let Some(reference) = track.reference() else {
             return Ok(None);
         };
-        let points = track.points(model, &timeline.spans, reference);
+        let points = track.points(timeline, reference);
         if points.iter().all(|p| p.1 == 0.0) {
             return Ok(None);
         }

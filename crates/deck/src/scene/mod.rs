@@ -54,17 +54,18 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         sets: &sets,
         bodies: &bodies,
         raw: &raw,
+        timeline: &timeline,
     };
     let mut faces = faces::FaceTable::default();
     let surfaces = faces.surfaces(known)?;
-    let loads = loads::Loads::new(known, &timeline, &surfaces, &mut faces)?;
+    let loads = loads::Loads::new(known, &surfaces, &mut faces)?;
     faces.check_outside(&raw)?;
     let tags = faces.tags();
     let (regions, materials) = materials::materials(&raw, &sets)?;
     let mesh = raw.mesh(path, faces.facets(&tags), regions)?;
     let surfaces = faces.tags_of(&tags, model);
 
-    let supports = supports::supports(known, &timeline)?;
+    let supports = supports::supports(known)?;
     let contacts = contacts::contacts(known, &faces, &surfaces, &supports.motions)?;
     let loads = loads.lower(&faces, &tags);
     let scene = materials.map(|materials| {

@@ -14,7 +14,7 @@ use super::history::{Histories, Track};
 use super::numbers::Sets;
 use super::timeline::Timeline;
 use crate::error::{DeckError, Word};
-use crate::model::{FACES, Kind, Model, Side, Target};
+use crate::model::{FACES, Kind, Side, Target};
 
 /// Deviation from a plane, and of a node from the rim of a surface, over its size, that is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -133,12 +133,11 @@ impl RigidBodies {
     /// How each body moves; `held` are the components 0 to 5 of its nodes that supports hold.
     pub(super) fn motions(
         &self,
-        model: &Model,
         timeline: &Timeline,
         held: &BTreeMap<(u32, usize), Track>,
     ) -> Result<Vec<Motion>, DeckError> {
         let mut out = Vec::with_capacity(self.list.len());
-        for (body, said) in self.list.iter().zip(&model.rigid) {
+        for (body, said) in self.list.iter().zip(&timeline.model.rigid) {
             let word = &said.reference.1;
             let mut histories = Histories::default();
             let mut value = [0.0; 3];
@@ -153,7 +152,7 @@ impl RigidBodies {
                         component + 1
                     )));
                 };
-                let Some((size, history)) = histories.add(model, timeline, track)? else {
+                let Some((size, history)) = histories.add(timeline, track)? else {
                     continue;
                 };
                 if component >= 3 {

@@ -9,7 +9,7 @@ use super::history::{Histories, Track};
 use super::rigid::Motion;
 use super::timeline::Timeline;
 use crate::error::DeckError;
-use crate::model::{Boundary, COMPONENT, Given, Ignored, Model, Target};
+use crate::model::{COMPONENT, Components, Condition, Given, Ignored, Target};
 
 /// Name of what is given on nodes by their numbers.
 const SINGLE: &str = "nodes";
@@ -41,7 +41,7 @@ pub(super) struct Supports {
 }
 
 /// One support for each target and its moving or fixed components.
-pub(super) fn supports(known: Known, timeline: &Timeline) -> Result<Supports, DeckError> {
+pub(super) fn supports(known: Known) -> Result<Supports, DeckError> {
     let mut table = Table::default();
     for line in &known.model.supports {
         table.add(known, None, line)?;
@@ -72,9 +72,9 @@ pub(super) fn supports(known: Known, timeline: &Timeline) -> Result<Supports, De
     }
     let rigid = std::mem::take(&mut table.rigid);
     let rigid = rigid.into_iter().map(|(key, held)| (key, held.track)).collect();
-    let motions = known.bodies.motions(known.model, timeline, &rigid)?;
+    let motions = known.bodies.motions(known.timeline, &rigid)?;
     let ignored = std::mem::take(&mut table.ignored);
-    let (list, names) = table.lower(known.model, timeline)?;
+    let (list, names) = table.lower(known.timeline)?;
     Ok(Supports {
         list,
         names,
@@ -118,7 +118,7 @@ impl Table {
     }
 
     /// Notes a line of a step, or of the part before the first.
-    fn add(&mut self, known: Known, step: Option<usize>, line: &Boundary) -> Result<(), DeckError> {
+    fn add(&mut self, known: Known, step: Option<usize>, line: &Condition<Components>) -> Result<(), DeckError> {
         let owner = self.owner(&line.target);
         let (mut found, mut turned) = (false, None);
         for node in known.sets.nodes(&line.target, &line.word)? {
@@ -128,13 +128,13 @@ impl Table {
                 None => continue,
             };
             found = true;
-            if let (3, Some(word)) = (components, &line.rotation) {
+            if let (3, Some(word)) = (components, &line.kind.rotation) {
                 if line.given.value != 0.0 {
                     return Err(word.expected(COMPONENT));
                 }
                 turned = Some(word);
             }
-            for component in (0..components).filter(|&c| line.components[c]) {
+            for component in (0..components).filter(|&c| line.kind.on[c]) {
                 let label = known.model.nodes[node as usize].label;
                 let what = format!("component {} of node {label}", component + 1);
                 let next = map.len();
@@ -165,7 +165,7 @@ impl Table {
         Ok(())
     }
 
-    fn lower(self, model: &Model, timeline: &Timeline) -> Result<(Vec<Support>, Vec<String>), DeckError> {
+    fn lower(self, timeline: &Timeline) -> Result<(Vec<Support>, Vec<String>), DeckError> {
         let mut histories = Histories::default();
         // by target, first component, history and components: nodes and their displacements
         type Key = (usize, usize, Option<usize>, [bool; 3]);
@@ -180,7 +180,7 @@ impl Table {
             }
             let mut moves = Vec::with_capacity(3);
             for (component, held) in of_node {
-                let motion = histories.add(model, timeline, &held.track)?;
+                let motion = histories.add(timeline, &held.track)?;
                 moves.push((component, held.owner, motion));
             }
             let all: Vec<usize> = moves.iter().filter_map(|m| Some(m.2?.1)).collect();

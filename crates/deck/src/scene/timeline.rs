@@ -17,13 +17,14 @@ pub(super) struct Span {
 }
 
 #[derive(Debug)]
-pub(super) struct Timeline {
+pub(super) struct Timeline<'a> {
+    pub(super) model: &'a Model,
     pub(super) spans: Vec<Span>,
     times: Vec<f64>,
 }
 
-impl Timeline {
-    pub(super) fn new(model: &Model) -> Result<Self, DeckError> {
+impl<'a> Timeline<'a> {
+    pub(super) fn new(model: &'a Model) -> Result<Self, DeckError> {
         let (mut spans, mut times) = (Vec::new(), Vec::new());
         let mut start = 0.0;
         for step in &model.steps {
@@ -55,7 +56,7 @@ impl Timeline {
             });
             start = end;
         }
-        Ok(Self { spans, times })
+        Ok(Self { model, spans, times })
     }
 
     /// Backward Euler over all increments; a single one is static.
