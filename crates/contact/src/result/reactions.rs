@@ -224,14 +224,6 @@ pub(crate) fn reactions_about(
             contacts[tie.surface].add(arm(node), force.map(|f| weight * f));
         }
     }
-    let mut loads = Resultant::default();
-    for (factor, load) in problem.factors.iter().zip(&model.loads) {
-        let nodes = model.discrete.decomposition.subdomains().iter();
-        let nodes = nodes.flat_map(|s| &s.nodes);
-        for (&node, force) in nodes.zip(load.force.as_chunks::<3>().0) {
-            loads.add(arm(node), force.map(|f| factor * f));
-        }
-    }
     let forces = nodal_reactions(model, recovered, &ties);
     Reactions {
         point: about,
@@ -239,8 +231,21 @@ pub(crate) fn reactions_about(
         springs: by_spring(model, recovered, arm),
         contact,
         contacts,
-        loads,
+        loads: loads(model, problem, arm),
     }
+}
+
+/// What the loads do.
+pub(crate) fn loads(model: &Model, problem: &StepProblem, arm: impl Fn(u32) -> [f64; 3]) -> Resultant {
+    let mut sum = Resultant::default();
+    for (factor, load) in problem.factors.iter().zip(&model.loads) {
+        let nodes = model.discrete.decomposition.subdomains().iter();
+        let nodes = nodes.flat_map(|s| &s.nodes);
+        for (&node, force) in nodes.zip(load.force.as_chunks::<3>().0) {
+            sum.add(arm(node), force.map(|f| factor * f));
+        }
+    }
+    sum
 }
 
 /// What springs do, from the multipliers of their rows; several at a node have the parts that their stiffness has.

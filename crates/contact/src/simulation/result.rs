@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::report::{AccumulatedError, AlgebraicError, StepReport, Warning, require};
 use crate::result::{
     Certificate, ContactSummary, Lengths, PointState, Reactions, Recovered, SurfaceStress, coarse_mesh, is_strained,
-    nodal_reactions, points_at_nodes, reactions_about, tied_forces, warnings,
+    loads, nodal_reactions, points_at_nodes, reactions_about, tied_forces, warnings,
 };
 use crate::scene::Scene;
 use crate::status::StepFailure;
@@ -238,15 +238,7 @@ impl StepResult {
 
     /// Sum of all loads at this step, N.
     pub fn load_resultant(&self) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        for (factor, load) in self.problem.factors.iter().zip(&self.model.loads) {
-            for node in load.force.chunks_exact(3) {
-                for c in 0..3 {
-                    sum[c] += factor * node[c];
-                }
-            }
-        }
-        sum
+        loads(&self.model, &self.problem, |_| [0.0; 3]).force
     }
 }
 

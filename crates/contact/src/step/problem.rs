@@ -8,7 +8,7 @@ use crate::tolerances::{REST, ROUNDED};
 use crate::vec3::dot;
 use signorini_qp::vector;
 
-/// Data of one step; vectors are allocated once and rewritten.
+/// Data of one step.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct StepProblem {
     /// Position in the analysis, from 0.
@@ -55,17 +55,12 @@ impl StepProblem {
         self.time = time;
         self.step = increment.length;
         self.formula = increment.formula;
-        self.peaks.clear();
-        self.peaks.extend_from_slice(&state.peaks);
+        self.peaks.clone_from(&state.peaks);
         self.peaks.resize(model.bodies.count().max(1), Peak::default());
-        self.factors.clear();
-        self.factors
-            .extend(model.scene.loads.iter().map(|load| load.history.value(time)));
-        let rows = model.tfeti.dual_dim();
-        for (vector, len) in [(&mut self.load, rows), (&mut self.rhs, model.tfeti.coarse().rows())] {
-            vector.clear();
-            vector.resize(len, 0.0);
-        }
+        let loads = model.scene.loads.iter();
+        self.factors = loads.map(|load| load.history.value(time)).collect();
+        self.load = vec![0.0; model.tfeti.dual_dim()];
+        self.rhs = vec![0.0; model.tfeti.coarse().rows()];
         for (factor, load) in self.factors.iter().zip(&model.loads) {
             vector::axpy(*factor, &load.dual, &mut self.load);
             vector::axpy(*factor, &load.coarse, &mut self.rhs);
@@ -87,10 +82,8 @@ impl StepProblem {
         }
         self.find_obstacles(model, increment.start);
         self.add_offsets(model, state)?;
-        self.linear.resize(rows, 0.0);
-        for ((d, c), l) in self.linear.iter_mut().zip(&self.offset).zip(&self.load) {
-            *d = c - l;
-        }
+        let offsets = self.offset.iter().zip(&self.load);
+        self.linear = offsets.map(|(c, load)| c - load).collect();
         self.find_friction(model, state)
     }
 
