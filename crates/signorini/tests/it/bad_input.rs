@@ -282,7 +282,7 @@ fn times_and_settings() {
         "a negative penalty": smalse(|s| s.with_penalty(-1.0)) => Error::Qp(QpError::Setting { .. }), "penalty";
         "no outer steps": smalse(|s| s.with_max_outer(0)) => Error::Qp(QpError::Setting { .. }), "max_outer";
     });
-    assert_eq!(count, 20);
+    assert_eq!(count, 18);
 }
 
 #[test]
