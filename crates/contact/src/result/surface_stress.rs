@@ -1,11 +1,9 @@
 //! Contact pressure and friction stress as smooth fields on a contact surface.
 //!
-//! A nodal force over the area of its node is right in the mean, but on unequal triangles it scatters by some per cent
-//! from node to node. Solving with the consistent mass matrix `M` of the facets makes that worse: it sharpens what
-//! should be damped. Averaging with it damps: `p <- M p / (M 1)`. Its rows are means over the facets around a node, so
-//! that constants stay; and as `1ᵀ M p = (M 1)ᵀ p`, the force stays. Measured on a ball after Hertz, root mean square
-//! within 0.8 of the radius relative to the largest pressure: 3 % before, 0.7 % after two averages. In meshes of order
-//! 2 there is nothing to damp: 0.3 % before.
+//! Averages with the consistent mass matrix `M` of the facets, `p <- M p / (M 1)`: its rows are means over the facets
+//! around a node, so that constants stay; and as `1ᵀ M p = (M 1)ᵀ p`, the force stays. Measured on a ball after Hertz,
+//! root mean square within 0.8 of the radius relative to the largest pressure: 3 % before, 0.7 % after two averages. In
+//! meshes of order 2 there is nothing to damp: 0.3 % before.
 
 use super::points::PointState;
 use crate::discrete::{ContactPoint, area_vector};

@@ -115,11 +115,6 @@ impl StepDoubling {
         &self.whole
     }
 
-    /// The run with half steps.
-    pub fn half(&self) -> &Simulation {
-        &self.half
-    }
-
     /// What all runs have cost.
     pub fn counters(&self) -> Counters {
         let mut sum = *self.whole.counters();

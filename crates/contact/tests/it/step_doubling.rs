@@ -14,7 +14,7 @@ fn whole_steps_are_those_of_a_run_without_doubling() {
         assert_eq!(result.displacement, whole.as_flattened());
         assert_eq!(error.step, plain.state().step() - 1);
     }
-    assert!(doubling.counters().products > doubling.half().counters().products);
+    assert!(doubling.counters().products > 2 * doubling.whole().counters().products);
     let statics = pressed(1, Friction::None).with_analysis(Analysis::statics());
     let refused = StepDoubling::new(&statics, &tight());
     assert!(matches!(refused, Err(ContactError::Doubling { .. })));

@@ -1,6 +1,6 @@
 //! Which keyword is read by whom, where it may stand, and what is said about the others.
 
-use super::step::{self, Step};
+use super::step::{self, SOLVER, Step};
 use super::{Ignored, Model, elastic, mesh, property};
 use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
@@ -72,9 +72,6 @@ const REFUSED: [(&str, &str); 16] = [
         "only *STATIC is solved",
     ),
 ];
-
-/// Why some settings are ignored.
-pub(super) const SOLVER: &str = "a setting of another solver";
 
 const BEFORE: &str = "this belongs to the model; put it before the first *STEP";
 const INSIDE: &str = "this belongs to a step; put it between *STEP and *END STEP";

@@ -2,11 +2,13 @@
 
 use std::fmt;
 
-use super::keywords::SOLVER;
 use super::mesh::target;
 use super::{Ignored, Model};
 use crate::error::{DeckError, Fault, Word};
 use crate::lexer::{Card, label, name};
+
+/// Why some settings are ignored.
+pub(super) const SOLVER: &str = "a setting of another solver";
 
 /// Most increments of a deck.
 pub(crate) const INCREMENTS: f64 = 1e6;
