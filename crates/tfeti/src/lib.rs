@@ -91,7 +91,7 @@ pub mod internal {
     pub use crate::preconditioner::operator::DualPreconditionerScratch;
     pub use crate::processes::threads::on_ranks;
     pub use crate::projector::active_set::ActiveSetFactor;
-    pub use crate::projector::forecast::{LevelsForecast, forecast_levels};
+    pub use crate::projector::forecast::forecast_levels;
     pub use crate::rows::contact::{PrescribedPoint, prescribed_points};
     pub use crate::rows::dependencies::Dependency;
     pub use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
@@ -99,7 +99,7 @@ pub mod internal {
     pub use crate::subdomain::class::{Class, Classes};
     pub use crate::subdomain::copy_stiffness::CopyStiffness;
     pub use crate::subdomain::cost::{ClassReport, InverseKind};
-    pub use crate::subdomain::forecast::{Forecast, Rate};
+    pub use crate::subdomain::forecast::{CoarseForecast, Forecast, Rate};
     pub use crate::subdomain::kernel::Kernel;
     pub use crate::system::part::SystemPart;
     pub use crate::tolerances::{HELD, HELD_MEANS};

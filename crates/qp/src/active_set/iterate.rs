@@ -88,7 +88,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         let residual = &mut self.work.residual;
         vector::copy(self.ax, residual);
         vector::axpy(-1.0, self.problem.linear, residual);
-        self.projector.project_transpose(residual);
+        self.projector.project_gradient(residual);
     }
 
     /// Classifies the blocks by the natural map.

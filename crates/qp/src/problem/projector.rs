@@ -71,6 +71,19 @@ pub trait EqualityProjector {
         self.project_transpose(g);
     }
 
+    /// [`project_transpose`](Self::project_transpose) for the gradients of one problem, one after another: errors are
+    /// relative to what the last multiplier leaves of free components.
+    #[doc(hidden)]
+    fn project_gradient(&mut self, g: &mut [f64]) {
+        self.project_transpose(g);
+    }
+
+    /// [`repair`](Self::repair) between two active sets: errors are relative to what it changes.
+    #[doc(hidden)]
+    fn repair_step(&mut self, x: &mut [f64], e: &[f64]) {
+        self.repair(x, e);
+    }
+
     /// A step in which the leading components change further: `to = from + change`, with what [`repair`](Self::repair)
     /// adds for the `change`. This default allocates.
     #[doc(hidden)]

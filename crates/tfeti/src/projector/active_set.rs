@@ -55,6 +55,8 @@ pub struct ActiveSetProjector {
     metric: Option<Vec<f64>>,
     coarse_rhs: Vec<f64>,
     alpha: Vec<f64>,
+    /// Amplitudes of the last gradient of this problem; empty before the first, and with one level.
+    known: Vec<f64>,
     scratch: CoarseScratch,
     /// What the steps of an iteration read.
     digits: Digits,
@@ -158,6 +160,7 @@ impl ActiveSetProjector {
             metric,
             coarse_rhs: vec![0.0; coarse.rows()],
             alpha: vec![0.0; coarse.rows()],
+            known: Vec::new(),
         })
     }
 
@@ -165,6 +168,12 @@ impl ActiveSetProjector {
     #[doc(hidden)]
     pub fn has_levels(&self) -> bool {
         matches!(self.parts.basis, Some(Basis::Model(_)))
+    }
+
+    /// Whether a factor that is much larger than vectors are is stored in single precision, too: then what changes
+    /// between two active sets is projected with that.
+    fn rounds_levels(&self) -> bool {
+        self.has_levels() && self.rounds_steps()
     }
 
     /// The factor of the last active set.
@@ -179,6 +188,7 @@ impl ActiveSetProjector {
     /// If `e` does not have one entry for each row of `G`.
     pub fn set_coarse_rhs(&mut self, e: &[f64]) {
         self.coarse_rhs.copy_from_slice(e);
+        self.known.clear();
     }
 
     /// Amplitudes of the rigid motions, `-(G W G^T)^-1 G W r`, with the weights of the last active set.
@@ -362,6 +372,29 @@ impl EqualityProjector for ActiveSetProjector {
 
     fn project_step(&mut self, x: &mut [f64]) {
         self.step(|space| space.project(x));
+    }
+
+    fn project_gradient(&mut self, g: &mut [f64]) {
+        if self.known.is_empty() || !self.active.is_model() {
+            self.project_transpose(g);
+            self.known.clear();
+            if self.rounds_levels() {
+                self.known.extend_from_slice(&self.alpha);
+            }
+            return;
+        }
+        let data = self.coarse.0.clone();
+        let (add, motions) = (|g: &mut f64, v: f64| *g += v, &mut self.scratch.motions);
+        data.with_transpose(&self.known, g, true, motions, add, |_, g, v| add(g, v));
+        self.step(|space| space.project_transpose(g));
+        self.known.iter_mut().zip(&self.alpha).for_each(|(k, a)| *k += a);
+    }
+
+    fn repair_step(&mut self, x: &mut [f64], e: &[f64]) {
+        match self.rounds_levels() {
+            true => self.step(|space| space.repair(x, e)),
+            false => self.repair(x, e),
+        }
     }
 
     fn project_step_transpose(&mut self, g: &mut [f64]) {

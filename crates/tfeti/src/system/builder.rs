@@ -7,6 +7,7 @@ use crate::dual::operator::DualOperator;
 use crate::error::TfetiError;
 use crate::processes::communicator::Communicator;
 use crate::processes::exchange::Exchange;
+use crate::projector::levels::has_two_levels;
 use crate::rows::gluing::Gluing;
 use crate::rows::side::ContactConstraint;
 use crate::rows::supports::{NodalSpring, NodeSupport};
@@ -146,6 +147,7 @@ impl<'a> TfetiBuilder<'a> {
         let all = decomposition.subdomains().iter();
         let centres = all.map(|s| centre(&s.nodes)).collect();
         let known = self.forecast.map(|f| f.symbolic.as_slice());
+        let levels = has_two_levels(&gluing, subdomains.count());
         let ((inverses, inverse_seconds), coarse) = rayon::join(
             || {
                 let started = Instant::now();
@@ -154,7 +156,7 @@ impl<'a> TfetiBuilder<'a> {
             },
             || {
                 let (map, gluing) = (map.clone(), gluing.clone());
-                Coarse::new(map, subdomains.clone(), gluing, centres)
+                Coarse::new(map, subdomains.clone(), gluing, centres, !levels)
             },
         );
         let inverses = inverses?;
@@ -162,6 +164,10 @@ impl<'a> TfetiBuilder<'a> {
         exchange.check()?;
         let coarse_seconds = (clock.lap() - inverse_seconds).max(0.0);
         let free = coarse.free_motions(None)?;
+        let coarse_bytes = match self.forecast.and_then(|f| f.coarse.filter(|_| levels)) {
+            Some(found) => found.bytes,
+            None => 8 * coarse.0.symbolic()?.stored() as u64,
+        };
         let report = SetupReport {
             subdomains: subdomains.count(),
             classes: class_reports(&subdomains.classes, &map, &inverses),
@@ -170,7 +176,7 @@ impl<'a> TfetiBuilder<'a> {
             rows_as_paper: gluing.rows_as_paper(),
             removed: count(gluing.removed()),
             inverse_bytes: inverses.0.iter().flatten().map(ClassInverse::bytes).sum(),
-            coarse_bytes: 8 * coarse.factor_size() as u64,
+            coarse_bytes,
             table_bytes: map.bytes(),
             factorisations: 1 + inverses.0.iter().flatten().count(),
             analysed: known.map_or(inverses.0.iter().flatten().count(), |_| 0),

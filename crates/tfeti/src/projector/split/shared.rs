@@ -82,25 +82,39 @@ fn grow(
 ) -> Result<Grown, usize> {
     let own = tree.regions[r].steady.start..tree.regions[r].changing.end;
     let (mut tiles, mut updates) = (Tiles::default(), Vec::<Vec<f64>>::with_capacity(own.len()));
+    tiles.exact.reserve_exact(pattern.tiles());
+    // memory that is new costs more than the sums in it
+    let (mut columns, mut spare) = (Vec::new(), Vec::<Vec<f64>>::new());
     for k in own.clone() {
         let this = &tree.nodes[k];
         let (width, height) = (this.width(), this.height());
         let mut front = Front {
-            columns: vec![0.0; width * height],
-            update: vec![0.0; (height - width) * (height - width)],
+            columns,
+            update: spare.pop().unwrap_or_default(),
         };
+        for (numbers, length) in [
+            (&mut front.columns, width * height),
+            (&mut front.update, (height - width) * (height - width)),
+        ] {
+            numbers.clear();
+            numbers.resize(length, 0.0);
+        }
         load(k, &mut front.columns);
         for &child in &this.children {
-            let update = match child.checked_sub(own.start) {
-                Some(inner) => &std::mem::take(&mut updates[inner]),
-                None => &before[node[child]],
+            let Some(inner) = child.checked_sub(own.start) else {
+                extend(&before[node[child]], &tree.nodes[child].into, &mut front, width, height);
+                continue;
             };
-            extend(update, &tree.nodes[child].into, &mut front, width, height);
+            let update = std::mem::take(&mut updates[inner]);
+            extend(&update, &tree.nodes[child].into, &mut front, width, height);
+            spare.push(update);
         }
         front.eliminate(this, 0.0)?;
         pattern.pack(k - own.start, &front.columns, &mut tiles.exact);
         updates.push(front.update);
+        columns = front.columns;
     }
+    updates.iter_mut().for_each(Vec::shrink_to_fit);
     tiles.round();
     Ok((tiles, updates))
 }
