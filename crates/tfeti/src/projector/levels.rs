@@ -195,10 +195,26 @@ impl CoarseFactor {
         data.with_transpose(alpha, r, true, motions, add, |_, r, v| add(r, v));
     }
 
+    /// `r = P^T r` for an `r` that other weights of the contact rows have projected, with what their model has `taken`;
+    /// returns in `alpha` what is added, and what this model takes. `-A^-1 G W_f r` is `taken` then.
+    pub(super) fn project_again(&self, r: &mut [f64], taken: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        alpha.copy_from_slice(taken);
+        self.take_from(r, alpha, s);
+        taken.copy_from_slice(&s.first);
+        let (add, motions) = (|r: &mut f64, v: f64| *r += v, &mut s.motions);
+        let data = &self.coarse().0;
+        data.with_transpose(alpha, r, true, motions, add, |_, r, v| add(r, v));
+    }
+
     /// These amplitudes `alpha`.
     pub(super) fn amplitudes_with(&self, exact: &Self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        let data = &self.coarse().0;
         exact.amplitudes(r, alpha, s);
+        self.take_from(r, alpha, s);
+    }
+
+    /// `alpha = alpha - N G W_c (r + G^T alpha)`; what the model takes is then the first vector of the memory.
+    fn take_from(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        let data = &self.coarse().0;
         let contact = data.gluing.ranges().contact().end;
         data.contact_transpose(alpha, &mut s.dual[..contact], &mut s.motions);
         s.dual.iter_mut().zip(&r[..contact]).for_each(|(v, r)| *v += r);

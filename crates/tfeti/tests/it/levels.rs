@@ -233,6 +233,11 @@ fn changes_between_active_sets_are_rounded() {
                 assert!(off < 1e-6, "{kind:?}, problem {problem}, set {set}: {off:e}");
                 // the first of a problem has all digits
                 assert_eq!(found != truth, rounds && set > 0, "{kind:?}, {problem}, {set}");
+                space.set_weights(&active_set(&system, 0.5, set + 9)).unwrap();
+                assert_eq!(space.project_gradient_again(&mut found), rounds);
+                space.project_transpose(&mut truth);
+                let off = distance(&found, &truth) / norm(&truth);
+                assert!(!rounds || off < 1e-6, "{problem}, {set}, again: {off:e}");
             }
         }
         let mut x = rigid.clone();

@@ -155,8 +155,7 @@ fn asked(system: &Tfeti, part: Option<&SystemPart>, kind: ActiveSetFactor) -> (V
     }
     tell(&[dual.dot(&x, &g)]);
     tell(&[dual.norm(&x)]);
-    tell(&[dual.dot_and_square(&x, &g).0]);
-    tell(&[dual.dot_and_square(&g, &x).1]);
+    tell(&dual.dots([(&x, &g), (&g, &g)]));
     tell(&[dual.sum(&g)]);
     let e = noise(space.rows(), 5);
     type Work = fn(&mut ActiveSetProjector, &mut [f64], &[f64]);

@@ -83,22 +83,14 @@ fn grow(
     let own = tree.regions[r].steady.start..tree.regions[r].changing.end;
     let (mut tiles, mut updates) = (Tiles::default(), Vec::<Vec<f64>>::with_capacity(own.len()));
     tiles.exact.reserve_exact(pattern.tiles());
-    // memory that is new costs more than the sums in it
     let (mut columns, mut spare) = (Vec::new(), Vec::<Vec<f64>>::new());
     for k in own.clone() {
         let this = &tree.nodes[k];
         let (width, height) = (this.width(), this.height());
         let mut front = Front {
-            columns,
-            update: spare.pop().unwrap_or_default(),
+            columns: zeros(columns, width * height),
+            update: zeros(spare.pop().unwrap_or_default(), (height - width) * (height - width)),
         };
-        for (numbers, length) in [
-            (&mut front.columns, width * height),
-            (&mut front.update, (height - width) * (height - width)),
-        ] {
-            numbers.clear();
-            numbers.resize(length, 0.0);
-        }
         load(k, &mut front.columns);
         for &child in &this.children {
             let Some(inner) = child.checked_sub(own.start) else {
@@ -117,6 +109,17 @@ fn grow(
     updates.iter_mut().for_each(Vec::shrink_to_fit);
     tiles.round();
     Ok((tiles, updates))
+}
+
+/// Zeros, in old memory if there is enough: pages that are new cost more than all else that is done with them.
+fn zeros(mut old: Vec<f64>, length: usize) -> Vec<f64> {
+    if old.capacity() < length {
+        // of which only those that are written become real
+        return vec![0.0; length];
+    }
+    old.clear();
+    old.resize(length, 0.0);
+    old
 }
 
 /// Appends what tells the entries of two blocks from those of others.
