@@ -173,8 +173,8 @@ pub(crate) const ORDERS: [f64; 2] = [0.5, 2.5];
 
 /// Estimated error of the multipliers, over the tolerance of a step, at which conjugate gradients stop without contact:
 /// no condition but continuity is left to them, and what copies differ by, over the largest displacement, is a
-/// thirtieth of that error and less. The certificate tells where it is not.
-pub(crate) const LINEAR_SLACK: f64 = 30.0;
+/// thirtieth of that error and less in compact bodies. The certificate tells where it is not, as in thin ones.
+pub(crate) const LINEAR_SLACK: f64 = 15.0;
 
 /// Stiffness of a row with all other unknowns held over that with its subdomain free, above which the natural map takes
 /// this multiple of the latter. In well shaped, compressible bodies it is 1 to 4; a natural map that is much too stiff
@@ -196,6 +196,10 @@ pub(crate) const CONTRADICTION: f64 = 10.0;
 
 /// Safety factor between the tolerance of a step and those of SMALSE.
 pub(crate) const SMALSE_SAFETY: f64 = 0.05;
+
+/// Tolerance of a Tresca problem over the last relative change of the fixed point, and the loosest one.
+pub(crate) const INNER_FACTOR: f64 = 0.1;
+pub(crate) const INNER_LOOSEST: f64 = 1e-3;
 
 /// Relative changes below this one that do not halve are put down to the inner solve.
 pub(crate) const INNER_STALL: f64 = 1e-4;

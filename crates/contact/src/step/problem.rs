@@ -7,8 +7,9 @@ use crate::state::{Peak, State};
 use crate::tolerances::{REST, ROUNDED};
 use crate::vec3::dot;
 use signorini_qp::vector;
+use std::borrow::Cow;
 
-/// Data of one step; vectors are allocated once and rewritten.
+/// Data of one step.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct StepProblem {
     /// Position in the analysis, from 0.
@@ -29,6 +30,9 @@ pub(crate) struct StepProblem {
     pub(crate) linear: Vec<f64>,
     /// `e = -R^T f`.
     pub(crate) rhs: Vec<f64>,
+    /// Multipliers that hand the loads on to the supports, and are not what a solver finds; empty with contact. `load`
+    /// and `rhs` are those of the loads with them.
+    pub(crate) handed_on: Vec<f64>,
     /// The obstacle of each contact surface, now and an increment before; empty where none moves and no gap changes.
     pub(crate) obstacles: [Vec<Pose>; 2],
     /// The part of `c` that comes from supports, in tangential rows of points of several nodes: what supports move
@@ -55,20 +59,19 @@ impl StepProblem {
         self.time = time;
         self.step = increment.length;
         self.formula = increment.formula;
-        self.peaks.clear();
-        self.peaks.extend_from_slice(&state.peaks);
+        self.peaks.clone_from(&state.peaks);
         self.peaks.resize(model.bodies.count().max(1), Peak::default());
-        self.factors.clear();
-        self.factors
-            .extend(model.scene.loads.iter().map(|load| load.history.value(time)));
-        let rows = model.tfeti.dual_dim();
-        for (vector, len) in [(&mut self.load, rows), (&mut self.rhs, model.tfeti.coarse().rows())] {
-            vector.clear();
-            vector.resize(len, 0.0);
-        }
+        let loads = model.scene.loads.iter();
+        self.factors = loads.map(|load| load.history.value(time)).collect();
+        self.load = vec![0.0; model.tfeti.dual_dim()];
+        self.rhs = vec![0.0; model.tfeti.coarse().rows()];
         for (factor, load) in self.factors.iter().zip(&model.loads) {
             vector::axpy(*factor, &load.dual, &mut self.load);
             vector::axpy(*factor, &load.coarse, &mut self.rhs);
+        }
+        self.handed_on = vec![0.0; if model.points.is_empty() { self.load.len() } else { 0 }];
+        for (factor, lambda) in self.factors.iter().zip(&model.handed_on) {
+            vector::axpy(*factor, lambda, &mut self.handed_on);
         }
         let histories = model.discrete.supports.motions.iter();
         let cases: Vec<(usize, f64)> = histories.map(|h| h.value(time)).enumerate().collect();
@@ -87,10 +90,8 @@ impl StepProblem {
         }
         self.find_obstacles(model, increment.start);
         self.add_offsets(model, state)?;
-        self.linear.resize(rows, 0.0);
-        for ((d, c), l) in self.linear.iter_mut().zip(&self.offset).zip(&self.load) {
-            *d = c - l;
-        }
+        let offsets = self.offset.iter().zip(&self.load);
+        self.linear = offsets.map(|(c, load)| c - load).collect();
         self.find_friction(model, state)
     }
 
@@ -101,7 +102,7 @@ impl StepProblem {
         let start = model.tangential_start();
         for point in &model.points {
             if effects.gap {
-                self.offset[point.row] += point.scale * self.gap(&model.scene, point)?;
+                self.offset[point.row] += point.scale * self.gap(&model.scene, point, 0)?;
             }
             if let Some(formula) = formula {
                 for (_, k, scale) in point.along() {
@@ -165,14 +166,12 @@ impl StepProblem {
     }
 
     /// The gap of a point with what an obstacle that moves along the surface has brought and its factor in time,
-    /// without what the obstacle opens, m.
-    pub(crate) fn gap(&self, scene: &Scene, point: &ConstrainedPoint) -> Result<f64, ContactError> {
-        gap_brought(scene, point, &self.obstacles[0])
-    }
-
-    /// The same a step before.
-    pub(crate) fn gap_before(&self, scene: &Scene, point: &ConstrainedPoint) -> Result<f64, ContactError> {
-        gap_brought(scene, point, &self.obstacles[1])
+    /// without what the obstacle opens, m: now (0), or an increment before (1).
+    pub(crate) fn gap(&self, scene: &Scene, point: &ConstrainedPoint, ago: usize) -> Result<f64, ContactError> {
+        match self.obstacles[ago].get(point.surface()) {
+            Some(pose) => point.contact.gap_brought(scene, pose),
+            None => Ok(point.contact.gap),
+        }
     }
 
     /// Where the obstacle of a point is; at rest where none moves.
@@ -220,17 +219,20 @@ impl StepProblem {
         })
     }
 
+    /// All multipliers, from those of a solver.
+    pub(crate) fn multipliers<'a>(&self, found: &'a [f64]) -> Cow<'a, [f64]> {
+        if self.handed_on.is_empty() {
+            return Cow::Borrowed(found);
+        }
+        let mut all = found.to_vec();
+        vector::axpy(1.0, &self.handed_on, &mut all);
+        Cow::Owned(all)
+    }
+
     /// The torn load, N.
     pub(crate) fn forces(&self, model: &Model) -> Vec<f64> {
         let loads: Vec<_> = self.factors.iter().copied().zip(&model.loads).collect();
         model.tfeti.combine_forces(&loads)
-    }
-}
-
-fn gap_brought(scene: &Scene, point: &ConstrainedPoint, obstacles: &[Pose]) -> Result<f64, ContactError> {
-    match obstacles.get(point.contact.surface) {
-        Some(pose) => point.contact.gap_brought(scene, pose),
-        None => Ok(point.contact.gap),
     }
 }
 

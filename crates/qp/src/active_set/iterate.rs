@@ -61,12 +61,12 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         vector::copy(self.x, &mut self.work.t);
     }
 
-    /// `ax += A (x - t)`: the product follows `x` from the [mark](Iterate::mark).
-    pub(crate) fn correct(&mut self) {
+    /// `ax += A (x - t)`: the product follows `x` from the [mark](Iterate::mark), if it has moved by more than `rounding`.
+    pub(crate) fn correct(&mut self, rounding: f64) {
         let work = &mut *self.work;
         vector::axpby(1.0, self.x, -1.0, &mut work.t);
         let operator = self.problem.operator;
-        if operator.dot(&work.t, &work.t) == 0.0 {
+        if operator.norm(&work.t) <= rounding {
             return;
         }
         operator.apply(&work.t, &mut work.ap, &mut work.operator);
@@ -166,7 +166,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         self.projector.repair(self.x, rhs);
         let moved = vector::distance(&self.x[..constrained], &self.work.t[..constrained]);
         let jump = moved.max(self.set.violation(self.x));
-        self.correct();
+        self.correct(0.0);
         jump
     }
 

@@ -33,18 +33,46 @@ impl Tfeti {
     /// # Errors
     /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
     pub fn load_response(&self, local: &[Vec<f64>]) -> Result<LoadResponse, TfetiError> {
+        let mut load = self.torn_load(local)?;
+        load.dual = self.row_response(&load.force);
+        Ok(load)
+    }
+
+    /// The same without `B K+ f`: for a load that is [handed on](Self::hand_on) first.
+    ///
+    /// # Errors
+    /// As [`load_response`](Self::load_response).
+    #[doc(hidden)]
+    pub fn torn_load(&self, local: &[Vec<f64>]) -> Result<LoadResponse, TfetiError> {
         TfetiError::check_length("local vectors", local.len(), self.subdomains())?;
         for (s, part) in local.iter().enumerate() {
             self.check("local vector", part, self.torn_range(s).len())?;
         }
         let force = local.concat();
-        let mut displaced = vec![0.0; self.torn_dim()];
-        self.generalised_inverse(&force, &mut displaced);
-        let mut dual = vec![0.0; self.dual_dim()];
-        self.rows_times(&displaced, &mut dual);
         let wrench = |s: usize| self.kernel(s).transpose_times(&force[self.torn_range(s)]);
         let coarse = (0..self.subdomains()).flat_map(|s| wrench(s).map(|v| -v)).collect();
+        let dual = Vec::new();
         Ok(LoadResponse { dual, coarse, force })
+    }
+
+    /// Response to a load together with multipliers that balance it on every subdomain, `G lambda = e`: what is left to
+    /// be found are multipliers with `G lambda = 0`.
+    #[doc(hidden)]
+    pub fn hand_on(&self, load: &mut LoadResponse, lambda: &[f64]) {
+        let mut force = load.force.clone();
+        self.add_rows_transposed(lambda, &mut force);
+        load.dual = self.row_response(&force);
+        self.gluing().add_compliance(lambda, &mut load.dual);
+        load.coarse.fill(0.0);
+    }
+
+    /// `B K+ f`.
+    fn row_response(&self, force: &[f64]) -> Vec<f64> {
+        let mut displaced = vec![0.0; self.torn_dim()];
+        self.generalised_inverse(force, &mut displaced);
+        let mut dual = vec![0.0; self.dual_dim()];
+        self.rows_times(&displaced, &mut dual);
+        dual
     }
 
     /// Place of the three components of a node copy in torn vectors.
@@ -54,9 +82,6 @@ impl Tfeti {
     }
 
     /// `out = B u` for a torn vector.
-    ///
-    /// # Panics
-    /// If a vector is too short.
     pub fn rows_times(&self, u: &[f64], out: &mut [f64]) {
         let gluing = self.gluing();
         let interface = gluing.ranges().interface.clone();
@@ -81,9 +106,6 @@ impl Tfeti {
     }
 
     /// `f += B^T x` for a torn vector.
-    ///
-    /// # Panics
-    /// If a vector is too short.
     pub fn add_rows_transposed(&self, x: &[f64], f: &mut [f64]) {
         self.add_some_transposed(x, f, |_| true);
     }
@@ -107,15 +129,6 @@ impl Tfeti {
         }
     }
 
-    /// `f + B^T lambda` where this process works.
-    fn loaded(&self, force: &[f64], lambda: &[f64]) -> Result<Vec<f64>, TfetiError> {
-        self.check("force", force, self.torn_dim())?;
-        self.check("multipliers", lambda, self.dual_dim())?;
-        let mut total = force.to_vec();
-        self.add_some_transposed(lambda, &mut total, |s| self.is_here(s as usize));
-        Ok(total)
-    }
-
     /// Sum of loads: `sum factor * force`.
     pub fn combine_forces(&self, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
         let mut force = vec![0.0; self.torn_dim()];
@@ -125,51 +138,34 @@ impl Tfeti {
         force
     }
 
-    /// The torn displacement `u = K+ (f + B^T lambda) + R alpha` (5.27).
+    /// The torn displacement `u = K+ (f + B^T lambda) + R alpha` (5.27), and the residual of equilibrium
+    /// `K u - f - B^T lambda`, a torn vector in newtons.
     ///
     /// `force` is a torn vector in newtons, `alpha` the rigid amplitudes, for instance from
     /// [`CoarseFactor::amplitudes`](crate::CoarseFactor::amplitudes).
     ///
     /// # Errors
-    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
-    pub fn recover(&self, force: &[f64], lambda: &[f64], alpha: &[f64]) -> Result<Vec<f64>, TfetiError> {
-        self.displaced(&self.loaded(force, lambda)?, alpha)
-    }
-
-    fn displaced(&self, total: &[f64], alpha: &[f64]) -> Result<Vec<f64>, TfetiError> {
+    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`], also of a displacement that is not finite.
+    pub fn recover(&self, force: &[f64], lambda: &[f64], alpha: &[f64]) -> Result<[Vec<f64>; 2], TfetiError> {
+        self.check("force", force, self.torn_dim())?;
+        self.check("multipliers", lambda, self.dual_dim())?;
         self.check("rigid amplitudes", alpha, 6 * self.subdomains())?;
+        let mut total = force.to_vec();
+        self.add_some_transposed(lambda, &mut total, |s| self.is_here(s as usize));
         let mut u = vec![0.0; self.torn_dim()];
-        self.generalised_inverse(total, &mut u);
+        self.generalised_inverse(&total, &mut u);
         for (s, amplitudes) in alpha.chunks_exact(6).enumerate() {
             let range = self.torn_range(s);
             self.kernel(s).add_motion(1.0, amplitudes, &mut u[range]);
         }
-        Ok(u)
-    }
-
-    /// The displacement of [`recover`](Self::recover) and its residual, that of
-    /// [`equilibrium_residual`](Self::equilibrium_residual).
-    ///
-    /// # Errors
-    /// As these.
-    #[doc(hidden)]
-    pub fn recover_with_residual(
-        &self,
-        force: &[f64],
-        lambda: &[f64],
-        alpha: &[f64],
-    ) -> Result<[Vec<f64>; 2], TfetiError> {
-        let total = self.loaded(force, lambda)?;
-        let u = self.displaced(&total, alpha)?;
-        let residual = self.unbalanced(&u, &total)?;
+        self.check("displacement", &u, self.torn_dim())?;
+        let mut residual = vec![0.0; u.len()];
+        self.stiffness_less(&u, Some(&total), &mut residual);
         Ok([u, residual])
     }
 
     /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies that differ count by
     /// their [stiffness](Self::copy_stiffness).
-    ///
-    /// # Panics
-    /// If `u` is shorter than a torn vector.
     pub fn nodal_mean(&self, u: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; 3 * self.nodes];
         let mut sums = vec![0.0; self.nodes];
@@ -184,21 +180,6 @@ impl Tfeti {
             value.iter_mut().for_each(|v| *v /= sum);
         }
         out
-    }
-
-    /// Residual of equilibrium `K u - f - B^T lambda` in newtons, a torn vector.
-    ///
-    /// # Errors
-    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
-    pub fn equilibrium_residual(&self, u: &[f64], force: &[f64], lambda: &[f64]) -> Result<Vec<f64>, TfetiError> {
-        self.unbalanced(u, &self.loaded(force, lambda)?)
-    }
-
-    fn unbalanced(&self, u: &[f64], total: &[f64]) -> Result<Vec<f64>, TfetiError> {
-        self.check("displacement", u, self.torn_dim())?;
-        let mut residual = vec![0.0; u.len()];
-        self.stiffness_less(u, Some(total), &mut residual);
-        Ok(residual)
     }
 
     /// Row offsets `c` of prescribed displacements: `sum factor * offset` over `(case, factor)`.
