@@ -40,7 +40,7 @@ fn parts(quick: bool, system: &Tfeti, threads: usize) -> Result<[f64; 5], Failur
             let step = 1e-9 * vector::dot(&x, &y).clamp(0.0, 1.0);
             vector::axpy(step, &x, &mut y);
             vector::axpy(step, &y, &mut z);
-            let (rho, _) = vector::dot_and_square(&x, &y);
+            let [rho, _] = vector::dots([(&x, &y), (&y, &y)]);
             vector::axpy(1e-9 * rho.clamp(0.0, 1.0), &x, &mut z);
             vector::axpby(-1.0, &y, 0.5, &mut z);
         });

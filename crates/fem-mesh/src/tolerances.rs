@@ -56,6 +56,11 @@ pub(crate) const LARGER: usize = 6;
 /// costs more than parts of unequal size.
 pub(crate) const PLANE: f64 = 0.5;
 
+// Parts of a mesh
+
+/// Most tables of local numbers, each as long as the mesh has nodes: useful threads.
+pub(crate) const TABLES: usize = 16;
+
 // Means on surfaces
 
 /// Weight of a node in a mean that counts as none.

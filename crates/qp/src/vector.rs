@@ -25,16 +25,14 @@ pub fn dot(x: &[f64], y: &[f64]) -> f64 {
     dot_with(x, y, n >= PARALLEL)
 }
 
-/// `x · y` and `y · y` in one pass.
+/// `x · y` of each pair in one pass.
 #[must_use]
-pub fn dot_and_square(x: &[f64], y: &[f64]) -> (f64, f64) {
-    let n = x.len().min(y.len());
+pub fn dots<const K: usize>(pairs: [(&[f64], &[f64]); K]) -> [f64; K] {
+    let n = pairs.iter().map(|(x, y)| x.len().min(y.len())).min().unwrap_or(0);
     let sums = reduce(0..n, n >= PARALLEL, &|r| {
-        let (x, y) = (&x[r.clone()], &y[r]);
-        let both = [leaf(x, y, |a, b| a * b), leaf(x, y, |_, b| b * b)];
-        Pair(both[0], both[1])
+        Sums(pairs.map(|(x, y)| leaf(&x[r.clone()], &y[r.clone()], |a, b| a * b)))
     });
-    (sums.0, sums.1)
+    sums.0
 }
 
 /// Entries that a sum adds up one after another before it adds such sums: for those who keep parts of a vector.
@@ -122,6 +120,21 @@ pub fn copy(x: &[f64], y: &mut [f64]) {
     zip(x, y, |xi, yi| *yi = xi);
 }
 
+/// `z = x - y`.
+pub(crate) fn difference(x: &[f64], y: &[f64], z: &mut [f64]) {
+    let part = |((z, x), y): ((&mut [f64], &[f64]), &[f64])| {
+        z.iter_mut().zip(x).zip(y).for_each(|((z, x), y)| *z = x - y);
+    };
+    match z.len() < PARALLEL {
+        true => part(((z, x), y)),
+        false => z
+            .par_chunks_mut(CHUNK)
+            .zip(x.par_chunks(CHUNK))
+            .zip(y.par_chunks(CHUNK))
+            .for_each(part),
+    }
+}
+
 /// `y -= x`.
 pub fn subtract(x: &[f64], y: &mut [f64]) {
     zip(x, y, |xi, yi| *yi -= xi);
@@ -178,14 +191,14 @@ fn cut(n: usize) -> usize {
     n.div_ceil(CHUNK).div_ceil(2) * CHUNK
 }
 
-/// Two sums.
-struct Pair(f64, f64);
+/// Several sums.
+struct Sums<const K: usize>([f64; K]);
 
-impl std::ops::Add for Pair {
+impl<const K: usize> std::ops::Add for Sums<K> {
     type Output = Self;
 
     fn add(self, other: Self) -> Self {
-        Self(self.0 + other.0, self.1 + other.1)
+        Self(std::array::from_fn(|k| self.0[k] + other.0[k]))
     }
 }
 
@@ -256,6 +269,10 @@ mod tests {
             assert!((dot(&x, &y) - plain).abs() <= 1e-12 * (1.0 + n as f64));
             let plain: f64 = x.iter().zip(&y).map(|(a, b)| (a - b).powi(2)).sum();
             assert!((distance_squared(&x, &y) - plain).abs() <= 1e-12 * (1.0 + n as f64));
+            assert_eq!(dots([(&x, &y), (&y, &y)]), [dot(&x, &y), dot(&y, &y)]);
+            let mut z = vec![0.0; n];
+            difference(&x, &y, &mut z);
+            assert!((0..n).all(|i| z[i] == x[i] - y[i]));
         }
     }
 

@@ -92,14 +92,14 @@ pub mod internal {
     pub use crate::preconditioner::operator::DualPreconditionerScratch;
     pub use crate::processes::threads::on_ranks;
     pub use crate::projector::active_set::ActiveSetFactor;
-    pub use crate::projector::forecast::{LevelsForecast, forecast_levels};
+    pub use crate::projector::forecast::forecast_levels;
     pub use crate::rows::contact::{PrescribedPoint, prescribed_points};
     pub use crate::rows::dependencies::Dependency;
     pub use crate::rows::supports::{PrescribedDirection, prescribed_directions};
     pub use crate::subdomain::class::{Class, Classes};
     pub use crate::subdomain::copy_stiffness::CopyStiffness;
     pub use crate::subdomain::cost::{ClassReport, InverseKind};
-    pub use crate::subdomain::forecast::Forecast;
+    pub use crate::subdomain::forecast::{CoarseForecast, Forecast};
     pub use crate::subdomain::kernel::Kernel;
     pub use crate::subdomain::rate::Rate;
     pub use crate::system::part::SystemPart;

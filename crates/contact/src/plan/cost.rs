@@ -8,7 +8,7 @@
 
 use crate::settings::{Accuracy, MethodKind, Settings};
 use crate::tolerances::LOOSEST;
-use signorini_tfeti::internal::{Forecast, Rate};
+use signorini_tfeti::internal::{CoarseForecast, Forecast, Rate};
 
 /// Estimated cost of a run; made before any work.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -75,12 +75,13 @@ impl Estimate {
         method: MethodKind,
         settings: &Settings,
         forecast: &Forecast<'_>,
+        coarse: CoarseForecast,
     ) -> Self {
         Self {
             classes: forecast.classes.len(),
             factorisations: forecast.classes.len() + 1,
             inverse_bytes: forecast.inverse_bytes,
-            coarse_bytes: forecast.coarse_bytes,
+            coarse_bytes: coarse.bytes,
             table_bytes: forecast.table_bytes,
             products: likely_products(tets, sizes[2] as f64, method, settings),
             times: None,
@@ -88,7 +89,7 @@ impl Estimate {
             product_flops: forecast.product_flops(),
             setup_flops: forecast.setup_flops(),
             class_unknowns: forecast.classes.iter().map(|c| c.unknowns as f64).sum(),
-            coarse_flops: forecast.coarse_flops,
+            coarse_flops: coarse.flops,
         }
     }
 

@@ -113,7 +113,26 @@ impl Plan {
             let [low, high] = range.unwrap_or([p.gap; 2]);
             Some([p.gap.min(low), p.gap.max(high)])
         };
-        let warnings = sanity::warnings(scene, discrete);
+        let nodes_of = |p: &&ContactPoint| p.sides.nodes().map(|n| n.0).collect::<Vec<u32>>();
+        let touching = points.iter().copied().chain(&discrete.ties);
+        let mut touching: BTreeSet<u32> = touching.flat_map(|p| nodes_of(&p)).collect();
+        touching.extend(discrete.springs.nodal.iter().map(|s| s.node));
+        let find = || {
+            Forecast::new(
+                &scene.mesh,
+                decomposition,
+                &scene.materials,
+                settings.share_translates,
+                &settings.inverse,
+                |node| fixed.contains_key(&node) || touching.contains(&node),
+            )
+        };
+        let judge = || {
+            let warnings = sanity::warnings(scene, discrete);
+            (mesh_error::expected(scene, discrete, &warnings), warnings)
+        };
+        let (forecast, (mesh_error, warnings)) = rayon::join(find, judge);
+        let mut forecast = forecast?;
         let mut plan = Self {
             effects,
             elements,
@@ -138,28 +157,15 @@ impl Plan {
                 MethodKind::Linear
             },
             vector_bytes: 0,
-            mesh_error: mesh_error::expected(scene, discrete, &warnings),
+            mesh_error,
             estimate: Estimate::default(),
             warnings,
         };
-        let nodes = |p: &&ContactPoint| p.sides.nodes().map(|n| n.0).collect::<Vec<u32>>();
-        let touching = points.iter().copied().chain(&discrete.ties);
-        let mut touching: BTreeSet<u32> = touching.flat_map(|p| nodes(&p)).collect();
-        touching.extend(discrete.springs.nodal.iter().map(|s| s.node));
-        let mut forecast = Forecast::new(
-            &scene.mesh,
-            decomposition,
-            &scene.materials,
-            settings.share_translates,
-            &settings.inverse,
-            |node| fixed.contains_key(&node) || touching.contains(&node),
-        )?;
-        let nodes: BTreeSet<u32> = points.iter().flat_map(nodes).collect();
+        let nodes: BTreeSet<u32> = points.iter().flat_map(nodes_of).collect();
         let (supported, rows) = (fixed.keys().copied(), plan.dual());
         let active_sets = plan.method == MethodKind::ActiveSet;
-        if let Some(levels) = forecast_levels(&forecast, nodes.into_iter(), supported, rows, active_sets) {
-            (forecast.coarse_bytes, forecast.coarse_flops) = (levels.bytes, levels.flops);
-        }
+        forecast.coarse = forecast_levels(&forecast, nodes.into_iter(), supported, rows, active_sets);
+        let coarse = forecast.coarse.map_or_else(|| forecast.count_coarse(), Ok)?;
         let vectors = match settings.method.kind() {
             MethodKind::Linear | MethodKind::ActiveSet => 16,
             MethodKind::SuccessiveApproximations | MethodKind::OneLoop => 18,
@@ -167,7 +173,7 @@ impl Plan {
         plan.vector_bytes = 8 * (vectors * plan.dual() + (1 + scene.loads.len()) * primal) as u64;
         let sizes = [plan.dual(), primal, plan.steps];
         let tets = elements as f64 / subdomains.max(1) as f64;
-        plan.estimate = Estimate::new(sizes, tets, plan.method, settings, &forecast);
+        plan.estimate = Estimate::new(sizes, tets, plan.method, settings, &forecast, coarse);
         Ok((plan, forecast))
     }
 }

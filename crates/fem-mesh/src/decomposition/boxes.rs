@@ -2,6 +2,7 @@
 
 use crate::mesh::{TetMesh, connected_sets};
 use crate::vec3;
+use rayon::prelude::*;
 
 use super::subdomains::{Decomposition, DecompositionError};
 
@@ -33,7 +34,7 @@ impl Decomposition {
                 (place as usize).min(boxes[d] - 1)
             })
         };
-        let boxes: Vec<[usize; 3]> = (0..mesh.tets().len()).map(box_of).collect();
+        let boxes: Vec<[usize; 3]> = (0..mesh.tets().len()).into_par_iter().map(box_of).collect();
         let pieces = connected_sets(mesh.neighbour_table(), |a, b| boxes[a] == boxes[b]);
         // Pieces are labelled by their first tetrahedra, so each new label is the next one.
         let mut order = Vec::new();
@@ -47,7 +48,7 @@ impl Decomposition {
         for (place, &(_, piece)) in order.iter().enumerate() {
             number[piece as usize] = place as u32;
         }
-        let part_of = pieces.iter().map(|&piece| number[piece as usize]).collect();
+        let part_of = pieces.par_iter().map(|&piece| number[piece as usize]).collect();
         Ok(Self::build(mesh, part_of))
     }
 }

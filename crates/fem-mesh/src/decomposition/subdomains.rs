@@ -2,6 +2,8 @@
 
 use crate::mesh::{TetMesh, quadratic_tets};
 use crate::tables::Lists;
+use crate::tolerances::TABLES;
+use rayon::prelude::*;
 
 /// A part of the mesh with its own numbering of nodes and tetrahedra.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -88,29 +90,34 @@ impl Decomposition {
         let parts = part_of.iter().max().map_or(0, |&p| p as usize + 1);
         let tets = Lists::by_key(parts, &part_of);
         let nodes = mesh.points().len();
-        let mut local = vec![0u32; nodes];
+        // with a table of local numbers for some parts after one another
         let subdomains: Vec<_> = (0..parts)
-            .map(|part| {
-                let elements = tets.of(part).to_vec();
-                let global = |&tet: &u32| mesh.tets()[tet as usize];
-                let own_mids = || elements.iter().filter_map(|&tet| mesh.mids().get(tet as usize));
-                let mut nodes: Vec<u32> = elements.iter().flat_map(global).collect();
-                nodes.extend(own_mids().flatten());
-                nodes.sort_unstable();
-                nodes.dedup();
-                for (number, &node) in nodes.iter().enumerate() {
-                    local[node as usize] = number as u32;
-                }
-                let to_local = |tet: &u32| global(tet).map(|n| local[n as usize]);
-                let tets = elements.iter().map(to_local).collect();
-                let mids = own_mids().map(|mids| mids.map(|n| local[n as usize])).collect();
-                Subdomain {
-                    nodes,
-                    tets,
-                    mids,
-                    elements,
-                }
-            })
+            .into_par_iter()
+            .with_min_len(parts.div_ceil(TABLES))
+            .map_init(
+                || vec![0u32; nodes],
+                |local, part| {
+                    let elements = tets.of(part).to_vec();
+                    let global = |&tet: &u32| mesh.tets()[tet as usize];
+                    let own_mids = || elements.iter().filter_map(|&tet| mesh.mids().get(tet as usize));
+                    let mut nodes: Vec<u32> = elements.iter().flat_map(global).collect();
+                    nodes.extend(own_mids().flatten());
+                    nodes.sort_unstable();
+                    nodes.dedup();
+                    for (number, &node) in nodes.iter().enumerate() {
+                        local[node as usize] = number as u32;
+                    }
+                    let to_local = |tet: &u32| global(tet).map(|n| local[n as usize]);
+                    let tets = elements.iter().map(to_local).collect();
+                    let mids = own_mids().map(|mids| mids.map(|n| local[n as usize])).collect();
+                    Subdomain {
+                        nodes,
+                        tets,
+                        mids,
+                        elements,
+                    }
+                },
+            )
             .collect();
         let (mut torn, mut node_of) = (Vec::new(), Vec::new());
         for (subdomain, own) in (0..).zip(&subdomains) {

@@ -69,13 +69,10 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             let length = rho / curvature;
             self.work.length = length;
             self.advance(length, coupled);
-            let next = self.precondition();
             // a direction that is coupled or rounded is kept conjugate to the last one
-            let beta = if coupled || digits > 0.0 {
-                self.problem.operator.dot(&self.work.z, &self.work.ap) / curvature
-            } else {
-                next / rho
-            };
+            let conjugate = coupled || digits > 0.0;
+            let (next, along) = self.precondition(conjugate);
+            let beta = if conjugate { along / curvature } else { next / rho };
             vector::axpby(-1.0, &self.work.z, beta, &mut self.work.p);
             rho = next;
             let errors = self.errors();

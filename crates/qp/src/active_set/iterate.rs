@@ -64,9 +64,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
     /// `ax += A (x - t)`: the product follows `x` from the [mark](Iterate::mark), if it has moved by more than `rounding`.
     pub(crate) fn correct(&mut self, rounding: f64) {
         let work = &mut *self.work;
-        for (t, v) in work.t.iter_mut().zip(&*self.x) {
-            *t = v - *t;
-        }
+        vector::axpby(1.0, self.x, -1.0, &mut work.t);
         let operator = self.problem.operator;
         if operator.norm(&work.t) <= rounding {
             return;
@@ -86,9 +84,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
     /// `residual = P_Wᵀ (A x - b)`.
     pub(crate) fn residual(&mut self) {
         let residual = &mut self.work.residual;
-        vector::copy(self.ax, residual);
-        vector::axpy(-1.0, self.problem.linear, residual);
-        self.projector.project_transpose(residual);
+        vector::difference(self.ax, self.problem.linear, residual);
+        self.projector.project_gradient(residual);
     }
 
     /// Classifies the blocks by the natural map.
@@ -117,13 +114,14 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         work.active.restrict(self.set, &mut work.restricted);
     }
 
-    /// `z` from the residual on the active set, with its norm. Returns `rho`.
-    pub(crate) fn precondition(&mut self) -> f64 {
+    /// `z` from the residual on the active set, with its norm. Returns `rho`, and `z · ap` if that is `wanted`.
+    pub(crate) fn precondition(&mut self, wanted: bool) -> (f64, f64) {
         let ActiveSetWorkspace {
             residual,
             restricted,
             saved,
             z,
+            ap,
             z_norm,
             active,
             preconditioner: scratch,
@@ -141,10 +139,17 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         self.projector.project_step(z);
         self.report.preconditionings += 1;
         residual[..constrained].copy_from_slice(restricted);
-        let (rho, square) = self.problem.operator.dot_and_square(residual, z);
+        let operator = self.problem.operator;
+        let [rho, square, along] = match wanted {
+            true => operator.dots([(residual, z), (z, z), (z, ap)]),
+            false => {
+                let [rho, square] = operator.dots([(residual, z), (z, z)]);
+                [rho, square, 0.0]
+            }
+        };
         residual[..constrained].copy_from_slice(saved);
         *z_norm = square.sqrt();
-        rho
+        (rho, along)
     }
 
     /// Brings `x`, moved from the mark, back to set and equality; the product follows. Returns how far constrained

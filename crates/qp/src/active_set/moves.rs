@@ -117,7 +117,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             safeguard.current = self.moved.followed;
         }
         if self.moved.jump > 0.0 || joint && self.moved.drifted {
-            at.projector.repair(at.x, at.problem.rhs);
+            at.projector.repair_step(at.x, at.problem.rhs);
             self.moved.drifted = false;
         }
         if self.moved.jump > 0.0 || joint {

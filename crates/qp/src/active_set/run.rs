@@ -232,6 +232,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         at.classify(settings.natural_step);
         let sparing = self.safeguard.is_some() && self.repairs_suffice;
         match at.hold_modes(sparing) {
+            Ok(true) if at.projector.project_gradient_again(&mut at.work.residual) => {}
             Ok(true) => at.residual(),
             Ok(false) => {}
             Err(QpError::CoarseDeficient { .. }) => return Ok(None),
@@ -241,7 +242,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let preconditioner = at.problem.preconditioner;
         preconditioner.enter(&view, &mut at.work.preconditioner);
         at.start_residual();
-        let rho = at.precondition();
+        let (rho, _) = at.precondition(false);
         let errors = at.errors();
         // what vanishes is measured against `error_floor`, and its constrained part against a small part of that at
         // least

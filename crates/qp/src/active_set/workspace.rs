@@ -5,7 +5,7 @@ use crate::problem::{LineWeight, SymmetricOperator};
 use super::blocks::ActiveSet;
 use super::coupling::{Coupling, RadiusSlope};
 
-/// Vectors of the active-set method: six of the length of `x`, a seventh where radii follow other components, three
+/// Vectors of the active-set method: five of the length of `x`, a sixth where radii follow other components, four
 /// of its constrained part and the classification of the blocks.
 #[derive(Debug)]
 pub struct ActiveSetWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
@@ -23,6 +23,7 @@ pub struct ActiveSetWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     pub(crate) z: Vec<f64>,
     pub(crate) p: Vec<f64>,
     pub(crate) ap: Vec<f64>,
+    /// Weights of the constrained components.
     pub(crate) w: Vec<f64>,
     pub(crate) lines: Vec<LineWeight>,
     pub(crate) t: Vec<f64>,
@@ -48,7 +49,7 @@ impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
             z: v(),
             p: v(),
             ap: v(),
-            w: v(),
+            w: Vec::new(),
             lines: Vec::new(),
             t: v(),
             active: ActiveSet::default(),
@@ -69,6 +70,7 @@ impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
         self.restricted.resize(constrained, 0.0);
         self.saved.resize(constrained, 0.0);
         self.before.resize(constrained, 0.0);
+        self.w.resize(constrained, 0.0);
     }
 
     /// `P_Wᵀ (A x - b)` at the last iterate: the gradient without the part that the multiplier of

@@ -33,10 +33,10 @@ pub trait SymmetricOperator: Sync {
         vector::dot(x, y)
     }
 
-    /// `x · y` and `y · y`.
+    /// `x · y` of each pair.
     #[doc(hidden)]
-    fn dot_and_square(&self, x: &[f64], y: &[f64]) -> (f64, f64) {
-        vector::dot_and_square(x, y)
+    fn dots<const K: usize>(&self, pairs: [(&[f64], &[f64]); K]) -> [f64; K] {
+        vector::dots(pairs)
     }
 
     /// The sum of the entries, one after another.

@@ -40,14 +40,17 @@ pub trait EqualityProjector {
 
     // Directions besides weights.
 
-    /// As [`set_weights`](Self::set_weights), with pairs of components of weight zero that may move along one direction
-    /// each (points that slide). The default leaves them out.
+    /// As [`set_weights`](Self::set_weights) for the leading components, while those behind them have weight 1, with
+    /// pairs of components of weight zero that may move along one direction each (points that slide). The default
+    /// leaves these out, and allocates.
     ///
     /// # Errors
     /// [`QpError::CoarseDeficient`] if that does not determine the multiplier either.
     #[doc(hidden)]
     fn set_weights_and_lines(&mut self, w: &[f64], _lines: &[LineWeight]) -> Result<bool, QpError> {
-        self.set_weights(w)
+        let mut all = w.to_vec();
+        all.resize(self.dim(), 1.0);
+        self.set_weights(&all)
     }
 
     // Steps that round.
@@ -69,6 +72,26 @@ pub trait EqualityProjector {
     #[doc(hidden)]
     fn project_step_transpose(&mut self, g: &mut [f64]) {
         self.project_transpose(g);
+    }
+
+    /// [`project_transpose`](Self::project_transpose) for the gradients of one problem, one after another: errors are
+    /// relative to what the last multiplier leaves of free components.
+    #[doc(hidden)]
+    fn project_gradient(&mut self, g: &mut [f64]) {
+        self.project_transpose(g);
+    }
+
+    /// After a change of the weights: the same for the gradient that was projected last. Whether it is done; where it is
+    /// not, the gradient is projected afresh.
+    #[doc(hidden)]
+    fn project_gradient_again(&mut self, _g: &mut [f64]) -> bool {
+        false
+    }
+
+    /// [`repair`](Self::repair) between two active sets: errors are relative to what it changes.
+    #[doc(hidden)]
+    fn repair_step(&mut self, x: &mut [f64], e: &[f64]) {
+        self.repair(x, e);
     }
 
     /// A step in which the leading components change further: `to = from + change`, with what [`repair`](Self::repair)

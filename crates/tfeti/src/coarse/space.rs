@@ -6,13 +6,13 @@ use crate::coarse::products::{RigidTables, Wrench};
 use crate::coarse::weights::RowWeights;
 use crate::dual::boundary::BoundaryMap;
 use crate::error::TfetiError;
-use crate::linalg::sparse::{SolveMemory, SparseCholesky, Symbolic};
+use crate::linalg::sparse::{SolveMemory, Symbolic};
 use crate::linalg::tiles::Digits;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::SUPPORTED;
 use signorini_qp::internal::LooseMode;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// `G = R^T B^T`: six rows per subdomain, in the order of the subdomains.
 #[derive(Debug, Clone)]
@@ -26,7 +26,8 @@ pub(crate) struct CoarseData {
     /// All rows, also where vectors are parts.
     pub(crate) gluing: Arc<Gluing>,
     pub(crate) matrix: Arc<CoarseMatrix>,
-    pub(crate) symbolic: Arc<Symbolic>,
+    /// Of a factor of the whole matrix, made when it is first asked for.
+    symbolic: Arc<OnceLock<Symbolic>>,
     pub(crate) mobility: Arc<Mobility>,
     /// Whether the support rows alone hold all bodies.
     supports_suffice: bool,
@@ -42,6 +43,7 @@ pub struct CoarseScratch {
     pub(crate) first: Vec<f64>,
     pub(crate) second: Vec<f64>,
     pub(crate) dual: Vec<f64>,
+    /// For sparse factors.
     pub(crate) memory: SolveMemory,
     /// What split factors are read with.
     pub(crate) digits: Digits,
@@ -52,22 +54,19 @@ pub struct CoarseScratch {
 }
 
 impl Coarse {
+    /// With the pattern of a factor of the whole matrix if that is known to be `wanted`.
     pub(crate) fn new(
         map: Arc<BoundaryMap>,
         subdomains: Arc<Subdomains>,
         gluing: Arc<Gluing>,
         centres: Vec<[f64; 3]>,
+        wanted: bool,
     ) -> Result<Self, TfetiError> {
         let modes = ModeTable::new(&subdomains);
         let matrix = CoarseMatrix::new(&gluing, &modes);
         drop(modes);
-        let count = 6 * subdomains.count();
-        let too_large = |_| TfetiError::TooLarge {
-            what: "coarse unknowns",
-            count,
-        };
         let (symbolic, (mobility, tables)) = rayon::join(
-            || Symbolic::new(matrix.pattern(), 6).map_err(too_large),
+            || wanted.then(|| analyse(&matrix)).transpose(),
             || {
                 let mobility = Mobility::new(subdomains.clone(), &gluing, centres);
                 (
@@ -76,7 +75,7 @@ impl Coarse {
                 )
             },
         );
-        let symbolic = symbolic?;
+        let symbolic = symbolic?.map_or_else(OnceLock::new, OnceLock::from);
         let mut data = CoarseData {
             tables,
             map,
@@ -134,9 +133,9 @@ impl Coarse {
         &self.0.mobility.body_of
     }
 
-    /// Numbers stored for a factor of `G W G^T`.
+    /// Numbers stored for a factor of the whole matrix `G W G^T`; `usize::MAX` if there can be none.
     pub fn factor_size(&self) -> usize {
-        self.0.symbolic.stored()
+        self.0.symbolic().map_or(usize::MAX, Symbolic::stored)
     }
 
     /// Creates the work memory.
@@ -148,7 +147,7 @@ impl Coarse {
             first: vec![0.0; rows],
             second: vec![0.0; rows],
             dual: vec![0.0; self.dim()],
-            memory: SolveMemory::new(SparseCholesky::need_of(&self.0.symbolic, 1)),
+            memory: SolveMemory::none(),
             digits: Digits::Double,
             split: Vec::new(),
             pairs: Vec::with_capacity(self.0.gluing.ranges().discs.len() / 2),
@@ -186,7 +185,22 @@ impl Coarse {
     }
 }
 
+/// Order and pattern of a factor of the whole matrix.
+fn analyse(matrix: &CoarseMatrix) -> Result<Symbolic, TfetiError> {
+    let (what, count) = ("coarse unknowns", matrix.pattern().dim);
+    Symbolic::new(matrix.pattern(), 6).map_err(|_| TfetiError::TooLarge { what, count })
+}
+
 impl CoarseData {
+    /// Order and pattern of a factor of the whole matrix.
+    pub(crate) fn symbolic(&self) -> Result<&Symbolic, TfetiError> {
+        if let Some(symbolic) = self.symbolic.get() {
+            return Ok(symbolic);
+        }
+        let symbolic = analyse(&self.matrix)?;
+        Ok(self.symbolic.get_or_init(|| symbolic))
+    }
+
     /// `out = G W x`; `W` is one on interface rows and given by `weights` on the others.
     pub(crate) fn product(&self, x: &[f64], weights: Option<&[f64]>, out: &mut [f64], sides: &mut [Wrench]) {
         self.tables.wrenches(&self.map, x, weights, out, sides);

@@ -141,10 +141,10 @@ impl SymmetricOperator for DualOperator {
         }
     }
 
-    fn dot_and_square(&self, x: &[f64], y: &[f64]) -> (f64, f64) {
+    fn dots<const K: usize>(&self, pairs: [(&[f64], &[f64]); K]) -> [f64; K] {
         match &self.part {
-            Some(part) => part.dots([(x, y), (y, y)]).into(),
-            None => vector::dot_and_square(x, y),
+            Some(part) => part.dots(pairs),
+            None => vector::dots(pairs),
         }
     }
 

@@ -264,6 +264,19 @@ impl SolveMemory {
             numbers: vec![0.0; need.numbers],
         }
     }
+
+    /// None yet.
+    pub(crate) fn none() -> Self {
+        Self::new(MemoryNeed::numbers(0))
+    }
+
+    /// This memory, made anew if it is too small.
+    pub(crate) fn at_least(&mut self, need: MemoryNeed) -> &mut Self {
+        if self.memory.len() < need.memory.size_bytes() || self.numbers.len() < need.numbers {
+            *self = Self::new(need);
+        }
+        self
+    }
 }
 
 impl SparseCholesky {

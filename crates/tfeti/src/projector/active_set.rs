@@ -45,6 +45,7 @@ pub struct ActiveSetProjector {
     loose: Vec<LooseMode>,
     /// Factor of the last active set.
     active: CoarseFactor,
+    /// Of the rows that may have another weight than 1.
     weights: Vec<f64>,
     /// Directions of the last active set besides its weights.
     lines: Vec<LineWeight>,
@@ -55,6 +56,10 @@ pub struct ActiveSetProjector {
     metric: Option<Vec<f64>>,
     coarse_rhs: Vec<f64>,
     alpha: Vec<f64>,
+    /// Amplitudes of the last gradient of this problem, and what the model took of them; empty before the first, and
+    /// with one level.
+    known: Vec<f64>,
+    taken: Vec<f64>,
     scratch: CoarseScratch,
     /// What the steps of an iteration read.
     digits: Digits,
@@ -111,8 +116,7 @@ impl ActiveSetProjector {
         if let Some(metric) = &metric {
             RowWeights::diagonal(metric.clone()).validate(ranges)?;
         }
-        let mut weights = vec![1.0; coarse.dim()];
-        weights[..contact_rows].fill(0.0);
+        let weights = vec![0.0; contact_rows];
         let bases = match kind {
             ActiveSetFactor::Sparse => None,
             ActiveSetFactor::Auto => coarse.bases(contact_rows, metric.as_deref(), None),
@@ -158,6 +162,8 @@ impl ActiveSetProjector {
             metric,
             coarse_rhs: vec![0.0; coarse.rows()],
             alpha: vec![0.0; coarse.rows()],
+            known: Vec::new(),
+            taken: Vec::new(),
         })
     }
 
@@ -165,6 +171,12 @@ impl ActiveSetProjector {
     #[doc(hidden)]
     pub fn has_levels(&self) -> bool {
         matches!(self.parts.basis, Some(Basis::Model(_)))
+    }
+
+    /// Whether a factor that is much larger than vectors are is stored in single precision, too: then what changes
+    /// between two active sets is projected with that.
+    fn rounds_levels(&self) -> bool {
+        self.has_levels() && self.rounds_steps()
     }
 
     /// The factor of the last active set.
@@ -179,6 +191,7 @@ impl ActiveSetProjector {
     /// If `e` does not have one entry for each row of `G`.
     pub fn set_coarse_rhs(&mut self, e: &[f64]) {
         self.coarse_rhs.copy_from_slice(e);
+        self.known.clear();
     }
 
     /// Amplitudes of the rigid motions, `-(G W G^T)^-1 G W r`, with the weights of the last active set.
@@ -271,13 +284,20 @@ fn steady(
     }
 }
 
-/// Weights of contact rows only where all others weigh one.
+/// Weights of leading rows that are `free`, and of others; of contact rows only where all others weigh one.
 fn row_weights(coarse: &Coarse, free: &[f64], metric: Option<&[f64]>) -> RowWeights {
     let contact = coarse.0.gluing.ranges().contact().end;
     RowWeights::diagonal(match metric {
-        Some(metric) => free.iter().zip(metric).map(|(w, m)| w * m).collect(),
-        None if free[contact..].iter().all(|w| *w == 1.0) => free[..contact].to_vec(),
-        None => free.to_vec(),
+        Some(metric) => {
+            let mut weights = metric.to_vec();
+            weights.iter_mut().zip(free).for_each(|(m, w)| *m *= w);
+            weights
+        }
+        None => {
+            let mut weights = free.to_vec();
+            weights.resize(free.len().max(contact), 1.0);
+            weights
+        }
     })
 }
 
@@ -291,17 +311,20 @@ impl EqualityProjector for ActiveSetProjector {
     }
 
     fn set_weights(&mut self, w: &[f64]) -> Result<bool, QpError> {
-        self.set_weights_and_lines(w, &[])
-    }
-
-    fn set_weights_and_lines(&mut self, w: &[f64], lines: &[LineWeight]) -> Result<bool, QpError> {
-        if w == self.weights && lines == self.lines {
-            return self.check(&self.active).map(|()| false);
-        }
         let (expected, found) = (self.coarse.dim(), w.len());
         if found != expected {
             let what = "the weights of an active set";
             return Err(QpError::Length { what, found, expected });
+        }
+        self.set_weights_and_lines(w, &[])
+    }
+
+    fn set_weights_and_lines(&mut self, w: &[f64], lines: &[LineWeight]) -> Result<bool, QpError> {
+        let rows = self.parts.contact_rows;
+        let fixed = w.iter().skip(rows).all(|w| *w == 1.0);
+        let w = if fixed { &w[..rows.min(w.len())] } else { w };
+        if w == self.weights && lines == self.lines {
+            return self.check(&self.active).map(|()| false);
         }
         let mut weights = row_weights(&self.coarse, w, self.metric.as_deref());
         let metric = |row: usize| {
@@ -312,7 +335,6 @@ impl EqualityProjector for ActiveSetProjector {
         for line in &mut weights.lines {
             line.weight *= metric(line.row);
         }
-        let fixed = w[self.parts.contact_rows..].iter().all(|w| *w == 1.0);
         let factor = match fixed {
             true => self.parts.factor(&self.coarse, weights, self.spare.take()),
             false => self.coarse.factor_weighted(weights),
@@ -322,7 +344,8 @@ impl EqualityProjector for ActiveSetProjector {
         };
         let factor = factor.map_err(motion)?;
         self.check(&factor)?;
-        self.weights.copy_from_slice(w);
+        self.weights.clear();
+        self.weights.extend_from_slice(w);
         self.lines.clear();
         self.lines.extend_from_slice(lines);
         let last = std::mem::replace(&mut self.active, factor);
@@ -362,6 +385,43 @@ impl EqualityProjector for ActiveSetProjector {
 
     fn project_step(&mut self, x: &mut [f64]) {
         self.step(|space| space.project(x));
+    }
+
+    fn project_gradient(&mut self, g: &mut [f64]) {
+        if self.known.is_empty() || !self.active.is_model() {
+            self.project_transpose(g);
+            self.known.clear();
+            if self.rounds_levels() && self.active.is_model() {
+                self.known.extend_from_slice(&self.alpha);
+                self.taken.clone_from(&self.scratch.first);
+            }
+            return;
+        }
+        let (add, motions) = (|g: &mut f64, v: f64| *g += v, &mut self.scratch.motions);
+        let data = &self.coarse.0;
+        data.with_transpose(&self.known, g, true, motions, add, |_, g, v| add(g, v));
+        self.step(|space| space.project_transpose(g));
+        self.known.iter_mut().zip(&self.alpha).for_each(|(k, a)| *k += a);
+        self.taken.copy_from_slice(&self.scratch.first);
+    }
+
+    fn project_gradient_again(&mut self, g: &mut [f64]) -> bool {
+        if self.known.is_empty() || !self.active.is_model() {
+            return false;
+        }
+        self.step(|space| {
+            let (taken, alpha) = (&mut space.taken, &mut space.alpha);
+            space.active.project_again(g, taken, alpha, &mut space.scratch);
+        });
+        self.known.iter_mut().zip(&self.alpha).for_each(|(k, a)| *k += a);
+        true
+    }
+
+    fn repair_step(&mut self, x: &mut [f64], e: &[f64]) {
+        match self.rounds_levels() {
+            true => self.step(|space| space.repair(x, e)),
+            false => self.repair(x, e),
+        }
     }
 
     fn project_step_transpose(&mut self, g: &mut [f64]) {

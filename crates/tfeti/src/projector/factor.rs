@@ -6,7 +6,7 @@ use crate::coarse::space::{Coarse, CoarseScratch};
 use crate::coarse::weights::{RowWeights, along};
 use crate::error::TfetiError;
 use crate::linalg::both;
-use crate::linalg::sparse::{FactorError, SparseCholesky};
+use crate::linalg::sparse::{FactorError, SolveMemory, SparseCholesky};
 use crate::linalg::tiles::Digits;
 use crate::projector::model::{Model, ModelFactor};
 use crate::projector::split::factor::{SplitBase, SplitFactor};
@@ -77,7 +77,7 @@ impl Coarse {
         }
         data.hold(&free, &mut matrix.values);
         let (what, count) = ("coarse unknowns", matrix.dim);
-        let factor = SparseCholesky::new(&data.symbolic, &matrix).map_err(|error| match error {
+        let factor = SparseCholesky::new(data.symbolic()?, &matrix).map_err(|error| match error {
             FactorError::Pivot(pivot) => TfetiError::CoarseSingular { pivot },
             FactorError::Pattern => TfetiError::TooLarge { what, count },
         })?;
@@ -152,7 +152,10 @@ impl CoarseFactor {
     pub fn scratch(&self) -> CoarseScratch {
         let mut scratch = self.0.coarse.scratch();
         let work = match &self.0.factor {
-            Factor::Sparse(_) => 0,
+            Factor::Sparse(factor) => {
+                scratch.memory = SolveMemory::new(factor.need(1));
+                0
+            }
             Factor::Split(base, _) => base.work(),
             Factor::Model(model, _) => model.work(),
         };
@@ -168,7 +171,7 @@ impl CoarseFactor {
     /// The same; `y` may be told to be zero but for blocks that a change of contact rows reaches.
     fn solve_some(&self, y: &mut [f64], s: &mut CoarseScratch, changing: bool) {
         match &self.0.factor {
-            Factor::Sparse(factor) => factor.solve(y, 1, &mut s.memory),
+            Factor::Sparse(factor) => factor.solve(y, 1, s.memory.at_least(factor.need(1))),
             Factor::Split(base, factor) => {
                 if s.split.len() < base.work() {
                     s.split.resize(base.work(), 0.0);
@@ -351,7 +354,7 @@ impl CoarseFactor {
     /// `out = L^-1 P` of the first vector of the memory.
     pub(super) fn half_solve_first(&self, out: &mut [f64], s: &mut CoarseScratch) {
         match &self.0.factor {
-            Factor::Sparse(factor) => factor.half_solve(&s.first, out, &mut s.memory),
+            Factor::Sparse(factor) => factor.half_solve(&s.first, out, s.memory.at_least(factor.need(1))),
             Factor::Split(base, factor) => base.half_solve(factor, &s.first, out, &mut s.split),
             Factor::Model(..) => {}
         }
@@ -360,7 +363,9 @@ impl CoarseFactor {
     /// `out = P^T L^-T` of the first vector of the memory, which is overwritten.
     pub(super) fn half_solve_first_transpose(&self, out: &mut [f64], s: &mut CoarseScratch) {
         match &self.0.factor {
-            Factor::Sparse(factor) => factor.half_solve_transpose(&mut s.first, out, &mut s.memory),
+            Factor::Sparse(factor) => {
+                factor.half_solve_transpose(&mut s.first, out, s.memory.at_least(factor.need(1)));
+            }
             Factor::Split(base, factor) => base.half_solve_transpose(factor, &s.first, out, &mut s.split),
             Factor::Model(..) => {}
         }

@@ -9,22 +9,13 @@ use crate::projector::levels::two_levels_pay;
 use crate::projector::split::order::grid_of;
 use crate::projector::split::shared::{EntryBits, share};
 use crate::projector::split::tree::{CoarseTree, cheapest_tree};
-use crate::subdomain::forecast::{Forecast, coarse_graph};
+use crate::subdomain::forecast::{CoarseForecast, Forecast, coarse_graph};
 use crate::subdomain::kernel::mean;
 use crate::tolerances::LAYER;
 use signorini_fem_mesh::internal::DisjointSets;
 use signorini_fem_mesh::vec3::sub;
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
-
-/// What two levels store and cost.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct LevelsForecast {
-    /// Bytes of both factors.
-    pub bytes: u64,
-    /// Operations to make them.
-    pub flops: f64,
-}
 
 /// Forecast for two levels, or, if the method does not follow `active_sets`, for one in which equal regions are stored
 /// once; `None` where neither is used. `touching` are the nodes with contact rows, `supported` those with support rows,
@@ -35,7 +26,7 @@ pub fn forecast_levels(
     supported: impl Iterator<Item = u32>,
     rows: usize,
     active_sets: bool,
-) -> Option<LevelsForecast> {
+) -> Option<CoarseForecast> {
     let decomposition = forecast.decomposition;
     let count = decomposition.subdomains().len();
     let copies = |node: u32| decomposition.copies(node as usize).iter().map(|c| c.subdomain as usize);
@@ -75,7 +66,7 @@ pub fn forecast_levels(
     let grid = grid_of(&centres);
     let mut fixed = CoarseTree::new(&graph, &centres, &vec![false; count], 0, grid.as_deref()).ok()?;
     let (numbers, flops) = count_tree(&mut fixed, &graph, &|a, b, key| key.push(block(a, b)));
-    let counted = |numbers: usize, flops: f64| LevelsForecast {
+    let counted = |numbers: usize, flops: f64| CoarseForecast {
         bytes: 8 * numbers as u64,
         flops,
     };

@@ -19,6 +19,7 @@ use crate::projector::split::factor::{Fronts, SplitBase};
 use crate::projector::split::fronts::ContactWeights;
 use crate::projector::split::order::grid_of;
 use crate::projector::split::tree::{CoarseTree, cheapest_tree};
+use crate::rows::gluing::Gluing;
 use crate::tolerances::{FEW, GROWTH, MANY, OPERATION, ROW, SOLVES};
 use std::sync::Arc;
 
@@ -41,6 +42,15 @@ pub(super) fn two_levels_pay(touching: &[bool], rows: usize) -> bool {
     let slower = GROWTH * 0.5 * SOLVES * ROW * rows as f64;
     let pays = OPERATION * dense.powi(3) / 3.0 > slower;
     touching.len() > MANY || touching.len() >= FEW && (pays || dense == 0.0)
+}
+
+/// The same for the rows of `B`.
+pub(crate) fn has_two_levels(gluing: &Gluing, subdomains: usize) -> bool {
+    let mut touching = vec![false; subdomains];
+    for e in gluing.ranges().contact().flat_map(|row| gluing.nodal(row)) {
+        touching[e.subdomain as usize] = true;
+    }
+    two_levels_pay(&touching, gluing.ranges().total())
 }
 
 impl Coarse {
@@ -100,18 +110,23 @@ impl Coarse {
         let (mobility, matrix) = (&data.mobility, &data.matrix);
         let grid = grid_of(mobility.centres());
         let clusters = Clusters::new(mobility, &data.subdomains, grid.as_deref());
-        let model = Model::new(
-            clusters,
-            (&data.gluing, modes),
-            (matrix, values),
-            changing,
-            rows,
-            self.exchange(),
-        )?;
-        let mut values = values.to_vec();
-        data.hold(&free, &mut values);
-        let always = self.fixed_base(graph, &values)?;
-        let model = Arc::new(model);
+        let model = || {
+            Model::new(
+                clusters,
+                (&data.gluing, modes),
+                (matrix, values),
+                changing,
+                rows,
+                self.exchange(),
+            )
+        };
+        let always = || {
+            let mut values = values.to_vec();
+            data.hold(&free, &mut values);
+            self.fixed_base(graph, &values)
+        };
+        let (model, always) = rayon::join(model, always);
+        let (model, always) = (Arc::new(model?), always?);
         Some(Bases::Levels { model, always, free })
     }
 
@@ -142,11 +157,7 @@ impl Coarse {
     /// without springs.
     pub(super) fn shared_factor(&self, values: &[f64]) -> Option<Factor> {
         let data = &self.0;
-        let mut touching = vec![false; data.subdomains.count()];
-        for e in data.gluing.ranges().contact().flat_map(|row| data.gluing.nodal(row)) {
-            touching[e.subdomain as usize] = true;
-        }
-        if !two_levels_pay(&touching, data.gluing.ranges().total()) {
+        if !has_two_levels(&data.gluing, data.subdomains.count()) {
             return None;
         }
         let base = self.fixed_base(&data.matrix.graph(), values)?;
@@ -184,10 +195,26 @@ impl CoarseFactor {
         data.with_transpose(alpha, r, true, motions, add, |_, r, v| add(r, v));
     }
 
+    /// `r = P^T r` for an `r` that other weights of the contact rows have projected, with what their model has `taken`;
+    /// returns in `alpha` what is added, and what this model takes. `-A^-1 G W_f r` is `taken` then.
+    pub(super) fn project_again(&self, r: &mut [f64], taken: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        alpha.copy_from_slice(taken);
+        self.take_from(r, alpha, s);
+        taken.copy_from_slice(&s.first);
+        let (add, motions) = (|r: &mut f64, v: f64| *r += v, &mut s.motions);
+        let data = &self.coarse().0;
+        data.with_transpose(alpha, r, true, motions, add, |_, r, v| add(r, v));
+    }
+
     /// These amplitudes `alpha`.
     pub(super) fn amplitudes_with(&self, exact: &Self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        let data = &self.coarse().0;
         exact.amplitudes(r, alpha, s);
+        self.take_from(r, alpha, s);
+    }
+
+    /// `alpha = alpha - N G W_c (r + G^T alpha)`; what the model takes is then the first vector of the memory.
+    fn take_from(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        let data = &self.coarse().0;
         let contact = data.gluing.ranges().contact().end;
         data.contact_transpose(alpha, &mut s.dual[..contact], &mut s.motions);
         s.dual.iter_mut().zip(&r[..contact]).for_each(|(v, r)| *v += r);

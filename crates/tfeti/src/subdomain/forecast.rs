@@ -20,10 +20,9 @@ pub struct Forecast<'a> {
     pub classes: Vec<ClassReport>,
     /// Bytes of all inverses.
     pub inverse_bytes: u64,
-    /// Bytes of the coarse factor, but for what contact pairs add to it.
-    pub coarse_bytes: u64,
-    /// Operations to factor the coarse matrix.
-    pub coarse_flops: f64,
+    /// The coarse factor, once it is counted: of two levels by [`forecast_levels`](crate::internal::forecast_levels), else
+    /// by [`count_coarse`](Self::count_coarse).
+    pub coarse: Option<CoarseForecast>,
     /// Bytes of the gather tables, if there are three rows at each node that is touched.
     pub table_bytes: u64,
     pub(crate) mesh: &'a TetMesh,
@@ -36,8 +35,17 @@ pub struct Forecast<'a> {
     pub(crate) symbolic: Vec<Symbolic>,
 }
 
+/// What coarse factors store and cost.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct CoarseForecast {
+    /// Bytes, but for what contact pairs add to them.
+    pub bytes: u64,
+    /// Operations to make them.
+    pub flops: f64,
+}
+
 impl<'a> Forecast<'a> {
-    /// Counts. `touched` tells of a mesh node whether a support or contact row acts on it; the interface is known from
+    /// Counts all but the coarse factor. `touched` tells of a mesh node whether a support or contact row acts on it; the interface is known from
     /// the decomposition.
     ///
     /// # Errors
@@ -96,10 +104,6 @@ impl<'a> Forecast<'a> {
             report
         };
         let classes: Vec<ClassReport> = sizes.iter().enumerate().map(report).collect();
-        let (stored, coarse_flops) = coarse_factor(decomposition).map_err(|_| {
-            let (what, count) = ("coarse unknowns", 6 * subdomains.len());
-            TfetiError::TooLarge { what, count }
-        })?;
         // interface blocks and their entries: k - 1 Helmert rows over 2 to k copies
         let counts = (0..decomposition.nodes()).map(|n| decomposition.copies(n).len());
         let (blocks, entries) = counts.filter(|k| *k > 1).fold((0, 0), |(blocks, entries), k| {
@@ -108,8 +112,7 @@ impl<'a> Forecast<'a> {
         let words = copies + blocks + 2 + 3 * entries;
         Ok(Self {
             inverse_bytes: classes.iter().map(|c| c.bytes).sum(),
-            coarse_bytes: 8 * stored as u64,
-            coarse_flops,
+            coarse: None,
             table_bytes: (4 * words + 16 * entries + 56 * 3 * others) as u64,
             classes,
             mesh,
@@ -120,6 +123,18 @@ impl<'a> Forecast<'a> {
             symbolic: analysed.into_iter().map(|(_, symbolic)| symbolic).collect(),
             found,
         })
+    }
+
+    /// Counts a factor of the whole coarse matrix.
+    ///
+    /// # Errors
+    /// [`TfetiError::TooLarge`] if it can have none.
+    pub fn count_coarse(&mut self) -> Result<CoarseForecast, TfetiError> {
+        let (what, count) = ("coarse unknowns", 6 * self.decomposition.subdomains().len());
+        let counted = coarse_factor(self.decomposition);
+        let (stored, flops) = counted.map_err(|_| TfetiError::TooLarge { what, count })?;
+        let bytes = 8 * stored as u64;
+        Ok(*self.coarse.insert(CoarseForecast { bytes, flops }))
     }
 
     /// Operations of a product with `F`.

@@ -7,6 +7,7 @@ use crate::dual::operator::DualOperator;
 use crate::error::TfetiError;
 use crate::processes::communicator::Communicator;
 use crate::processes::exchange::Exchange;
+use crate::projector::levels::has_two_levels;
 use crate::rows::gluing::Gluing;
 use crate::rows::side::ContactConstraint;
 use crate::rows::supports::{NodalSpring, NodeSupport};
@@ -142,20 +143,25 @@ impl<'a> TfetiBuilder<'a> {
         let all = decomposition.subdomains().iter();
         let centres = all.map(|s| centre(&s.nodes)).collect();
         let known = self.forecast.map(|f| f.symbolic.as_slice());
+        let levels = has_two_levels(&gluing, subdomains.count());
         let (inverses, coarse) = rayon::join(
             || invert(&subdomains, &map, &self.inverse, known),
             || {
                 let (map, gluing) = (map.clone(), gluing.clone());
-                Coarse::new(map, subdomains.clone(), gluing, centres)
+                Coarse::new(map, subdomains.clone(), gluing, centres, !levels)
             },
         );
         let ((inverses, classes), coarse) = (inverses?, coarse?);
         exchange.check()?;
+        let coarse_bytes = match self.forecast.and_then(|f| f.coarse.filter(|_| levels)) {
+            Some(found) => found.bytes,
+            None => 8 * coarse.0.symbolic()?.stored() as u64,
+        };
         let factors = inverses.iter().flatten().count();
         let report = SetupReport {
             inverse_bytes: classes.iter().map(|class| class.bytes).sum(),
             classes,
-            coarse_bytes: 8 * coarse.factor_size() as u64,
+            coarse_bytes,
             table_bytes: map.bytes(),
             factorisations: 1 + factors,
             analysed: known.map_or(factors, |_| 0),

@@ -3,6 +3,8 @@
 use crate::error::TfetiError;
 use crate::rows::gluing::CopyEntry;
 use crate::system::tfeti::Tfeti;
+use crate::tolerances::BLOCKS;
+use rayon::prelude::*;
 
 /// Response of the torn body to one load: what a time step needs to combine.
 ///
@@ -83,13 +85,17 @@ impl Tfeti {
     pub fn rows_times(&self, u: &[f64], out: &mut [f64]) {
         let gluing = self.gluing();
         let interface = gluing.ranges().interface.clone();
-        for (block, target) in out[interface].chunks_exact_mut(3).enumerate() {
-            target.fill(0.0);
-            for e in gluing.block(block) {
-                let value = &u[self.place(e.subdomain, e.local)];
-                (0..3).for_each(|c| target[c] += e.coefficient * value[c]);
+        let blocks = |first: usize, part: &mut [f64]| {
+            for (block, target) in (first..).zip(part.chunks_exact_mut(3)) {
+                target.fill(0.0);
+                for e in gluing.block(block) {
+                    let value = &u[self.place(e.subdomain, e.local)];
+                    (0..3).for_each(|c| target[c] += e.coefficient * value[c]);
+                }
             }
-        }
+        };
+        let parts = out[interface].par_chunks_mut(3 * BLOCKS).enumerate();
+        parts.for_each(|(k, part)| blocks(k * BLOCKS, part));
         for nodal in 0..gluing.nodal_rows() {
             let entry = |e: &CopyEntry| {
                 let value = &u[self.place(e.subdomain, e.local)];

@@ -12,7 +12,8 @@ fn both(mesh: &TetMesh, decomposition: &Decomposition, share: bool, mut check: i
     let supports = [NodeSupport::fixed(held.clone())];
     let (materials, settings) = (steel(), InverseSettings::default());
     let touched = |node| held.contains(&node);
-    let found = Forecast::new(mesh, decomposition, &materials, share, &settings, touched).unwrap();
+    let mut found = Forecast::new(mesh, decomposition, &materials, share, &settings, touched).unwrap();
+    found.count_coarse().unwrap();
     let build = |b: TfetiBuilder<'_>| b.with_supports(&supports).build().unwrap();
     let alone = build(TfetiBuilder::new(mesh, decomposition, &materials).with_share_translates(share));
     let system = build(TfetiBuilder::of_forecast(&found));
@@ -45,7 +46,7 @@ fn a_forecast_is_what_the_set_up_finds() {
             let truth = system.report();
             assert_eq!(found.classes, truth.classes);
             assert_eq!(found.inverse_bytes, truth.inverse_bytes);
-            assert_eq!(found.coarse_bytes, truth.coarse_bytes);
+            assert_eq!(found.coarse.unwrap().bytes, truth.coarse_bytes);
             assert_eq!(found.table_bytes, truth.table_bytes);
             assert_eq!(found.product_flops() as u64, system.dual().flops());
         });
@@ -62,8 +63,9 @@ fn the_coarse_factor_of_very_small_subdomains_is_counted() {
         let decomposition = Decomposition::from_parts(&mesh, &parts).unwrap();
         let mut flops = 0.0;
         both(&mesh, &decomposition, true, |found, system| {
-            assert_eq!(found.coarse_bytes, system.report().coarse_bytes);
-            flops = found.coarse_flops;
+            let coarse = found.coarse.unwrap();
+            assert_eq!(coarse.bytes, system.report().coarse_bytes);
+            flops = coarse.flops;
         });
         // a dense matrix would be an upper bound
         let dim = 6.0 * parts.len() as f64;

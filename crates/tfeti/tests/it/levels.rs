@@ -203,6 +203,53 @@ fn equal_regions_are_eliminated_once_and_the_solution_is_that_of_the_whole() {
     assert!(2 * shared < 3 * whole, "{shared} of {whole}");
 }
 
+/// Between active sets what changes is projected in single precision, and no more than that is rounded.
+#[test]
+fn changes_between_active_sets_are_rounded() {
+    let system = Brick::new(4, 2).system();
+    let contact = system.gluing().ranges().contact().end;
+    let e = noise(system.coarse().rows(), 7);
+    // gradients of points next to a solution are rigid motions but for little
+    let mut rigid = vec![0.0; system.dual_dim()];
+    system
+        .coarse()
+        .apply_transpose(&e, &mut rigid, &mut system.coarse().scratch());
+    let near = |x: &[f64], seed: u64| -> Vec<f64> {
+        let change = noise(x.len(), seed);
+        x.iter().zip(&change).map(|(x, c)| x + 1e-6 * c).collect()
+    };
+    for (kind, rounds) in [(ActiveSetFactor::Levels, true), (ActiveSetFactor::Split, false)] {
+        let mut space = space(&system, kind);
+        assert!(space.rounds_steps());
+        for problem in 0..2 {
+            space.set_coarse_rhs(&e);
+            for set in 0..3 {
+                space.set_weights(&active_set(&system, 0.5, set)).unwrap();
+                let gradient = near(&rigid, 5 + set);
+                let [mut found, mut truth] = [gradient.clone(), gradient];
+                space.project_gradient(&mut found);
+                space.project_transpose(&mut truth);
+                let off = distance(&found, &truth) / norm(&truth);
+                assert!(off < 1e-6, "{kind:?}, problem {problem}, set {set}: {off:e}");
+                // the first of a problem has all digits
+                assert_eq!(found != truth, rounds && set > 0, "{kind:?}, {problem}, {set}");
+                space.set_weights(&active_set(&system, 0.5, set + 9)).unwrap();
+                assert_eq!(space.project_gradient_again(&mut found), rounds);
+                space.project_transpose(&mut truth);
+                let off = distance(&found, &truth) / norm(&truth);
+                assert!(!rounds || off < 1e-6, "{problem}, {set}, again: {off:e}");
+            }
+        }
+        let mut x = rigid.clone();
+        space.repair(&mut x, &e);
+        let moved = [&near(&x[..contact], 8)[..], &x[contact..]].concat();
+        let [mut step, mut truth] = [moved.clone(), moved];
+        space.repair_step(&mut step, &e);
+        space.repair(&mut truth, &e);
+        assert!(off(&system, &step, &e) < 1e-12 && (step != truth) == rounds);
+    }
+}
+
 /// What a plan counts is what is stored: regions that are equal once, at most a quarter more.
 #[test]
 fn a_forecast_counts_what_two_levels_store() {
@@ -217,8 +264,18 @@ fn a_forecast_counts_what_two_levels_store() {
         let always = space.factor().stored();
         space.set_weights(&active_set(&system, 0.5, 1)).unwrap();
         let stored = 8.0 * (always + space.factor().stored()) as f64;
-        let ratio = forecast(system.dual_dim()).unwrap().bytes as f64 / stored;
+        let counted = forecast(system.dual_dim());
+        let ratio = counted.unwrap().bytes as f64 / stored;
         assert!((0.75..1.25).contains(&ratio), "n = {n}: {ratio}");
+        // the report says the same, and nothing of a factor that nobody makes
+        let mut known = found.clone();
+        known.coarse = counted;
+        let (supports, contact) = (b.supports(), b.contact(true));
+        let builder = TfetiBuilder::of_forecast(&known).with_supports(&supports);
+        let other = builder.with_contact(&contact).build().unwrap();
+        assert_eq!(other.report().coarse_bytes, counted.unwrap().bytes);
+        assert_eq!(other.coarse().factor_size(), system.coarse().factor_size());
+        assert_ne!(other.report().coarse_bytes, 8 * system.coarse().factor_size() as u64);
     }
     // one level
     let b = Brick::new(3, 1);

@@ -82,27 +82,44 @@ fn grow(
 ) -> Result<Grown, usize> {
     let own = tree.regions[r].steady.start..tree.regions[r].changing.end;
     let (mut tiles, mut updates) = (Tiles::default(), Vec::<Vec<f64>>::with_capacity(own.len()));
+    tiles.exact.reserve_exact(pattern.tiles());
+    let (mut columns, mut spare) = (Vec::new(), Vec::<Vec<f64>>::new());
     for k in own.clone() {
         let this = &tree.nodes[k];
         let (width, height) = (this.width(), this.height());
         let mut front = Front {
-            columns: vec![0.0; width * height],
-            update: vec![0.0; (height - width) * (height - width)],
+            columns: zeros(columns, width * height),
+            update: zeros(spare.pop().unwrap_or_default(), (height - width) * (height - width)),
         };
         load(k, &mut front.columns);
         for &child in &this.children {
-            let update = match child.checked_sub(own.start) {
-                Some(inner) => &std::mem::take(&mut updates[inner]),
-                None => &before[node[child]],
+            let Some(inner) = child.checked_sub(own.start) else {
+                extend(&before[node[child]], &tree.nodes[child].into, &mut front, width, height);
+                continue;
             };
-            extend(update, &tree.nodes[child].into, &mut front, width, height);
+            let update = std::mem::take(&mut updates[inner]);
+            extend(&update, &tree.nodes[child].into, &mut front, width, height);
+            spare.push(update);
         }
         front.eliminate(this, 0.0)?;
         pattern.pack(k - own.start, &front.columns, &mut tiles.exact);
         updates.push(front.update);
+        columns = front.columns;
     }
+    updates.iter_mut().for_each(Vec::shrink_to_fit);
     tiles.round();
     Ok((tiles, updates))
+}
+
+/// Zeros, in old memory if there is enough: pages that are new cost more than all else that is done with them.
+fn zeros(mut old: Vec<f64>, length: usize) -> Vec<f64> {
+    if old.capacity() < length {
+        // of which only those that are written become real
+        return vec![0.0; length];
+    }
+    old.clear();
+    old.resize(length, 0.0);
+    old
 }
 
 /// Appends what tells the entries of two blocks from those of others.
