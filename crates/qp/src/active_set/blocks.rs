@@ -122,8 +122,8 @@ impl ActiveSet {
         blocked.iter().filter(|b| **b).count() > before
     }
 
-    /// Of the constrained components: 1 on those that may move in both directions, 0 on others (the one direction of sliding discs is among the
-    /// [`lines`](Self::lines)).
+    /// Of the constrained components: 1 on those that may move in both directions, 0 on others (the one direction of
+    /// sliding discs is among the [`lines`](Self::lines)).
     pub(crate) fn weights(&self, set: &ProductSet, w: &mut [f64]) {
         w.fill(1.0);
         let number = |free: bool| f64::from(u8::from(free));
