@@ -75,6 +75,12 @@ pub(crate) const COVERED: f64 = 1e-10;
 /// Second moment of a covered part below which it has no extent, over that along it.
 pub(crate) const FLAT: f64 = 1e-13;
 
+/// Distance of a mid-node from the middle of its edge, over the size of the facet, from which on the edge is bent.
+pub(crate) const BENT: f64 = 1e-9;
+
+/// Steps of Newton's method to a place in a facet with bent edges: quadratic, from an edge that is bent by a fifth.
+pub(crate) const BENT_STEPS: usize = 6;
+
 /// Weight of a node in a side that counts as none, over the largest.
 pub(crate) const NO_WEIGHT: f64 = 1e-13;
 
