@@ -12,6 +12,9 @@ pub(crate) const ROUNDING: f64 = 1e-12;
 /// rounding errors, 1e-16 of that product.
 pub(crate) const ROUNDED: f64 = 1e-8;
 
+/// Rounding of forces over displacement times stiffness, below which no solver gets: what it is asked for is not smaller.
+pub(crate) const REACHED: f64 = 1e-14;
+
 /// Part of the earlier sizes that a vanishing quantity is measured against.
 pub(crate) const REST: f64 = 1e-3;
 

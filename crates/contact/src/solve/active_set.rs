@@ -128,8 +128,8 @@ impl ActiveSetSolver {
             linear: linear.as_ref().unwrap_or(&problem.linear),
             rhs: &problem.rhs,
         };
-        let [least, least_contact] = problem.least();
         let tolerance = task.settings.tolerance;
+        let [least, least_contact] = problem.least(tolerance);
         let settings = self.settings.clone().with_tolerance(tolerance);
         let settings = settings.with_error_floor(least).with_contact_error_floor(least_contact);
         let coulomb = is_coulomb(model);

@@ -36,7 +36,7 @@ impl LinearSolver {
         self.rows.set_rhs(&task.problem.rhs);
         let tolerance = Tolerance::Error {
             factor: task.settings.tolerance * LINEAR_SLACK,
-            least: task.problem.least()[0],
+            least: task.problem.least(task.settings.tolerance)[0],
         };
         let outcome = projected_cg(
             task.model.tfeti.dual(),

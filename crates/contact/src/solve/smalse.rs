@@ -188,7 +188,7 @@ impl SmalseSolver {
             x.copy_from_slice(&iterate.lambda[normal.clone()]);
             Ok(tolerances.is_full(tolerance))
         };
-        let (least, most) = (problem.least()[1], settings.max_fixed_point);
+        let (least, most) = (problem.least(settings.tolerance)[1], settings.max_fixed_point);
         let outcome = successive_approximations(&mut x, settings.tolerance, least, most, map);
         let mut outcome = match outcome {
             Ok(outcome) => outcome,
@@ -229,7 +229,7 @@ impl SmalseSolver {
         let mut last_change = f64::INFINITY;
         // bounds of normal forces that vanish
         let coefficient = problem.coefficients.iter().fold(0.0_f64, |a, b| a.max(*b));
-        let least = coefficient * problem.least()[1];
+        let least = coefficient * problem.least(task.settings.tolerance)[1];
         let mut written = Ok(());
         let mut hook = |x: &[f64], set: &mut ProductSet| {
             let old = radii(set);
