@@ -182,8 +182,8 @@ pub(crate) const ORDERS: [f64; 2] = [0.5, 2.5];
 
 /// Estimated error of the multipliers, over the tolerance of a step, at which conjugate gradients stop without contact:
 /// no condition but continuity is left to them, and what copies differ by, over the largest displacement, is a
-/// thirtieth of that error and less. The certificate tells where it is not.
-pub(crate) const LINEAR_SLACK: f64 = 30.0;
+/// thirtieth of that error and less in compact bodies. The certificate tells where it is not, as in thin ones.
+pub(crate) const LINEAR_SLACK: f64 = 15.0;
 
 /// Stiffness of a row with all other unknowns held over that with its subdomain free, above which the natural map takes
 /// this multiple of the latter. In well shaped, compressible bodies it is 1 to 4; a natural map that is much too stiff

@@ -33,7 +33,7 @@ pub struct CgReport {
     pub preconditionings: usize,
     /// Norm of the projected gradient `P (A x - b)` at the end.
     pub projected_gradient: f64,
-    /// Its tolerance; 0 where the error is what ends the solve.
+    /// Its tolerance.
     pub tolerance: f64,
 }
 
@@ -86,8 +86,8 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> CgWorkspace<A, C, 
 /// `m` is a preconditioner, positive definite on the kernel of `C` ([`Identity`] for none). `Tolerance::Relative`
 /// refers to `|P b|`, or to `|P A x|` at the start if `P b` is negligible beside it (a load that acts through the
 /// equality alone). If both are below 1e-12 of `|b|`, they are rounding errors, and the solution is one of them: a
-/// projected gradient of 1e-14 of `|b|` is enough then, also with `Tolerance::Error`. A semidefinite `A` is allowed
-/// as long as the load does no work along its kernel within that of `C`.
+/// projected gradient of 1e-14 of `|b|` is enough then. A semidefinite `A` is allowed as long as the load does no work
+/// along its kernel within that of `C`.
 ///
 /// # Errors
 /// [`QpError`] for wrong lengths or NaN; when something becomes NaN; when `A` is indefinite, or singular
@@ -130,7 +130,6 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
             projected_gradient: f64::NAN,
             tolerance: f64::NAN,
         },
-        error: None,
         slope: f64::NAN,
         start: f64::NAN,
         best: f64::NAN,
@@ -141,9 +140,7 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
         if let Some(status) = run.ended(max_products)? {
             break status;
         }
-        if run.precondition() {
-            break Status::Converged;
-        }
+        run.precondition();
         run.direction();
         let Some(length) = run.step_length()? else {
             break Status::Stagnated;
@@ -161,8 +158,6 @@ struct Run<'s, A: SymmetricOperator, C: Equality, M: SymmetricOperator> {
     x: &'s mut [f64],
     work: &'s mut CgWorkspace<A, C, M>,
     report: CgReport,
-    /// Factor and least norm of [`Tolerance::Error`].
-    error: Option<(f64, f64)>,
     /// `w·y` of the last direction.
     slope: f64,
     /// Projected gradient at the start, the smallest so far, and iterations since it.
@@ -193,13 +188,7 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
         let size = vector::norm(b);
         let tolerance = usable(match tolerance {
             // what the projector leaves of the load is rounding, and nothing else acts
-            Tolerance::Relative(_) | Tolerance::Error { .. } if reference <= VANISHED_LOAD * size => {
-                SOLVED_BY_EQUALITY * size
-            }
-            Tolerance::Error { factor, least } => {
-                self.error = Some((usable(factor)?, usable(least)?));
-                0.0
-            }
+            Tolerance::Relative(_) if reference <= VANISHED_LOAD * size => SOLVED_BY_EQUALITY * size,
             tolerance => tolerance.resolve(reference),
         })?;
         vector::subtract(b, &mut self.work.g);
@@ -244,15 +233,12 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
         })
     }
 
-    /// `y = P M w`. Whether it is as short as the tolerance asks, if that is one of the error.
-    fn precondition(&mut self) -> bool {
+    /// `y = P M w`.
+    fn precondition(&mut self) {
         let w = &mut *self.work;
         self.m.apply(&w.w, &mut w.ap, &mut w.m_scratch);
         self.report.preconditionings += 1;
         project(self.c, &w.ap, &mut w.y, &mut w.coarse, &mut w.c_scratch);
-        let small =
-            |(factor, least): (f64, f64)| vector::norm(&self.work.y) <= factor * vector::norm(self.x).max(least);
-        self.error.is_some_and(small)
     }
 
     /// The direction `p`, conjugate to the last one, and `ap = A p`.

@@ -25,7 +25,7 @@ impl Status {
     }
 }
 
-/// When a solve ends: mostly where a gradient norm counts as small.
+/// Which norm of a gradient counts as small.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum Tolerance {
@@ -34,14 +34,6 @@ pub enum Tolerance {
     /// At most this multiple of the solver's own reference: `|b|` for KPRGP (the norm of the first gradient if `b` is
     /// zero), `|P (b - A C'e)|` for SMALSE (the paper's `|P h|`; one more product if `e` is not zero).
     Relative(f64),
-    /// [`projected_cg`](crate::projected_cg()): the preconditioned gradient, which estimates the error of `x`, is at
-    /// most this multiple of `|x|`. Solvers without preconditioner take it as [`Relative`](Self::Relative).
-    Error {
-        /// Dimensionless factor.
-        factor: f64,
-        /// What `|x|` counts at least, in its units.
-        least: f64,
-    },
 }
 
 impl Tolerance {
@@ -49,7 +41,7 @@ impl Tolerance {
     pub(crate) fn resolve(self, own: f64) -> f64 {
         match self {
             Self::Absolute(t) => t,
-            Self::Relative(f) | Self::Error { factor: f, .. } => f * own,
+            Self::Relative(f) => f * own,
         }
     }
 }

@@ -77,7 +77,7 @@ pub(crate) const CG_ROUNDING: f64 = 1e-8;
 /// Distance from a circle, over the radius, at which a point may slide. Wider than [`ON_CIRCLE`]: projectors round
 /// more.
 pub(crate) const MAY_SLIDE: f64 = 1e-9;
-/// Part of what the natural map moves `x = 0` by that is rounding, in `x` and in its errors.
+/// Part of `x`, or of what the natural map moves `x = 0` by, that is rounding, in `x` and in its errors.
 pub(crate) const ROUNDED: f64 = 1e-14;
 /// Way inwards by the natural map, over the radius, that takes a point across its circle. Points that give way together
 /// give way more than one alone: flat elements by as much.

@@ -42,7 +42,8 @@ pub(crate) const SUPPORTED: f64 = 0.01;
 /// Error in the equality of a solve with a factor in single precision with which steps are projected, relative.
 pub(crate) const ROUNDED_STEP: f64 = 1e-4;
 /// Rows of the equality from which on such a factor is read instead of the exact one: a smaller one takes no time worth
-/// mentioning, and where conjugate gradients are long its rounding lets directions forget one another.
+/// mentioning, and where conjugate gradients are long its rounding lets directions forget one another. From there on rows
+/// also weigh one where nothing but the shape of a mesh tells them apart.
 pub(crate) const SHORT_ROWS: usize = 500;
 /// Stiffness of a copy over that of another one of its node up to which all count alike: 1 where boxes cut a regular
 /// mesh, 2.5 where its nodes are displaced by 0.15 of a cell, 17 and more in cuts that follow no plane of the mesh.

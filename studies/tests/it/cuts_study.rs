@@ -27,20 +27,20 @@ fn parts_of_any_shape_take_at_most_a_quarter_more_products_than_boxes() {
             // the library's parts are the boxes
             assert!(line.cut != "library" || line.total() == boxes, "{line:?}");
             if !line.cut.ends_with("as given") {
-                // a static step on boxes takes less than the 28 asked for
-                let asked = if line.case == Case::Static {
-                    boxes.max(28)
-                } else {
-                    boxes
+                // on boxes, a static step takes less than the 28 asked for, and a linear one than the 12
+                let asked = match line.case {
+                    Case::Static => boxes.max(28),
+                    Case::Linear => boxes.max(12),
+                    _ => boxes,
                 };
                 assert!(4 * line.total() <= 5 * asked, "{boxes}: {line:?}");
             }
             assert!(spike(line) < 2.6, "{line:?}");
         }
     }
-    // half of the 19 and 23 that a tolerance of 0.01 of the residual took, and next to it
+    // half of the 19 and 23 that a tolerance of 0.01 of the residual took
     let linear = |n: usize| lines[32 * (n - 1)..32 * n].iter().find(|l| l.case == Case::Linear);
-    for (n, most) in [(1, 11), (2, 12)] {
+    for (n, most) in [(1, 9), (2, 11)] {
         let line = linear(n).expect("line");
         assert!(line.total() <= most, "{line:?}");
     }

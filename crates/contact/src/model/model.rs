@@ -28,6 +28,9 @@ pub(crate) struct Model {
     pub(crate) tfeti: Tfeti,
     pub(crate) bodies: Bodies,
     pub(crate) loads: Vec<LoadResponse>,
+    /// Without contact, multipliers that [hand each load on](Self::hand_on) to the supports; solvers find what is left.
+    /// Empty with contact.
+    pub(crate) handed_on: Vec<Vec<f64>>,
     pub(crate) points: Vec<ConstrainedPoint>,
     /// What the certificate judges of the conditions that contacts state.
     pub(crate) judged: Vec<ContactPoint>,
@@ -90,7 +93,10 @@ impl Model {
             .build()?;
         let loads = std::mem::take(&mut discrete.loads).into_iter();
         let loads = loads
-            .map(|local| tfeti.load_response(&local))
+            .map(|local| match discrete.points.is_empty() {
+                true => tfeti.torn_load(&local),
+                false => tfeti.load_response(&local),
+            })
             .collect::<Result<_, _>>()?;
         tfeti.check_processes()?;
         let points = constrained_points(&discrete.points, tfeti.gluing());
@@ -111,11 +117,22 @@ impl Model {
             discrete,
             tfeti,
             loads,
+            handed_on: Vec::new(),
             points,
             set,
             moved_stiffness: OnceLock::new(),
             copies: OnceLock::new(),
         })
+    }
+
+    /// Without contact: `balance` gives multipliers that hand each load on to the supports, and its response is that of
+    /// both. One pass over the inverses does what the load and a first product would take one each for.
+    pub(crate) fn hand_on(&mut self, mut balance: impl FnMut(&[f64]) -> Vec<f64>) {
+        for load in &mut self.loads {
+            let lambda = balance(&load.coarse);
+            self.tfeti.hand_on(load, &lambda);
+            self.handed_on.push(lambda);
+        }
     }
 
     /// The feasible set with so many components that are free.

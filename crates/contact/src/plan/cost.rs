@@ -127,7 +127,7 @@ impl Estimate {
 /// Products of the first step, which starts from nothing, and of each later one: means of the benchmark.
 fn benchmark(method: MethodKind) -> [f64; 2] {
     match method {
-        MethodKind::Linear => [13.0, 4.0],
+        MethodKind::Linear => [6.0, 2.0],
         MethodKind::ActiveSet => [55.0, 13.0],
         MethodKind::SuccessiveApproximations => [700.0, 225.0],
         MethodKind::OneLoop => [600.0, 170.0],

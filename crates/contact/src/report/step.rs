@@ -12,7 +12,7 @@ pub struct StepReport {
     /// How it ended.
     pub status: StepStatus,
     /// Outer iterations under the method's own name: auxiliary problems of the fixed-point loop, outer steps of the
-    /// one inexact loop, active sets of the active-set method.
+    /// one inexact loop, active sets of the active-set method; steps of conjugate gradients without contact.
     pub iterations: usize,
     /// What it cost.
     pub counters: Counters,

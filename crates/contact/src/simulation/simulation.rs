@@ -78,14 +78,16 @@ impl Simulation {
 
     fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
         let start = Instant::now();
-        let model = Model::new(scene, &settings)?;
+        let mut model = Model::new(scene, &settings)?;
         check_equilibrium(&model)?;
         let origin = || {
             let origin = Fingerprint::new(&model);
             (origin, operator_hash(&origin, &model, &settings))
         };
         let (solver, (origin, operator)) = rayon::join(|| Solver::new(&model, &settings), origin);
-        let solver = solver?;
+        let mut solver = solver?;
+        solver.hand_on(&mut model);
+        model.tfeti.check_processes()?;
         let state = State {
             origin: Some(origin),
             ..State::default()

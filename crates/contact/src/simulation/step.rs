@@ -96,7 +96,7 @@ impl Simulation {
         let solved = self.solver.solve(task, iterate);
         model.tfeti.check_processes()?;
         let mut report = solved?;
-        let recovered = Recovered::new(model, problem, &iterate.lambda, &iterate.alpha);
+        let recovered = Recovered::new(model, problem, &problem.multipliers(&iterate.lambda), &iterate.alpha);
         model.tfeti.check_processes()?;
         let recovered = recovered?;
         report.counters.products += 1;

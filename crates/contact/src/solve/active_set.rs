@@ -5,6 +5,7 @@
 //! limit was reached, from the start of the step where the active-set method stagnated. It is proved to solve every
 //! Tresca problem.
 
+use super::coarse::not_determined;
 use super::iterate::{Iterate, Task, is_coulomb, step_status};
 use super::preconditioner::SelectedPreconditioner;
 use super::release::Exchanges;
@@ -15,10 +16,12 @@ use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::Settings;
 use crate::status::StepStatus;
-use crate::tolerances::{CONTRADICTION, SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS};
+use crate::tolerances::{CONTRADICTION, LINEAR_SLACK, SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS};
 use signorini_fem_mesh::decomposition::is_strongly_graded;
 use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
-use signorini_qp::{ActiveSetSettings, ProductSet, QpError, Status, SymmetricOperator, active_set, vector};
+use signorini_qp::{
+    ActiveSetSettings, EqualityProjector, ProductSet, QpError, Status, SymmetricOperator, active_set, vector,
+};
 use signorini_tfeti::internal::SystemPart;
 use signorini_tfeti::{ActiveSetProjector, DualOperator};
 
@@ -69,8 +72,13 @@ impl ActiveSetSolver {
         for (_, scale) in scale.iter_mut().enumerate().take(contact).filter(|s| shared(s.0)) {
             *scale *= SHARED_ROWS;
         }
+        let space = ActiveSetProjector::new(coarse, contact, model.tfeti.row_weights())?;
+        let free = space.factor().free_motions();
+        if model.points.is_empty() && !free.is_empty() {
+            return Err(not_determined(free));
+        }
         Ok(Self {
-            space: ActiveSetProjector::new(coarse, contact, model.tfeti.row_weights())?,
+            space,
             work: ActiveSetWorkspace::new(dual, &preconditioner),
             preconditioner,
             set: model.set_with(scale.len() - contact)?,
@@ -82,14 +90,32 @@ impl ActiveSetSolver {
         })
     }
 
+    /// Has the loads [handed on](Model::hand_on).
+    pub(crate) fn hand_on(&mut self, model: &mut Model) {
+        let (rows, part) = (model.tfeti.dual_dim(), &self.part);
+        let space = &mut self.space;
+        model.hand_on(|coarse| {
+            let mut whole = vec![0.0; rows];
+            match part {
+                Some(part) => {
+                    let mut own = part.take(&whole);
+                    space.repair(&mut own, coarse);
+                    part.complete(&own, &mut whole);
+                }
+                None => space.repair(&mut whole, coarse),
+            }
+            whole
+        });
+    }
+
     pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
         let mut report = StepReport::new();
-        report.counters.inequality_solves = 1;
+        report.counters.inequality_solves = usize::from(!task.model.points.is_empty());
         let start = iterate.lambda.clone();
         let status = self.active_sets(task, iterate, &mut report)?;
         report.status = step_status(status);
         task.model.tfeti.check_processes()?;
-        if !report.status.converged() {
+        if !report.status.converged() && !task.model.points.is_empty() {
             return self.fall_back(task, iterate, start, report);
         }
         iterate.known = true;
@@ -128,8 +154,10 @@ impl ActiveSetSolver {
             linear: linear.as_ref().unwrap_or(&problem.linear),
             rhs: &problem.rhs,
         };
-        let tolerance = task.settings.tolerance;
-        let [least, least_contact] = problem.least(tolerance);
+        let [least, least_contact] = problem.least(task.settings.tolerance);
+        let least = least.max(vector::norm(&problem.handed_on));
+        let contact = !model.points.is_empty();
+        let tolerance = task.settings.tolerance * if contact { 1.0 } else { LINEAR_SLACK };
         let settings = self.settings.clone().with_tolerance(tolerance);
         let settings = settings.with_error_floor(least).with_contact_error_floor(least_contact);
         let coulomb = is_coulomb(model);
@@ -168,11 +196,12 @@ impl ActiveSetSolver {
             }
             let status = match outcome {
                 Ok(outcome) => {
-                    report.iterations += outcome.active_sets;
+                    let (sets, steps) = (outcome.active_sets, outcome.cg_steps);
+                    report.iterations += if contact { sets } else { steps };
                     report.counters.products += outcome.products();
                     report.counters.preconditionings += outcome.preconditionings;
                     report.counters.coarse_factorisations += outcome.factorisations;
-                    report.counters.active_sets += outcome.active_sets;
+                    report.counters.active_sets += if contact { sets } else { 0 };
                     report.estimated_error = Some(outcome.error.max(outcome.constrained_error));
                     outcome.status
                 }

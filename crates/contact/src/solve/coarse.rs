@@ -1,10 +1,10 @@
-//! Orthonormal coarse rows, which the linear solver and the paper's methods need.
+//! Orthonormal coarse rows, which the paper's methods need.
 
 use crate::error::ContactError;
 use crate::model::Model;
 use signorini_qp::{Equality, vector};
-use signorini_tfeti::OrthonormalCoarse;
 use signorini_tfeti::internal::CoarseScratch;
+use signorini_tfeti::{FreeMotion, OrthonormalCoarse};
 
 /// The rows with their right side and work memory.
 pub(super) struct OrthonormalRows {
@@ -20,16 +20,9 @@ impl OrthonormalRows {
     /// that the loads do not push along it.
     pub(super) fn new(model: &Model) -> Result<Self, ContactError> {
         let factor = model.tfeti.coarse_factor()?;
-        let coarse = factor.orthonormal().ok_or_else(|| {
-            let motions = factor.free_motions();
-            let words: Vec<String> = motions.iter().map(ToString::to_string).collect();
-            let body = motions.first().and_then(|m| m.bodies.first());
-            ContactError::NotDetermined {
-                body: body.map_or(0, |b| b.body),
-                count: motions.len(),
-                motions: words.join("; "),
-            }
-        })?;
+        let coarse = factor
+            .orthonormal()
+            .ok_or_else(|| not_determined(factor.free_motions()))?;
         Ok(Self {
             coarse,
             rhs: vec![0.0; model.tfeti.coarse().rows()],
@@ -53,5 +46,16 @@ impl OrthonormalRows {
     pub(super) fn amplitudes(&mut self, multiplier: &[f64], alpha: &mut Vec<f64>) {
         alpha.resize(self.rhs.len(), 0.0);
         self.coarse.amplitudes(multiplier, alpha, &mut self.scratch);
+    }
+}
+
+/// The error that some rigid motions are stopped by nothing.
+pub(super) fn not_determined(motions: &[FreeMotion]) -> ContactError {
+    let words: Vec<String> = motions.iter().map(ToString::to_string).collect();
+    let body = motions.first().and_then(|m| m.bodies.first());
+    ContactError::NotDetermined {
+        body: body.map_or(0, |b| b.body),
+        count: motions.len(),
+        motions: words.join("; "),
     }
 }

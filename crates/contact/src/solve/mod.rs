@@ -1,4 +1,4 @@
-//! Solvers of one step: conjugate gradients without contact, active sets, and the paper's methods.
+//! Solvers of one step: active sets, which are conjugate gradients where there is no contact, and the paper's methods.
 //!
 //! `solver` chooses; each solver holds all its work memory. `scaling` gives every body a unit of force of its own,
 //! `release` ends what rows of one node contradict.
@@ -9,7 +9,6 @@
 mod active_set;
 mod coarse;
 mod iterate;
-mod linear;
 mod preconditioner;
 mod release;
 mod scaling;

@@ -2,19 +2,17 @@
 
 use super::active_set::ActiveSetSolver;
 use super::iterate::{Iterate, Task};
-use super::linear::LinearSolver;
 use super::scaling::scaled;
 use super::smalse::SmalseSolver;
 use crate::error::ContactError;
 use crate::model::Model;
 use crate::report::StepReport;
 use crate::settings::{Method, Settings};
+use signorini_qp::ActiveSetSettings;
 
 /// The solvers that a scene can need; only what it needs exists.
 pub(crate) enum Solver {
-    /// No contact: projected conjugate gradients.
-    Linear(Box<LinearSolver>),
-    /// The default.
+    /// The default, and whatever is chosen where there is no contact.
     ActiveSet(Box<ActiveSetSolver>),
     /// The paper's methods.
     Smalse(Box<SmalseSolver>),
@@ -24,7 +22,6 @@ pub(crate) enum Solver {
 impl std::fmt::Debug for Solver {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(match self {
-            Self::Linear(_) => "Linear",
             Self::ActiveSet(_) => "ActiveSet",
             Self::Smalse(_) => "Smalse",
         })
@@ -33,15 +30,25 @@ impl std::fmt::Debug for Solver {
 
 impl Solver {
     pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
-        if model.points.is_empty() {
-            return Ok(Self::Linear(Box::new(LinearSolver::new(model, settings)?)));
-        }
+        let active_set = |own: &ActiveSetSettings| -> Result<Self, ContactError> {
+            Ok(Self::ActiveSet(Box::new(ActiveSetSolver::new(model, settings, own)?)))
+        };
         Ok(match &settings.method {
-            Method::ActiveSet(own) => Self::ActiveSet(Box::new(ActiveSetSolver::new(model, settings, own)?)),
+            Method::ActiveSet(own) => active_set(own)?,
+            _ if model.points.is_empty() => active_set(&ActiveSetSettings::default())?,
             Method::SuccessiveApproximations { .. } | Method::OneLoop { .. } => {
                 Self::Smalse(Box::new(SmalseSolver::new(model, settings)?))
             }
         })
+    }
+
+    /// Without contact, has the loads [handed on](Model::hand_on) by the rows that hold the bodies.
+    pub(crate) fn hand_on(&mut self, model: &mut Model) {
+        if let Self::ActiveSet(solver) = self
+            && model.points.is_empty()
+        {
+            solver.hand_on(model);
+        }
     }
 
     /// Solves a step; every body in a unit of force of its own.
@@ -62,7 +69,6 @@ impl Solver {
 
     fn solve_plain(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
         match self {
-            Self::Linear(solver) => solver.solve(task, iterate),
             Self::ActiveSet(solver) => solver.solve(task, iterate),
             Self::Smalse(solver) => solver.solve(task, iterate),
         }

@@ -7,6 +7,7 @@ use crate::state::{Peak, State};
 use crate::tolerances::{REACHED, REST, ROUNDED};
 use crate::vec3::dot;
 use signorini_qp::vector;
+use std::borrow::Cow;
 
 /// Data of one step; vectors are allocated once and rewritten.
 #[derive(Debug, Default, Clone)]
@@ -29,6 +30,9 @@ pub(crate) struct StepProblem {
     pub(crate) linear: Vec<f64>,
     /// `e = -R^T f`.
     pub(crate) rhs: Vec<f64>,
+    /// Multipliers that hand the loads on to the supports, and are not what a solver finds; empty with contact. `load`
+    /// and `rhs` are those of the loads with them.
+    pub(crate) handed_on: Vec<f64>,
     /// The obstacle of each contact surface, now and an increment before; empty where none moves and no gap changes.
     pub(crate) obstacles: [Vec<Pose>; 2],
     /// The part of `c` that comes from supports, in tangential rows of points of several nodes: what supports move
@@ -69,6 +73,12 @@ impl StepProblem {
         for (factor, load) in self.factors.iter().zip(&model.loads) {
             vector::axpy(*factor, &load.dual, &mut self.load);
             vector::axpy(*factor, &load.coarse, &mut self.rhs);
+        }
+        self.handed_on.clear();
+        self.handed_on
+            .resize(if model.points.is_empty() { rows } else { 0 }, 0.0);
+        for (factor, lambda) in self.factors.iter().zip(&model.handed_on) {
+            vector::axpy(*factor, lambda, &mut self.handed_on);
         }
         let histories = model.discrete.supports.motions.iter();
         let cases: Vec<(usize, f64)> = histories.map(|h| h.value(time)).enumerate().collect();
@@ -223,6 +233,16 @@ impl StepProblem {
                 .sum::<f64>()
                 .sqrt(),
         })
+    }
+
+    /// All multipliers, from those of a solver.
+    pub(crate) fn multipliers<'a>(&self, found: &'a [f64]) -> Cow<'a, [f64]> {
+        if self.handed_on.is_empty() {
+            return Cow::Borrowed(found);
+        }
+        let mut all = found.to_vec();
+        vector::axpy(1.0, &self.handed_on, &mut all);
+        Cow::Owned(all)
     }
 
     /// The torn load, N.

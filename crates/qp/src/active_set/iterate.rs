@@ -61,14 +61,14 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         vector::copy(self.x, &mut self.work.t);
     }
 
-    /// `ax += A (x - t)`: the product follows `x` from the [mark](Iterate::mark).
-    pub(crate) fn correct(&mut self) {
+    /// `ax += A (x - t)`: the product follows `x` from the [mark](Iterate::mark), if it has moved by more than `rounding`.
+    pub(crate) fn correct(&mut self, rounding: f64) {
         let work = &mut *self.work;
         for (t, v) in work.t.iter_mut().zip(&*self.x) {
             *t = v - *t;
         }
         let operator = self.problem.operator;
-        if operator.dot(&work.t, &work.t) == 0.0 {
+        if operator.norm(&work.t) <= rounding {
             return;
         }
         operator.apply(&work.t, &mut work.ap, &mut work.operator);
@@ -161,7 +161,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         self.projector.repair(self.x, rhs);
         let moved = vector::distance(&self.x[..constrained], &self.work.t[..constrained]);
         let jump = moved.max(self.set.violation(self.x));
-        self.correct();
+        self.correct(0.0);
         jump
     }
 

@@ -121,7 +121,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             self.moved.drifted = false;
         }
         if self.moved.jump > 0.0 || joint {
-            at.correct();
+            at.correct(0.0);
         }
     }
 

@@ -176,12 +176,14 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             self.at.set_all_free()?;
         }
         self.at.projector.repair(self.at.x, self.at.problem.rhs);
+        self.peak = self.at.problem.operator.norm(self.at.x);
         if ax_known {
-            self.at.correct();
+            // without constraints nothing but rounding may have moved
+            let moves = self.at.constrained() > 0;
+            self.at.correct(if moves { 0.0 } else { ROUNDED * self.peak });
         } else {
             self.at.multiply();
         }
-        self.peak = self.at.problem.operator.norm(self.at.x);
         Ok(())
     }
 
@@ -325,7 +327,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             vector::copy(&at.work.t, at.x);
             return true;
         }
-        at.correct();
+        at.correct(0.0);
         false
     }
 

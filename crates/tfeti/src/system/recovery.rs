@@ -31,18 +31,46 @@ impl Tfeti {
     /// # Errors
     /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
     pub fn load_response(&self, local: &[Vec<f64>]) -> Result<LoadResponse, TfetiError> {
+        let mut load = self.torn_load(local)?;
+        load.dual = self.row_response(&load.force);
+        Ok(load)
+    }
+
+    /// The same without `B K+ f`: for a load that is [handed on](Self::hand_on) first.
+    ///
+    /// # Errors
+    /// As [`load_response`](Self::load_response).
+    #[doc(hidden)]
+    pub fn torn_load(&self, local: &[Vec<f64>]) -> Result<LoadResponse, TfetiError> {
         TfetiError::check_length("local vectors", local.len(), self.subdomains())?;
         for (s, part) in local.iter().enumerate() {
             self.check("local vector", part, self.torn_range(s).len())?;
         }
         let force = local.concat();
-        let mut displaced = vec![0.0; self.torn_dim()];
-        self.generalised_inverse(&force, &mut displaced);
-        let mut dual = vec![0.0; self.dual_dim()];
-        self.rows_times(&displaced, &mut dual);
         let wrench = |s: usize| self.kernel(s).transpose_times(&force[self.torn_range(s)]);
         let coarse = (0..self.subdomains()).flat_map(|s| wrench(s).map(|v| -v)).collect();
+        let dual = Vec::new();
         Ok(LoadResponse { dual, coarse, force })
+    }
+
+    /// Response to a load together with multipliers that balance it on every subdomain, `G lambda = e`: what is left to
+    /// be found are multipliers with `G lambda = 0`.
+    #[doc(hidden)]
+    pub fn hand_on(&self, load: &mut LoadResponse, lambda: &[f64]) {
+        let mut force = load.force.clone();
+        self.add_rows_transposed(lambda, &mut force);
+        load.dual = self.row_response(&force);
+        self.gluing().add_compliance(lambda, &mut load.dual);
+        load.coarse.fill(0.0);
+    }
+
+    /// `B K+ f`.
+    fn row_response(&self, force: &[f64]) -> Vec<f64> {
+        let mut displaced = vec![0.0; self.torn_dim()];
+        self.generalised_inverse(force, &mut displaced);
+        let mut dual = vec![0.0; self.dual_dim()];
+        self.rows_times(&displaced, &mut dual);
+        dual
     }
 
     /// Place of the three components of a node copy in torn vectors.
