@@ -339,7 +339,10 @@ mod tests {
     fn a_mode_without_rows_slows_nothing_down() {
         let mut all = modes();
         all.push(LooseMode::new(vec![0.0; 4], vec![0.0; 10]));
-        let (y, e) = ([-1.0, 0.5, -2.0, 0.3, 3.0, 0.5, -0.2, 0.1, 0.6, 0.6], [-4.0, 2.5, 0.6, 0.2]);
+        let (y, e) = (
+            [-1.0, 0.5, -2.0, 0.3, 3.0, 0.5, -0.2, 0.1, 0.6, 0.6],
+            [-4.0, 2.5, 0.6, 0.2],
+        );
         let a = [0.5, 0.6, 0.7, 0.8, 0.9, 0.9, 1.0, 1.0, 1.1, 1.1];
         let (set, modes) = (set(), modes());
         let (alone, balances) = Search::new(&modes, &set, &e, (&y, &a)).run();
