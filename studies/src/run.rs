@@ -122,7 +122,7 @@ fn collect(simulation: &Simulation, header: &Header, solve_seconds: f64, steps: 
         threads: rayon::current_num_threads(),
         n_s: plan.subdomains,
         n_p: plan.primal,
-        n_d: gluing.rows_full_rank(),
+        n_d: gluing.ranges().total(),
         n_d_paper: gluing.rows_as_paper(),
         it: steps.iter().map(|s| s.it).sum(),
         n_m: counters.products,

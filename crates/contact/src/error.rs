@@ -24,6 +24,14 @@ fn held_remedy(friction: Option<f64>) -> String {
     }
 }
 
+impl ContactError {
+    /// Refuses a setting unless it is good.
+    pub(crate) fn check(good: bool, name: &'static str, value: f64, range: &'static str) -> Result<(), Self> {
+        let error = Self::Setting { name, value, range };
+        good.then_some(()).ok_or(error)
+    }
+}
+
 signorini_fem_mesh::errors! {
     /// A scene or a setting is wrong, or a solver broke down. Each message names the place and the remedy.
     ///

@@ -33,7 +33,6 @@ impl StepStatus {
     }
 
     /// What to do about it; empty for a step that converged.
-    #[must_use]
     pub fn remedy(self) -> &'static str {
         match self {
             Self::Converged => "",

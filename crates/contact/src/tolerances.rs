@@ -206,6 +206,10 @@ pub(crate) const CONTRADICTION: f64 = 10.0;
 /// Safety factor between the tolerance of a step and those of SMALSE.
 pub(crate) const SMALSE_SAFETY: f64 = 0.05;
 
+/// Tolerance of a Tresca problem over the last relative change of the fixed point, and the loosest one.
+pub(crate) const INNER_FACTOR: f64 = 0.1;
+pub(crate) const INNER_LOOSEST: f64 = 1e-3;
+
 /// Relative changes below this one that do not halve are put down to the inner solve.
 pub(crate) const INNER_STALL: f64 = 1e-4;
 

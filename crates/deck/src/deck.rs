@@ -43,7 +43,6 @@ impl Deck {
     }
 
     /// The mesh. Its regions are the sections of the deck, from 0.
-    #[must_use]
     pub fn mesh(&self) -> &TetMesh {
         &self.is.mesh
     }
@@ -59,7 +58,6 @@ impl Deck {
     }
 
     /// What the deck asks for and does not get: output, settings of other solvers, penalty numbers.
-    #[must_use]
     pub fn ignored(&self) -> &[Ignored] {
         &self.ignored
     }
@@ -115,25 +113,21 @@ impl Deck {
     }
 
     /// For each support of the scene the set that it is given on, `nodes` for nodes by their numbers.
-    #[must_use]
     pub fn support_names(&self) -> &[String] {
         &self.is.support_names
     }
 
     /// The node of the mesh with a number in the deck, if the mesh has it.
-    #[must_use]
     pub fn node(&self, number: u32) -> Option<u32> {
         self.is.nodes.get(number)
     }
 
     /// The numbers that the nodes of the mesh have in the deck.
-    #[must_use]
     pub fn node_numbers(&self) -> &[u32] {
         &self.is.node_labels
     }
 
     /// The numbers that the tetrahedra have in the deck.
-    #[must_use]
     pub fn element_numbers(&self) -> &[u32] {
         &self.is.element_labels
     }

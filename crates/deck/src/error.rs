@@ -1,5 +1,6 @@
 //! What is wrong with a deck, and where.
 
+use std::borrow::Cow;
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -43,7 +44,6 @@ signorini_fem_mesh::errors! {
 
 impl DeckError {
     /// The line that is wrong, if it is one.
-    #[must_use]
     pub fn location(&self) -> Option<&Location> {
         match self {
             Self::At { location, .. } => Some(location),
@@ -52,24 +52,49 @@ impl DeckError {
     }
 
     /// The word that is wrong, if it is one.
-    #[must_use]
     pub fn word(&self) -> Option<&str> {
         match self {
             Self::At { word, .. } => Some(word),
             _ => None,
         }
     }
+}
 
-    pub(crate) fn at(location: &Location, word: &str, fault: Fault) -> Self {
-        let word = match word.char_indices().nth(WORD) {
-            Some((end, _)) => format!("{}...", &word[..end]),
-            None => word.to_owned(),
-        };
-        Self::At {
+/// A word or a line of a deck, and where it stands.
+#[derive(Debug, Clone)]
+pub(crate) struct Word {
+    pub(crate) location: Location,
+    pub(crate) text: String,
+}
+
+impl Word {
+    pub(crate) fn new(location: &Location, text: impl Into<String>) -> Self {
+        Self {
             location: location.clone(),
+            text: text.into(),
+        }
+    }
+
+    pub(crate) fn fault(&self, fault: Fault) -> DeckError {
+        let word = match self.text.char_indices().nth(WORD) {
+            Some((end, _)) => format!("{}...", &self.text[..end]),
+            None => self.text.clone(),
+        };
+        DeckError::At {
+            location: self.location.clone(),
             word,
             fault: Box::new(fault),
         }
+    }
+
+    /// Something else is wanted in its place.
+    pub(crate) fn expected(&self, what: &'static str) -> DeckError {
+        self.fault(Fault::Expected(what))
+    }
+
+    /// It cannot be had, and why.
+    pub(crate) fn cannot(&self, why: impl Into<Cow<'static, str>>) -> DeckError {
+        self.fault(Fault::Cannot(why.into()))
     }
 }
 
@@ -89,20 +114,18 @@ signorini_fem_mesh::errors! {
         RepeatedParameter = "the parameter is given twice; keep one of them";
         MissingParameter(&'static str) = "the parameter {0} is missing";
         Expected(&'static str) = "expected {0}";
-        Misplaced(&'static str) = "{0}";
         UnknownName { what: &'static str, known: Vec<String> } = "there is no {what} of this name; {}", listed(known);
         UnknownNumber(&'static str) =
             "there is no {0} with this number; check the number, or define it with *NODE or *ELEMENT";
         Repeated { first: usize, remedy: &'static str } =
             "defined a second time, first in line {first}; {remedy}";
-        Empty(&'static str) = "{0}";
         Volume =
             "the element has no volume, or is turned inside out; its first three nodes have to be counter-clockwise \
             seen from the fourth";
         FaceInside { element: u32, face: u8 } =
             "face {face} of element {element} lies inside the body, against another element; give only faces of the \
             boundary";
-        Cannot(String) = "{0}";
+        Cannot(Cow<'static, str>) = "{0}";
     }
 }
 
@@ -112,9 +135,9 @@ pub(crate) fn listed(known: &[String]) -> String {
     if known.is_empty() {
         return "there is none".into();
     }
-    let mut text = format!("there are: {}", known[..known.len().min(MOST)].join(", "));
-    if known.len() > MOST {
-        text.push_str(&format!(" and {} more", known.len() - MOST));
-    }
-    text
+    let more = match known.len().saturating_sub(MOST) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    format!("there are: {}{more}", known[..known.len().min(MOST)].join(", "))
 }

@@ -125,11 +125,6 @@
 //! let scene = deck.scene()?.with_contact(floor).with_boxes([4, 2, 2]);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
-//!
-//! # Layers
-//!
-//! `lexer` (lines to keyword cards with their places), `model` (the deck in its own words), `scene` (the same
-//! in the words of the library), each using those before it.
 
 mod deck;
 mod error;

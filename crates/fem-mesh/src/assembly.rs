@@ -4,9 +4,9 @@
 //! block over the tetrahedra around it, in ascending order. Nothing is written by two threads and
 //! no sum depends on their number, so the result is the same bit for bit for any thread count.
 
-use crate::element::{Block, Columns};
+use crate::element::{Block, TetNodes};
 use crate::material::Hooke;
-use crate::tables::{buckets, range};
+use crate::tables::Lists;
 use rayon::prelude::*;
 use sprs::CsMat;
 
@@ -81,30 +81,22 @@ where
     Ok(CsMat::new_csc((3 * nodes, 3 * nodes), indptr, indices, data))
 }
 
-/// Node numbers of a tetrahedron: four of a linear one, ten of a quadratic one.
-pub trait TetNodes: Copy + Sync + Columns {}
-
-impl TetNodes for [u32; 4] {}
-impl TetNodes for [u32; 10] {}
-
 /// Which nodes share a tetrahedron, and which tetrahedra surround each node.
 struct Pattern {
     /// Neighbours of node n, itself included, ascending: `nodes[start[n]..start[n + 1]]`.
     start: Vec<usize>,
     nodes: Vec<u32>,
-    /// Tetrahedra around node n, ascending: `tets[tet_start[n]..tet_start[n + 1]]`.
-    tet_start: Vec<u32>,
-    tets: Vec<u32>,
+    /// Tetrahedra around each node, ascending.
+    tets: Lists<u32>,
 }
 
 impl Pattern {
     fn new<const N: usize>(nodes: usize, tets: &[[u32; N]]) -> Self {
-        let (tet_start, mut around) = buckets(nodes, tets.as_flattened());
-        around.iter_mut().for_each(|place| *place /= N as u32);
+        let around = Lists::by_key(nodes, tets.as_flattened()).map(|place| place / N as u32);
         let columns: Vec<Vec<u32>> = (0..nodes)
             .into_par_iter()
             .map(|node| {
-                let own = &around[range(&tet_start, node)];
+                let own = around.of(node);
                 let mut column = vec![node as u32];
                 column.extend(own.iter().flat_map(|&t| tets[t as usize]));
                 column.sort_unstable();
@@ -119,7 +111,6 @@ impl Pattern {
         Self {
             start,
             nodes: columns.concat(),
-            tet_start,
             tets: around,
         }
     }
@@ -143,7 +134,7 @@ impl Pattern {
     ) -> Vec<Block> {
         let height = self.column(node).iter().filter(|&&n| n as usize >= node).count();
         let mut blocks = vec![[[0.0; 3]; 3]; height];
-        for &t in &self.tets[range(&self.tet_start, node)] {
+        for &t in self.tets.of(node) {
             let law = hooke(t as usize);
             tets[t as usize].lower_column(points, law, node, |row, block| {
                 let sum = &mut blocks[self.place(node, row)];

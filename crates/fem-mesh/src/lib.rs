@@ -16,7 +16,7 @@
 //! | a contact surface | [`Surface`] with a [`SurfaceFrame`] and an area at each node |
 //! | stresses, energy, errors | [`fields`] |
 //! | an estimate of the discretisation error | [`recovery::discretisation_error`], [`recovery::StrainRecovery`] |
-//! | two meshes compared | [`fields::Locator`], [`fields::energy_of_difference`] |
+//! | two meshes compared | [`fields::energy_of_difference`] |
 //! | pictures | [`output`] (feature `vtu`): VTU files and PVD series for ParaView |
 //!
 //! # Example
@@ -64,7 +64,7 @@
 //! [`MeshError`], [`brick::BrickError`], [`HookeError`], [`MaterialError`], [`AssemblyError`], [`DecompositionError`],
 //! [`SurfaceError`], [`LoadError`], [`HistoryError`], [`FieldError`]. They print their sentence with `{:?}`, too,
 //! which is what a `main` that returns one shows. Later steps rely on those checks and do not repeat them. Accessors
-//! that take an index panic if it is out of range, like a slice, and say so.
+//! that take an index panic if it is out of range, like a slice.
 //!
 //! # Parallelism
 //!
@@ -96,9 +96,9 @@ mod tolerances;
 #[doc(hidden)]
 pub mod vec3;
 
-pub use assembly::{AssemblyError, TetNodes, assemble_stiffness};
+pub use assembly::{AssemblyError, assemble_stiffness};
 pub use decomposition::{Decomposition, DecompositionError};
-pub use element::Element;
+pub use element::{Element, TetNodes};
 pub use fields::FieldError;
 #[cfg(feature = "gmsh")]
 pub use files::gmsh;
@@ -116,5 +116,5 @@ pub mod internal {
     pub use crate::loads::interpolate;
     pub use crate::mesh::{EDGES, facet_shape, tag_list};
     pub use crate::quadrature::triangle;
-    pub use crate::tables::{DisjointSets, buckets};
+    pub use crate::tables::{DisjointSets, Lists};
 }

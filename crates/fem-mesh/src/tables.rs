@@ -1,47 +1,73 @@
 //! Lists of positions by key, and sets of numbers that grow together.
 
-/// Sorts the positions of `keys`, which are below `count`, into one bucket for each key, ascending in each. Returns the
-/// start of each bucket (and the end of the last) and the positions.
-///
-/// ```
-/// let (starts, positions) = signorini_fem_mesh::internal::buckets(3, &[2, 0, 2]);
-/// assert_eq!((starts, positions), (vec![0, 1, 1, 3], vec![1, 0, 2]));
-/// ```
-///
-/// # Panics
-/// If a key is not below `count`.
-#[must_use]
-pub fn buckets(count: usize, keys: &[u32]) -> (Vec<u32>, Vec<u32>) {
-    let mut starts = vec![0; count + 1];
-    for &key in keys {
-        starts[key as usize + 1] += 1;
-    }
-    for k in 0..count {
-        starts[k + 1] += starts[k];
-    }
-    let (mut next, mut positions) = (starts.clone(), vec![0; keys.len()]);
-    for (position, &key) in keys.iter().enumerate() {
-        let at = &mut next[key as usize];
-        positions[*at as usize] = position as u32;
-        *at += 1;
-    }
-    (starts, positions)
+/// Lists one after another.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Lists<T> {
+    /// Start of each list, and the end of the last.
+    starts: Vec<u32>,
+    items: Vec<T>,
 }
 
-/// The range of one bucket, from the starts.
-pub(crate) fn range(starts: &[u32], bucket: usize) -> std::ops::Range<usize> {
-    starts[bucket] as usize..starts[bucket + 1] as usize
+impl Lists<u32> {
+    /// The positions of `keys`, which are below `count`, in a list for each key, ascending in each.
+    pub fn by_key(count: usize, keys: &[u32]) -> Self {
+        let mut starts = vec![0; count + 1];
+        for &key in keys {
+            starts[key as usize + 1] += 1;
+        }
+        for k in 0..count {
+            starts[k + 1] += starts[k];
+        }
+        let (mut next, mut items) = (starts.clone(), vec![0; keys.len()]);
+        for (position, &key) in keys.iter().enumerate() {
+            let at = &mut next[key as usize];
+            items[*at as usize] = position as u32;
+            *at += 1;
+        }
+        Self { starts, items }
+    }
+}
+
+impl<T> Lists<T> {
+    /// Start of each list among all items, and the end of the last.
+    pub fn starts(&self) -> &[u32] {
+        &self.starts
+    }
+
+    /// Number of lists.
+    pub fn count(&self) -> usize {
+        self.starts.len().saturating_sub(1)
+    }
+
+    /// All items, list by list.
+    pub fn items(&self) -> &[T] {
+        &self.items
+    }
+
+    fn range(&self, list: usize) -> std::ops::Range<usize> {
+        self.starts[list] as usize..self.starts[list + 1] as usize
+    }
+
+    /// One of the lists.
+    pub fn of(&self, list: usize) -> &[T] {
+        &self.items[self.range(list)]
+    }
+
+    pub(crate) fn of_mut(&mut self, list: usize) -> &mut [T] {
+        let range = self.range(list);
+        &mut self.items[range]
+    }
+
+    /// The same lists of what is made of the items.
+    pub fn map<U>(self, of: impl FnMut(T) -> U) -> Lists<U> {
+        Lists {
+            starts: self.starts,
+            items: self.items.into_iter().map(of).collect(),
+        }
+    }
 }
 
 /// A partition of the numbers below a count: numbers that are joined, directly or by others, are in one set.
-///
-/// ```
-/// let mut sets = signorini_fem_mesh::internal::DisjointSets::new(5);
-/// sets.join(4, 1);
-/// sets.join(1, 2);
-/// assert_eq!((sets.first(4), sets.first(3)), (1, 3));
-/// assert_eq!(sets.numbers(), [0, 1, 1, 2, 1]);
-/// ```
 #[derive(Debug, Clone)]
 pub struct DisjointSets {
     /// A smaller member of the same set, or the number itself.
@@ -50,7 +76,6 @@ pub struct DisjointSets {
 
 impl DisjointSets {
     /// Every number alone.
-    #[must_use]
     pub fn new(count: usize) -> Self {
         Self {
             parent: (0..count as u32).collect(),
@@ -58,18 +83,12 @@ impl DisjointSets {
     }
 
     /// Makes one set of those of two numbers.
-    ///
-    /// # Panics
-    /// If a number is not below the count.
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.first(a), self.first(b));
         self.parent[a.max(b)] = a.min(b) as u32;
     }
 
     /// The smallest number of the set with this one.
-    ///
-    /// # Panics
-    /// If the number is not below the count.
     pub fn first(&mut self, mut number: usize) -> usize {
         while self.parent[number] as usize != number {
             let parent = self.parent[number] as usize;
@@ -80,7 +99,6 @@ impl DisjointSets {
     }
 
     /// The set of each number; sets are counted in the order of their smallest numbers.
-    #[must_use]
     pub fn numbers(&mut self) -> Vec<u32> {
         let mut out = vec![0; self.parent.len()];
         let mut count = 0;
@@ -102,12 +120,11 @@ mod tests {
     use super::*;
 
     #[test]
-    fn buckets_keep_the_order_of_positions() {
-        let (starts, positions) = buckets(4, &[2, 0, 2, 3, 0]);
-        assert_eq!(starts, [0, 2, 2, 4, 5]);
-        assert_eq!(positions, [1, 4, 0, 2, 3]);
-        assert!(range(&starts, 0) == (0..2) && range(&starts, 1).is_empty());
-        assert_eq!(buckets(0, &[]), (vec![0], vec![]));
+    fn lists_keep_the_order_of_positions() {
+        let lists = Lists::by_key(4, &[2, 0, 2, 3, 0]);
+        let expected: [&[u32]; 4] = [&[1, 4], &[], &[0, 2], &[3]];
+        assert!((0..4).all(|key| lists.of(key) == expected[key]));
+        assert_eq!((lists.count(), Lists::by_key(0, &[]).count()), (4, 0));
     }
 
     #[test]

@@ -48,9 +48,6 @@ signorini_fem_mesh::errors! {
             first; this must be finite and positive";
         DecompositionMismatch { what: &'static str, found: usize, expected: usize } =
             "the decomposition has {found} {what}, the mesh has {expected}; decompose this mesh";
-        ForeignStiffness { subdomain: usize, found: usize, expected: usize } =
-            "copy stiffness: it has {found} nodes in subdomain {subdomain}, the decomposition has {expected}; take it \
-            from a system of this decomposition";
         Length { what: &'static str, expected: usize, found: usize } =
             "{what}: expected length {expected}, found {found}";
         NotFinite { what: &'static str, index: usize } = "{what}: entry {index} is not finite";

@@ -5,7 +5,7 @@
 //!
 //! | symbol | here | meaning |
 //! |---|---|---|
-//! | `B = (N, T, B_int, B_Dir)` | [`Gluing`] | rows and their names; dependent ones are removed and reported, or kept |
+//! | `B = (N, T, B_int, B_Dir)` | [`Gluing`] | rows and what they do; dependent ones are left out, or kept |
 //! | `F = B K+ B^T` | [`DualOperator`] | a [`SymmetricOperator`](signorini_qp::SymmetricOperator) |
 //! | `G = R^T B^T`, `e = -R^T f` | [`Coarse`], [`LoadResponse::coarse`] | equilibrium: `G lambda = e` |
 //! | `P`, `Q`, `lambda_Im` | [`CoarseFactor`] | projectors and particular solution, with row weights if wanted |
@@ -20,6 +20,7 @@
 //! Everything is immutable once built and applied without allocation with work memory that the caller owns. Products
 //! run in parallel on the current rayon pool (best from one of its threads) and have the same bits for any number of
 //! threads.
+//! Functions that take an index or a vector panic, like slices, if it is out of range or too short.
 //!
 //! ```
 //! use signorini_fem_mesh::{Decomposition, Hooke, LoadDensity, Materials, assemble_load, brick};
@@ -41,7 +42,7 @@
 //!
 //! let (f, mut product) = (system.dual(), vec![0.0; system.dual_dim()]);
 //! f.apply(&lambda, &mut product, &mut f.scratch());
-//! println!("{}", system.report());
+//! println!("{} bytes", system.report().inverse_bytes);
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
@@ -74,7 +75,7 @@ pub use projector::active_set::ActiveSetProjector;
 pub use projector::factor::CoarseFactor;
 pub use projector::orthonormal::OrthonormalCoarse;
 pub use rows::gluing::{ContactRows, Gluing, SpringRow, TangentialRows, TiedRows};
-pub use rows::kinds::RowRanges;
+pub use rows::ranges::RowRanges;
 pub use rows::side::{ContactConstraint, Side};
 pub use rows::supports::{Directions, Motion, NodalSpring, NodeSupport};
 pub use subdomain::cost::InverseSettings;
@@ -87,20 +88,20 @@ pub use system::tfeti::Tfeti;
 #[doc(hidden)]
 pub mod internal {
     pub use crate::coarse::space::CoarseScratch;
-    pub use crate::dual::operator::DualScratch;
+    pub use crate::dual::boundary::PanelScratch;
     pub use crate::preconditioner::operator::DualPreconditionerScratch;
     pub use crate::processes::threads::on_ranks;
     pub use crate::projector::active_set::ActiveSetFactor;
     pub use crate::projector::forecast::{LevelsForecast, forecast_levels};
     pub use crate::rows::contact::{PrescribedPoint, prescribed_points};
     pub use crate::rows::dependencies::Dependency;
-    pub use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
     pub use crate::rows::supports::{PrescribedDirection, prescribed_directions};
     pub use crate::subdomain::class::{Class, Classes};
     pub use crate::subdomain::copy_stiffness::CopyStiffness;
     pub use crate::subdomain::cost::{ClassReport, InverseKind};
-    pub use crate::subdomain::forecast::{Forecast, Rate};
+    pub use crate::subdomain::forecast::Forecast;
     pub use crate::subdomain::kernel::Kernel;
+    pub use crate::subdomain::rate::Rate;
     pub use crate::system::part::SystemPart;
     pub use crate::tolerances::{HELD, HELD_MEANS};
 }

@@ -173,6 +173,7 @@ fn measure(case: &Case, rate: Rate) -> Result<Line, Failure> {
         Ok(())
     })?;
     let (counters, setup) = (simulation.counters(), simulation.tfeti().report());
+    let rows = simulation.tfeti().gluing().ranges();
     Ok(Line {
         name: case.name.clone(),
         steps: plan.steps,
@@ -188,10 +189,10 @@ fn measure(case: &Case, rate: Rate) -> Result<Line, Failure> {
             solve_seconds: plan.estimate.times.map_or(f64::NAN, |t| t.steps),
         },
         truth: Cost {
-            normal_rows: setup.rows.normal.len(),
-            tangential_rows: setup.rows.tangential().len(),
-            interface_rows: setup.rows.interface.len(),
-            support_rows: setup.rows.dirichlet.len(),
+            normal_rows: rows.normal.len(),
+            tangential_rows: rows.tangential().len(),
+            interface_rows: rows.interface.len(),
+            support_rows: rows.dirichlet.len(),
             bytes: setup.inverse_bytes + setup.coarse_bytes + setup.table_bytes,
             factorisations: setup.factorisations,
             products: counters.products,

@@ -44,10 +44,10 @@ impl Stack {
         let materials = (0..self.blocks)
             .map(|k| Ok((k as u32, hooke(k)?)))
             .collect::<Result<Vec<_>, Error>>()?;
-        let top = LoadDensity::Traction {
-            tag: of(self.blocks - 1, brick::Z_MAX),
-            value: [self.push * PRESSURE, 0.0, -PRESSURE],
-        };
+        let top = LoadDensity::traction(
+            of(self.blocks - 1, brick::Z_MAX),
+            [self.push * PRESSURE, 0.0, -PRESSURE],
+        );
         let loads = vec![(top, History::ramp(1.0, 1.0)?)];
         let mut scene = Scene::new(mesh.with_regions(regions)?, Materials::new(materials)?)
             .with_support(Support::fixed(brick::Z_MIN))

@@ -1,5 +1,6 @@
 //! How large the bodies are.
 
+use rstar::{AABB, Envelope};
 use signorini_fem_mesh::internal::DisjointSets;
 use signorini_fem_mesh::{Decomposition, TetMesh};
 
@@ -12,21 +13,14 @@ pub(crate) struct Extents {
     extents: Vec<f64>,
 }
 
-/// Lower and upper corner.
-type Corners = [[f64; 3]; 2];
-
-const EMPTY: Corners = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-
-fn grow([low, high]: &mut Corners, mesh: &TetMesh, nodes: &[u32]) {
-    for &node in nodes {
-        for (c, x) in mesh.points()[node as usize].iter().enumerate() {
-            low[c] = low[c].min(*x);
-            high[c] = high[c].max(*x);
-        }
-    }
+/// The box around some nodes.
+fn around(mesh: &TetMesh, nodes: &[u32]) -> AABB<[f64; 3]> {
+    AABB::from_points(nodes.iter().map(|&node| &mesh.points()[node as usize]))
 }
 
-fn longest([low, high]: &Corners) -> f64 {
+/// The longest side of a box, m.
+fn longest(around: &AABB<[f64; 3]>) -> f64 {
+    let (low, high) = (around.lower(), around.upper());
     (0..3).map(|c| high[c] - low[c]).fold(0.0, f64::max)
 }
 
@@ -37,15 +31,15 @@ impl Extents {
         let mut sets = DisjointSets::new(subdomains.len());
         for (tet, &own) in decomposition.parts().iter().enumerate() {
             let others = mesh.neighbours(tet).into_iter().flatten();
-            let others = others.map(|t| decomposition.part_of(t)).filter(|other| *other > own);
+            let others = others.map(|t| decomposition.parts()[t]).filter(|other| *other > own);
             others.for_each(|other| sets.join(own as usize, other as usize));
         }
         let numbers = sets.numbers();
         let bodies = numbers.iter().max().map_or(0, |last| *last as usize + 1);
         let mut body = vec![0; mesh.points().len()];
-        let mut boxes = vec![EMPTY; bodies];
+        let mut boxes = vec![AABB::new_empty(); bodies];
         for (subdomain, number) in subdomains.iter().zip(numbers) {
-            grow(&mut boxes[number as usize], mesh, &subdomain.nodes);
+            boxes[number as usize].merge(&around(mesh, &subdomain.nodes));
             subdomain.nodes.iter().for_each(|&node| body[node as usize] = number);
         }
         Self {
@@ -56,15 +50,11 @@ impl Extents {
 
     /// Longest side of the box around a subdomain of a node, m: no more than that of its body.
     pub(crate) fn of_part(mesh: &TetMesh, decomposition: &Decomposition, node: u32) -> f64 {
-        let mut size = EMPTY;
-        if let Some(copy) = decomposition.copies(node as usize).first() {
-            grow(
-                &mut size,
-                mesh,
-                &decomposition.subdomains()[copy.subdomain as usize].nodes,
-            );
-        }
-        longest(&size)
+        let copy = decomposition.copies(node as usize).first();
+        copy.map_or(0.0, |copy| {
+            let subdomain = &decomposition.subdomains()[copy.subdomain as usize];
+            longest(&around(mesh, &subdomain.nodes))
+        })
     }
 
     /// Longest side of the box around the body of a node, m.

@@ -12,6 +12,8 @@ use crate::mortar::{MortarNode, mortar_nodes};
 use crate::scene::{Contact, Gap};
 use crate::tolerances::{BESIDE, COARSER, FACING, MOST_TILT, TILT};
 use rayon::prelude::*;
+use rstar::primitives::GeomWithData;
+use rstar::{AABB, RTree};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
 use std::collections::{HashMap, HashSet};
@@ -61,14 +63,14 @@ impl Paired {
     pub(super) fn new(mesh: &TetMesh, index: usize, contact: &Contact) -> Result<Self, ContactError> {
         let surface = Surface::new(mesh, &contact.tags)?;
         let fixed = fixed_frame(index, contact, &surface)?;
-        let paired = |surface, fixed, partners, swapped| Self {
+        let mut paired = Self {
             surface,
             fixed,
-            partners,
-            swapped,
+            partners: Partners::Obstacle,
+            swapped: false,
         };
         if contact.partner.is_empty() {
-            return Ok(paired(surface, fixed, Partners::Obstacle, false));
+            return Ok(paired);
         }
         if let Some(tag) = contact.tags.iter().find(|t| contact.partner.contains(t)) {
             return Err(ContactError::SameSide {
@@ -77,30 +79,27 @@ impl Paired {
             });
         }
         let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
-        if let Some(nodes) = nodes(mesh, index, contact, &surface, fixed.as_ref(), &other)? {
-            return Ok(paired(surface, fixed, Partners::Nodes(nodes), false));
+        if let Some(nodes) = nodes(mesh, index, contact, &paired.surface, fixed.as_ref(), &other)? {
+            paired.partners = Partners::Nodes(nodes);
+            return Ok(paired);
         }
         let facet = |s: &Surface| s.total_area() / s.triangles().len() as f64;
-        let swapped = facet(&other.surface) > COARSER * facet(&surface);
-        let [own, partner] = if swapped {
-            [&other.surface, &surface]
-        } else {
-            [&surface, &other.surface]
+        paired.swapped = facet(&other.surface) > COARSER * facet(&paired.surface);
+        let mortar = match paired.swapped {
+            true => mortar_nodes(mesh, &other.surface, &paired.surface),
+            false => mortar_nodes(mesh, &paired.surface, &other.surface),
         };
-        let mortar = mortar_nodes(mesh, own, partner);
         if mortar.iter().all(Option::is_none) {
-            let distance = other.distance(&surface);
-            return Err(ContactError::NoPartner {
-                contact: index,
-                distance,
-            });
+            let distance = other.distance(&paired.surface);
+            let contact = index;
+            return Err(ContactError::NoPartner { contact, distance });
         }
-        let partners = Partners::Mortar(mortar);
-        if !swapped {
-            return Ok(paired(surface, fixed, partners, false));
+        paired.partners = Partners::Mortar(mortar);
+        if paired.swapped {
+            paired.surface = other.surface;
+            paired.fixed = fixed.and_then(|frame| SurfaceFrame::from_normal(frame.normal.map(|c| -c)));
         }
-        let turned = fixed.and_then(|frame| SurfaceFrame::from_normal(frame.normal.map(|c| -c)));
-        Ok(paired(other.surface, turned, partners, true))
+        Ok(paired)
     }
 }
 
@@ -191,24 +190,20 @@ struct Viewer {
     size: f64,
 }
 
-/// The other side, with its nodes in the order of each coordinate.
+/// The other side, with its nodes in a tree.
 struct OtherSide<'a> {
     mesh: &'a TetMesh,
     surface: Surface,
-    /// Coordinate and place in the surface.
-    sorted: [Vec<(f64, u32)>; 3],
+    /// Places in the surface.
+    tree: RTree<GeomWithData<[f64; 3], u32>>,
 }
 
 impl<'a> OtherSide<'a> {
     fn new(mesh: &'a TetMesh, surface: Surface) -> Self {
-        let sorted = [0, 1, 2].map(|c| {
-            let nodes = surface.nodes().iter().zip(0..);
-            let places = nodes.map(|(&node, local)| (mesh.points()[node as usize][c], local));
-            let mut list: Vec<(f64, u32)> = places.collect();
-            list.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
-            list
-        });
-        Self { mesh, surface, sorted }
+        let nodes = surface.nodes().iter().zip(0..);
+        let places = nodes.map(|(&node, local)| GeomWithData::new(mesh.points()[node as usize], local));
+        let tree = RTree::bulk_load(places.collect());
+        Self { mesh, surface, tree }
     }
 
     /// The nearest node at the normal of a node.
@@ -219,42 +214,33 @@ impl<'a> OtherSide<'a> {
         found.map(|(partner, _)| partner)
     }
 
-    /// The nearest of the nodes that may be closer than `most`, with its distance.
+    /// The nearest of the nodes that may be closer than `most`, with its distance; of equal ones the first.
     fn nearest(&self, from: &Viewer, most: f64) -> Option<(Partner, f64)> {
-        // along the axis on which the normal is shortest
-        let slope = |c: &usize| from.normal[*c].abs();
-        let axis = (0..3).min_by(|a, b| slope(a).total_cmp(&slope(b))).unwrap_or(0);
-        let along = match slope(&axis) {
-            0.0 => 0.0,
-            slope => slope * most,
-        };
-        let reach = (BESIDE + MOST_TILT) * from.size + along;
-        let (list, at) = (&self.sorted[axis], from.at[axis]);
-        let near = list[list.partition_point(|(x, _)| *x < at - reach)..].iter();
-        let mut found = None::<(Partner, f64)>;
-        for &(_, local) in near.take_while(|(x, _)| *x <= at + reach) {
-            let Some((partner, beside)) = self.seen(from, local as usize) else {
-                continue;
-            };
-            let distance = partner.gap.hypot(beside);
+        let beside = (BESIDE + MOST_TILT) * from.size;
+        // no way along an axis at right angles to the normal, however far
+        let along = |slope: f64| if slope == 0.0 { 0.0 } else { slope.abs() * most };
+        let reach = from.normal.map(|slope| beside + along(slope));
+        let corner = |sign: f64| [0, 1, 2].map(|c| from.at[c] + sign * reach[c]);
+        let near = AABB::from_corners(corner(-1.0), corner(1.0));
+        let seen = |found: &GeomWithData<[f64; 3], u32>| {
+            let (partner, beside) = self.seen(from, found.data as usize)?;
             let tilted = (TILT * partner.gap.abs()).min(MOST_TILT * from.size);
-            let allowed = BESIDE * from.size + tilted;
-            if beside <= allowed && found.is_none_or(|f| distance < f.1) {
-                found = Some((partner, distance));
-            }
-        }
-        found
+            let distance = partner.gap.hypot(beside);
+            (beside <= BESIDE * from.size + tilted).then_some((partner, distance, found.data))
+        };
+        let found = self.tree.locate_in_envelope(&near).filter_map(seen);
+        let found = found.min_by(|a, b| a.1.total_cmp(&b.1).then(a.2.cmp(&b.2)));
+        found.map(|(partner, distance, _)| (partner, distance))
     }
 
     /// Distance to the nearest node of another surface, m, whichever way it looks.
     fn distance(&self, surface: &Surface) -> f64 {
-        let place = |node: &u32| self.mesh.points()[*node as usize];
-        let nearest = |node: &u32| {
-            let others = self.surface.nodes().iter().map(place);
-            let distances = others.map(|p| vector::distance(&p, &place(node)));
-            distances.fold(f64::INFINITY, f64::min)
+        let distance = |node: &u32| {
+            let place = self.mesh.points()[*node as usize];
+            let nearest = self.tree.nearest_neighbor(&place);
+            nearest.map_or(f64::INFINITY, |found| vector::distance(found.geom(), &place))
         };
-        surface.nodes().iter().map(nearest).fold(f64::INFINITY, f64::min)
+        surface.nodes().iter().map(distance).fold(f64::INFINITY, f64::min)
     }
 
     /// A node of this side as it is seen from a node: along its normal, and beside it. `None` if it does not face it.

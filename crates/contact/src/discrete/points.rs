@@ -183,13 +183,15 @@ fn mortar_gap(
     Ok(gap)
 }
 
-/// The contact points: of the conditions of a node those with one normal are one, in the place of the first.
+/// The contact points: of the conditions of a node those with one normal are one, in the place of the first. Beside them
+/// for each condition the point that stands for it.
 pub(super) fn points(
     scene: &Scene,
     conditions: &[ContactPoint],
     rounding: f64,
-) -> Result<Vec<ContactPoint>, ContactError> {
+) -> Result<(Vec<ContactPoint>, Vec<usize>), ContactError> {
     let mut out: Vec<ContactPoint> = Vec::with_capacity(conditions.len());
+    let mut stands = Vec::with_capacity(conditions.len());
     // points of each node that there may be others of
     let mut known: HashMap<u32, Vec<usize>> = HashMap::new();
     let mut count = vec![0u32; scene.mesh.points().len()];
@@ -197,20 +199,25 @@ pub(super) fn points(
     for condition in conditions {
         let node = condition.node();
         if count[node as usize] == 1 {
+            stands.push(out.len());
             out.push(condition.clone());
             continue;
         }
         let others = known.entry(node).or_default();
         let same = |k: &&usize| condition.sides.partner.is_none() && out[**k].is_same(condition);
         match others.iter().find(same).copied() {
-            Some(k) => join(scene, rounding, &mut out[k], condition)?,
+            Some(k) => {
+                join(scene, rounding, &mut out[k], condition)?;
+                stands.push(k);
+            }
             None => {
                 others.push(out.len());
+                stands.push(out.len());
                 out.push(condition.clone());
             }
         }
     }
-    Ok(out)
+    Ok((out, stands))
 }
 
 /// Joins a condition to a point with the same normal. Only the nearer obstacle can be touched: law, gap and area are

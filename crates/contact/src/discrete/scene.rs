@@ -13,7 +13,7 @@ use crate::scene::{Pose, Scene, check_laws};
 use signorini_fem_mesh::{Decomposition, Surface};
 use signorini_tfeti::ContactConstraint;
 use signorini_tfeti::internal::prescribed_points;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::time::{Duration, Instant};
 
 /// A scene lowered to nodes.
@@ -27,8 +27,9 @@ pub(crate) struct DiscreteScene {
     pub(crate) surfaces: Vec<Surface>,
     /// What the contacts say: each of their nodes with each of its normals.
     pub(crate) conditions: Vec<ContactPoint>,
-    /// The contact points that stand for them.
+    /// The contact points that stand for them, and for each condition which one does.
     pub(crate) points: Vec<ContactPoint>,
+    pub(crate) stands: Vec<usize>,
     /// The nodes of tied contacts.
     pub(crate) ties: Vec<ContactPoint>,
     /// Both as `tfeti` wants them.
@@ -76,7 +77,7 @@ impl DiscreteScene {
             let end = conditions.partition_point(|c| c.surface <= index);
             check_turn(scene, index, own, &conditions[first..end], &poses[index])?;
         }
-        let points = points(scene, &conditions, rounding)?;
+        let (points, stands) = points(scene, &conditions, rounding)?;
         let [softest, stiffest] = check_materials(scene)?;
         check_motions(scene, stiffest)?;
         check_gaps(scene, &conditions, &poses)?;
@@ -101,6 +102,7 @@ impl DiscreteScene {
             surfaces,
             conditions,
             points,
+            stands,
             ties,
             constraints,
             loads,
@@ -110,36 +112,21 @@ impl DiscreteScene {
             search,
         })
     }
-
-    /// The conditions that a certificate is to judge where these points (ascending places) have rows. The others are
-    /// those of nodes that supports hold, judged before anything is solved.
-    pub(crate) fn judged(&self, places: impl Iterator<Item = usize>) -> Vec<ContactPoint> {
-        let mut places = places.peekable();
-        let mut without: HashMap<u32, Vec<&ContactPoint>> = HashMap::new();
-        for (place, point) in self.points.iter().enumerate() {
-            if places.next_if_eq(&place).is_none() {
-                without.entry(point.node()).or_default().push(point);
-            }
-        }
-        let left = |c: &&ContactPoint| {
-            let points = without.get(&c.node());
-            !points.is_some_and(|p| p.iter().any(|p| p.is_same(c)))
-        };
-        self.conditions.iter().filter(left).cloned().collect()
-    }
 }
 
 /// The contact points as `tfeti` wants them, and behind them the tied ones.
 fn constraints(scene: &Scene, points: &[ContactPoint], ties: &[ContactPoint]) -> Vec<ContactConstraint> {
     let point = |p: &ContactPoint| {
         let contact = &scene.contacts[p.surface];
-        ContactConstraint::new(p.sides.own.clone(), p.frame)
-            .with_partner(p.sides.partner.clone())
-            .with_friction(contact.friction().is_some())
-            .with_moving_obstacle(contact.moves() && !contact.tied)
-            .with_tied(contact.tied)
-            .with_stretch(p.stretch)
-            .with_compliance(p.compliance.map(|c| c / p.area))
+        ContactConstraint {
+            partner: p.sides.partner.clone(),
+            friction: contact.friction().is_some(),
+            moving: contact.moves() && !contact.tied,
+            tied: contact.tied,
+            stretch: p.stretch,
+            compliance: p.compliance.map(|c| c / p.area),
+            ..ContactConstraint::new(p.sides.own.clone(), p.frame)
+        }
     };
     points.iter().chain(ties).map(point).collect()
 }

@@ -10,8 +10,6 @@ use signorini_tfeti::{ContactRows, Gluing, TangentialRows};
 pub struct ConstrainedPoint {
     /// What the scene says of it.
     pub(crate) contact: ContactPoint,
-    /// Place among all contact points of the scene.
-    pub(crate) place: usize,
     /// Normal row.
     pub(crate) row: usize,
     /// Row value over normal displacement, and nodal force over multiplier.
@@ -25,13 +23,11 @@ pub struct ConstrainedPoint {
 
 impl ConstrainedPoint {
     /// Mesh node.
-    #[must_use]
     pub fn node(&self) -> u32 {
         self.contact.node()
     }
 
     /// Its partner on another body, of several nodes the one with the largest weight; `None` for a rigid obstacle.
-    #[must_use]
     pub fn partner(&self) -> Option<u32> {
         self.contact.sides.partner()
     }
@@ -44,31 +40,26 @@ impl ConstrainedPoint {
     }
 
     /// Position of its contact surface in [`Scene::contacts`](crate::Scene::contacts).
-    #[must_use]
     pub fn surface(&self) -> usize {
         self.contact.surface
     }
 
     /// Its place, m.
-    #[must_use]
     pub fn position(&self) -> [f64; 3] {
         self.contact.position
     }
 
     /// Normal into the obstacle and two tangents.
-    #[must_use]
     pub fn frame(&self) -> &SurfaceFrame {
         &self.contact.frame
     }
 
     /// A third of the areas of the adjacent facets, m².
-    #[must_use]
     pub fn area(&self) -> f64 {
         self.contact.area
     }
 
     /// Initial distance to the obstacle or the partner, m.
-    #[must_use]
     pub fn gap(&self) -> f64 {
         self.contact.gap
     }
@@ -80,27 +71,23 @@ impl ConstrainedPoint {
 
     /// Directions of the tangential rows, with row and scale.
     pub(crate) fn along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
-        let stretch = self.stretch.into_iter();
-        self.rows_along()
-            .zip(stretch)
-            .map(|((d, row, scale), factor)| (d, row, scale * factor))
+        let rows = self.rows_along();
+        rows.map(|(direction, row, scale, factor)| (direction, row, scale * factor))
     }
 
     /// The same with lengths in which friction is the same in all directions: vectors that need not have length one,
     /// with row and the scale of the disc.
     pub(crate) fn isotropic(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
-        let stretch = self.stretch.into_iter();
-        self.rows_along()
-            .zip(stretch)
-            .map(|((d, row, scale), factor)| (d.map(|c| c * factor), row, scale))
+        let rows = self.rows_along();
+        rows.map(|(direction, row, scale, factor)| (direction.map(|c| c * factor), row, scale))
     }
 
-    /// Unit vectors, rows, and the scale of the disc.
-    fn rows_along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
-        let [a, b] = self.contact.frame.tangents;
+    /// Unit vectors, rows, the scale of the disc, and the factor of each row beside it.
+    fn rows_along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64, f64)> + use<> {
+        let ([a, b], [p, q]) = (self.contact.frame.tangents, self.stretch);
         let list = match self.tangential {
-            TangentialRows::Disc { row, scale } => [Some((a, row, scale)), Some((b, row + 1, scale))],
-            TangentialRows::Interval { row, direction, scale } => [Some((direction, row, scale)), None],
+            TangentialRows::Disc { row, scale } => [Some((a, row, scale, p)), Some((b, row + 1, scale, q))],
+            TangentialRows::Interval { row, direction, scale } => [Some((direction, row, scale, p)), None],
             _ => [None, None],
         };
         list.into_iter().flatten()
@@ -131,7 +118,6 @@ pub(super) fn constrained_points(points: &[ContactPoint], gluing: &Gluing) -> Ve
         }
         ConstrainedPoint {
             contact,
-            place: rows.point,
             row: rows.row,
             scale: rows.scale,
             tangential,

@@ -40,35 +40,14 @@ pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
             }
         }
     }
-    let Some(Escape {
-        step,
-        part,
-        mode,
-        force,
-        friction,
-    }) = worst
-    else {
-        return Ok(());
-    };
-    let node = model.discrete.decomposition.subdomains()[part.subdomain].nodes[0];
-    Err(ContactError::NotHeld {
-        step,
-        body: part.body,
-        node,
-        mode,
-        force,
-        friction,
-    })
+    worst.map_or(Ok(()), |escape| Err(escape.error))
 }
 
-/// Where and how a body gets away.
+/// A body that gets away, when and how strongly, N.
 struct Escape {
     step: usize,
-    part: Part,
-    mode: String,
     force: f64,
-    /// By which factor friction would have to be larger; `None` where no friction could hold the body.
-    friction: Option<f64>,
+    error: ContactError,
 }
 
 /// The first step at which nothing can hold a body.
@@ -114,15 +93,23 @@ fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Option
         if let Some(found) = found {
             let unit = if tresca { 1.0 } else { length };
             let force = unit * vector::dot(&found.motion, &b);
-            return Ok(Some(escape(step, motions, &found, force, cone.friction_needed(&b))));
+            let friction = cone.friction_needed(&b);
+            return Ok(Some(escape(model, step, motions, &found, (force, friction))));
         }
         approved = Some(b);
     }
     Ok(None)
 }
 
-/// The way out along a motion on which the loads work with `force`, N.
-fn escape(step: usize, motions: &[&FreeMotion], found: &Separation, force: f64, friction: Option<f64>) -> Escape {
+/// The way out along a motion on which the loads work with `force`, N; by which factor friction would have to be
+/// larger, `None` where no friction could hold the body.
+fn escape(
+    model: &Model,
+    step: usize,
+    motions: &[&FreeMotion],
+    found: &Separation,
+    (force, friction): (f64, Option<f64>),
+) -> Escape {
     // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
     let motion: Vec<f64> = found.motion.iter().map(|v| -v).collect();
     let (part, mut mode, share) = describe(motions, &motion);
@@ -130,13 +117,16 @@ fn escape(step: usize, motions: &[&FreeMotion], found: &Separation, force: f64, 
         let held = found.tresca * share;
         mode = format!("{mode}, of which Tresca friction holds {held:.3e},");
     }
-    Escape {
+    let force = force * share;
+    let error = ContactError::NotHeld {
         step,
-        part,
+        body: part.body,
+        node: model.discrete.decomposition.subdomains()[part.subdomain].nodes[0],
         mode,
-        force: force * share,
+        force,
         friction,
-    }
+    };
+    Escape { step, force, error }
 }
 
 /// What a force at each contact point does on the motions: newtons to work.

@@ -10,7 +10,6 @@ use crate::settings::Settings;
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti::internal::CopyStiffness;
 use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder, TiedRows};
-use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -32,8 +31,9 @@ pub(crate) struct Model {
     /// Empty with contact.
     pub(crate) handed_on: Vec<Vec<f64>>,
     pub(crate) points: Vec<ConstrainedPoint>,
-    /// What the certificate judges of the conditions that contacts state.
-    pub(crate) judged: Vec<ContactPoint>,
+    /// The point with rows that stands for each condition of a contact; none where supports hold the node, which was
+    /// judged before anything is solved.
+    pub(crate) standing: Vec<Option<usize>>,
     /// Set with zero radii.
     pub(crate) set: ProductSet,
     /// Stiffness of the rows of supports and ties that move.
@@ -100,6 +100,9 @@ impl Model {
             .collect::<Result<_, _>>()?;
         tfeti.check_processes()?;
         let points = constrained_points(&discrete.points, tfeti.gluing());
+        let mut with_rows = vec![None; discrete.points.len()];
+        let rows = tfeti.gluing().contact().iter().enumerate();
+        rows.for_each(|(k, rows)| with_rows[rows.point] = Some(k));
         let ranges = tfeti.gluing().ranges();
         let zeros = |count: usize| vec![0.0; count];
         let set = ProductSet::new(vec![
@@ -111,7 +114,7 @@ impl Model {
         .map_err(signorini_qp::QpError::from)?;
         Ok(Self {
             bodies: Bodies::new(&tfeti, &discrete),
-            judged: discrete.judged(points.iter().map(|p| p.place)),
+            standing: discrete.stands.iter().map(|&point| with_rows[point]).collect(),
             scene,
             plan,
             discrete,
@@ -153,20 +156,14 @@ impl Model {
         self.scene.contacts.iter().any(|c| such(c.friction()))
     }
 
-    /// How deep points are let into their obstacles or partners by normal compliance, m: by node their places and
-    /// depths.
-    pub(crate) fn given_way(&self, lambda: &[f64]) -> HashMap<u32, Vec<(usize, f64)>> {
-        let mut out: HashMap<u32, Vec<(usize, f64)>> = HashMap::new();
+    /// How deep a point is let into its obstacle or partner by normal compliance, m.
+    pub(crate) fn given_way(&self, point: usize, lambda: &[f64]) -> f64 {
         if !self.plan.effects.compliance {
-            return out;
+            return 0.0;
         }
-        let compliant = self.points.iter().enumerate();
-        for (k, point) in compliant.filter(|(_, p)| p.contact.compliance[0] > 0.0) {
-            let pressure = -point.scale * lambda[point.row] / point.area();
-            let depth = point.contact.compliance[0] * pressure;
-            out.entry(point.node()).or_default().push((k, depth));
-        }
-        out
+        let point = &self.points[point];
+        let pressure = -point.scale * lambda[point.row] / point.area();
+        point.contact.compliance[0] * pressure
     }
 
     /// Tangential rows.

@@ -1,16 +1,10 @@
 //! The part of a facet that facets of the other side cover, and the means of shape functions that multipliers take
 //! there.
 //!
-//! **Linear facets.** On the covered part `C` of a facet with corners `x_j` and linear shape functions `l_j` the dual
-//! shape functions are those combinations `psi_j` of them with `int_C psi_j l_k = delta_jk d_j`, `d_j = int_C l_j`
-//! (consistent dual basis: A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34, 2012). With `P` the
-//! L2 projection on linear functions on `C` then `int_C psi_j f = d_j (P f)(x_j)`: that is what is computed, in
-//! coordinates about the centroid of `C`, so that nothing cancels where `C` is small.
-//!
-//! **Quadratic facets** have half the sum of these and of the shape functions of the corners, as where meshes match
-//! ([`Surface::mean`](signorini_fem_mesh::Surface::mean)), and both sides are lists of nodes. They are laid into the
-//! plane of the corners of the first one, where edges may be curved, as at the rim of a disc: shape functions are those
-//! at the place, so that linear functions, and with them rotations, are the same on both sides.
+//! With `P` the L2 projection on linear functions on the covered part `C` of a facet with corners `x_j`, a multiplier
+//! takes of a function `f` the integral `int_C psi_j f = d_j (P f)(x_j)`, `d_j = int_C l_j` (docs/theory.md, section 5;
+//! A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34, 2012). On quadratic facets it is half the sum
+//! of that and of the shape function of the corner; edges that are bent in the plane, as at the rim of a disc, count.
 
 use crate::tolerances::{BENT_STEPS, COVERED, FLAT};
 use signorini_fem_mesh::internal::{facet_shape, triangle};

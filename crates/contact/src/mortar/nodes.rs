@@ -19,13 +19,8 @@ pub(crate) struct MortarNode {
     pub(crate) frame: SurfaceFrame,
 }
 
-/// For each node of a surface what it sees of the other one; `None` where that is nothing.
-///
-/// The row of node `j` is `u_j - sum_k (M_jk / D_jj) u_k` with `M_jk = int psi_j phi_k`: it vanishes where both sides
-/// move alike by a linear function, and forces of constant pressure are in balance.
-///
-/// A node that is on both sides, as the tip of a crack, does not move against itself and has no point: its shape
-/// function is shared out to the other corners of each facet, so that constant pressure still passes.
+/// For each node of a surface what it sees of the other one; `None` where that is nothing, and at nodes on both sides, as
+/// the tip of a crack: their shape functions are shared out to the other corners of each facet.
 pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface) -> Vec<Option<MortarNode>> {
     let triangles = in_order(mesh, surface);
     let covers = covers(mesh, &triangles, other);

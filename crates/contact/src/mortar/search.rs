@@ -158,10 +158,8 @@ impl OtherSide {
     fn new(mesh: &TetMesh, surface: &Surface) -> Self {
         let triangles = in_order(mesh, surface);
         let corners: Vec<Corners> = triangles.iter().map(|t| t.corners(mesh)).collect();
-        let boxes = corners.iter().enumerate().map(|(k, c)| {
-            let [low, high] = extent(c);
-            GeomWithData::new(Rectangle::from_corners(low, high), k as u32)
-        });
+        let boxes = corners.iter().zip(0..);
+        let boxes = boxes.map(|(c, k)| GeomWithData::new(Rectangle::from_aabb(AABB::from_points(c)), k));
         Self {
             tree: RTree::bulk_load(boxes.collect()),
             normals: corners
@@ -195,10 +193,7 @@ impl OtherSide {
         let own = plane.corners.map(|c| plane.space(c));
         let ways = [far, -far].map(|by| scale(by, plane.frame.normal));
         let swept: Vec<[f64; 3]> = ways.iter().flat_map(|&way| own.map(|c| add(c, way))).collect();
-        let [low, high] = extent(&swept);
-        let boxes = self
-            .tree
-            .locate_in_envelope_intersecting(&AABB::from_corners(low, high));
+        let boxes = self.tree.locate_in_envelope_intersecting(&AABB::from_points(&swept));
         let mut numbers: Vec<u32> = boxes.map(|found| found.data).collect();
         numbers.sort_unstable();
         let mut found: Vec<(Piece, f64)> = numbers
@@ -252,8 +247,3 @@ impl OtherSide {
 
 /// How much pieces may overlap, over the area of a facet: those of a curved surface do a little.
 const OVERLAP: f64 = 0.05;
-
-fn extent(points: &[[f64; 3]]) -> [[f64; 3]; 2] {
-    let of = |f: fn(f64, f64) -> f64, start: f64| [0, 1, 2].map(|c| points.iter().map(|p| p[c]).fold(start, f));
-    [of(f64::min, f64::INFINITY), of(f64::max, f64::NEG_INFINITY)]
-}

@@ -1,8 +1,9 @@
 //! The fields of bodies and contact surfaces at the end of a step, and at rest.
 
 use crate::error::ContactError;
-use crate::result::{ContactState, PointState};
+use crate::result::ContactState;
 use crate::simulation::StepResult;
+use signorini_fem_mesh::Surface;
 use signorini_fem_mesh::fields::{nodal_average, nodal_stresses, von_mises};
 use signorini_fem_mesh::output::Field;
 
@@ -53,7 +54,6 @@ impl ResultField {
     ];
 
     /// Name in the files.
-    #[must_use]
     pub fn name(self) -> &'static str {
         match self {
             Self::Displacement => "displacement",
@@ -148,19 +148,11 @@ pub(super) fn surfaces(result: &StepResult, chosen: &[ResultField], moment: Mome
         Moment::Rest => vec![[0.0; 3]; result.scene().mesh().points().len()],
         Moment::End => result.displacement(),
     };
-    (0..result.surfaces().len())
-        .map(|surface| {
-            (
-                on_surface(result, chosen, (surface, moment), &u),
-                vec![position(result, surface)],
-            )
-        })
-        .collect()
-}
-
-fn position(result: &StepResult, surface: usize) -> Field {
-    let triangles = result.surfaces()[surface].triangles().len();
-    Field::scalar("contact", vec![surface as f64; triangles])
+    let of = |(surface, own): (usize, &Surface)| {
+        let contact = Field::scalar("contact", vec![surface as f64; own.triangles().len()]);
+        (on_surface(result, chosen, (surface, moment), &u), vec![contact])
+    };
+    result.surfaces().iter().enumerate().map(of).collect()
 }
 
 fn on_surface(
@@ -173,15 +165,13 @@ fn on_surface(
     let rest = moment == Moment::Rest;
     let places = result.places_at_nodes(surface).unwrap_or_default();
     let states = &result.recovered.points;
-    let scalars = |of: &dyn Fn(usize) -> f64| places.iter().map(|p| p.map_or(0.0, of)).collect::<Vec<f64>>();
     let stressed = |f: &ResultField| matches!(f, ResultField::ContactPressure | ResultField::FrictionStress);
-    let stress = result
-        .surface_stress(surface)
-        .filter(|_| !rest && chosen.iter().any(stressed));
+    let stressed = !rest && chosen.iter().any(stressed);
+    let stress = stressed.then(|| result.surface_stress(surface)).flatten();
+    let scalar = |of: &dyn Fn(usize) -> f64, none: f64| places.iter().map(|p| p.map_or(none, of)).collect();
     let mut out = Vec::new();
     for &field in chosen {
         let name = field.name();
-        let still = || vec![[0.0; 3]; nodes.len()];
         out.push(match field {
             ResultField::Displacement => {
                 let own: Vec<[f64; 3]> = nodes.iter().map(|&n| u[n as usize]).collect();
@@ -193,26 +183,23 @@ fn on_surface(
             }
             ResultField::FrictionStress => {
                 let friction = stress.as_ref().map(|s| s.friction.clone());
-                Field::vector(name, &friction.unwrap_or_else(still))
+                Field::vector(name, &friction.unwrap_or(vec![[0.0; 3]; nodes.len()]))
             }
-            ResultField::Gap if rest => Field::scalar(name, scalars(&|k| gap_at_rest(result, k))),
-            ResultField::Gap => Field::scalar(name, scalars(&|k| states[k].gap)),
-            ResultField::Slip if rest => Field::vector(name, &still()),
+            ResultField::Gap if rest => Field::scalar(name, scalar(&|k| gap_at_rest(result, k), 0.0)),
+            ResultField::Gap => Field::scalar(name, scalar(&|k| states[k].gap, 0.0)),
             ResultField::Slip => {
-                let slips = places.iter().map(|p| p.map_or([0.0; 3], |k| slip(result, k, u)));
-                Field::vector(name, &slips.collect::<Vec<_>>())
+                let slip = |k: usize| if rest { [0.0; 3] } else { slip(result, k, u) };
+                let slips: Vec<_> = places.iter().map(|p| p.map_or([0.0; 3], slip)).collect();
+                Field::vector(name, &slips)
             }
-            ResultField::SlipRate if rest => Field::scalar(name, vec![0.0; nodes.len()]),
             ResultField::SlipRate => {
-                let touching = |k: usize| states[k].state != ContactState::Open;
-                Field::scalar(name, scalars(&|k| if touching(k) { states[k].slip_rate } else { 0.0 }))
+                let slides = |k: usize| !rest && states[k].state != ContactState::Open;
+                let rate = |k: usize| if slides(k) { states[k].slip_rate } else { 0.0 };
+                Field::scalar(name, scalar(&rate, 0.0))
             }
             ResultField::State => {
-                let number = |k: &PointState| if rest { 0.0 } else { number(k.state) };
-                Field::scalar(
-                    name,
-                    places.iter().map(|p| p.map_or(-1.0, |k| number(&states[k]))).collect(),
-                )
+                let number = |k: usize| if rest { 0.0 } else { number(states[k].state) };
+                Field::scalar(name, scalar(&number, -1.0))
             }
             _ => continue,
         });

@@ -23,29 +23,8 @@ use std::path::PathBuf;
 ///
 /// A run that is resumed goes on with its files: of a first step that is not the first of the scene, files and rows of
 /// earlier steps are kept, later ones replaced.
-///
-/// ```
-/// use signorini_contact::{Contact, Load, ResultField, ResultWriter, Scene, Settings, Simulation};
-/// use signorini_fem_mesh::{Brick, Hooke, Materials, brick};
-/// use signorini_contact::Support;
-///
-/// # let directory = tempfile::tempdir()?;
-/// # let folder = directory.path();
-/// let mesh = Brick::new([1.0; 3], [2; 3]).build()?;
-/// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(2.1e11, 0.3)?))
-///     .with_support(Support::fixed(brick::X_MIN))
-///     .with_load(Load::pressure(brick::Z_MAX, 1e6))
-///     .with_contact(Contact::rigid(brick::Z_MIN));
-/// let mut writer = ResultWriter::new(folder, "block")
-///     .with_field(ResultField::Stress)
-///     .with_probe(26);
-/// Simulation::new(scene, Settings::default())?.run(&mut writer)?;
-/// assert!(folder.join("block.pvd").is_file() && folder.join("block_contact_0001.vtu").is_file());
-/// let table = std::fs::read_to_string(folder.join("block.csv"))?;
-/// assert!(table.contains("node_26_uz") && table.lines().count() == 4);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug)]
+#[must_use]
 pub struct ResultWriter {
     folder: PathBuf,
     name: String,
@@ -71,7 +50,6 @@ struct Files {
 impl ResultWriter {
     /// Files of this name (no folders in it) in a folder, which is created if it does not exist. Nothing is written
     /// before the first step.
-    #[must_use]
     pub fn new(folder: impl Into<PathBuf>, name: impl Into<String>) -> Self {
         let name = name.into();
         Self {
@@ -86,7 +64,6 @@ impl ResultWriter {
     }
 
     /// Writes this field, too.
-    #[must_use]
     pub fn with_field(mut self, field: ResultField) -> Self {
         if !self.fields.contains(&field) {
             self.fields.push(field);
@@ -95,14 +72,12 @@ impl ResultWriter {
     }
 
     /// Writes these fields and no other.
-    #[must_use]
     pub fn with_fields(mut self, fields: impl IntoIterator<Item = ResultField>) -> Self {
         self.fields.clear();
         fields.into_iter().fold(self, Self::with_field)
     }
 
     /// A column of the table for each component of the displacement of this mesh node.
-    #[must_use]
     pub fn with_probe(mut self, node: u32) -> Self {
         if !self.probes.contains(&node) {
             self.probes.push(node);
@@ -111,21 +86,18 @@ impl ResultWriter {
     }
 
     /// Series with every `steps`-th step and the last one only; 0 for none. The table has a row for each step.
-    #[must_use]
     pub fn with_every(mut self, steps: usize) -> Self {
         self.every = steps;
         self
     }
 
     /// Another name for the series of the contact surfaces.
-    #[must_use]
     pub fn with_contact_name(mut self, name: impl Into<String>) -> Self {
         self.contact_name = name.into();
         self
     }
 
     /// The series of the bodies, to open in ParaView.
-    #[must_use]
     pub fn path(&self) -> PathBuf {
         self.folder.join(format!("{}.pvd", self.name))
     }

@@ -93,7 +93,6 @@ impl Estimate {
     }
 
     /// Bytes of everything but the vectors.
-    #[must_use]
     pub fn setup_bytes(&self) -> u64 {
         self.inverse_bytes + self.coarse_bytes + self.table_bytes
     }

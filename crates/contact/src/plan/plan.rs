@@ -8,9 +8,8 @@ use crate::error::ContactError;
 use crate::report::Warning;
 use crate::scene::Scene;
 use crate::settings::{MethodKind, Settings};
-use signorini_tfeti::Directions;
 use signorini_tfeti::internal::{Forecast, HELD, HELD_MEANS, Rate, forecast_levels};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 /// Sizes of a scene and the method chosen for it.
 ///
@@ -85,13 +84,11 @@ impl Plan {
     }
 
     /// What in the scene is allowed but hardly meant, each kind once. [`Display`](std::fmt::Display) prints them, too.
-    #[must_use]
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
 
     /// All rows that are solved for: n_d of full rank, but for nodes with several normals or in the grip of a support.
-    #[must_use]
     pub fn dual(&self) -> usize {
         self.normal_rows + self.tangential_rows + self.interface_rows + self.tied_rows + self.dirichlet_rows
     }
@@ -107,8 +104,8 @@ impl Plan {
         let decomposition = &discrete.decomposition;
         let (elements, nodes) = (scene.mesh.tets().len(), scene.mesh.points().len());
         let (subdomains, primal) = (decomposition.subdomains().len(), decomposition.torn_dofs());
-        let fixed = fixed_directions(&discrete.supports);
-        let free = |point: &ContactPoint| free_directions(point, &fixed);
+        let fixed = &discrete.supports.directions;
+        let free = |point: &ContactPoint| free_directions(point, &discrete.supports);
         let points = discrete.points.iter().filter(|point| free(point) > 0);
         let points: Vec<&ContactPoint> = points.collect();
         let rough = |p: &&&ContactPoint| scene.contacts[p.surface].friction().is_some();
@@ -129,7 +126,7 @@ impl Plan {
             tangential_rows: points.iter().filter(rough).map(|p| free(p) - 1).sum(),
             // each copy of a node but one is glued
             interface_rows: primal - 3 * nodes,
-            dirichlet_rows: fixed.values().copied().sum::<usize>() + discrete.springs.nodal.len(),
+            dirichlet_rows: fixed.values().map(Vec::len).sum::<usize>() + discrete.springs.nodal.len(),
             tied_rows: discrete.ties.iter().map(free).sum(),
             rank: settings.communicator.rank(),
             ranks: settings.communicator.size(),
@@ -177,8 +174,8 @@ impl Plan {
 
 /// Number of directions of a point that supports leave free: an estimate at nodes with one or two fixed directions; the
 /// set-up counts exactly.
-fn free_directions(point: &ContactPoint, fixed: &BTreeMap<u32, usize>) -> usize {
-    let held = |(node, _): (u32, f64)| fixed.get(&node).copied().unwrap_or(0).min(3);
+fn free_directions(point: &ContactPoint, supports: &Supports) -> usize {
+    let held = |(node, _): (u32, f64)| supports.directions.get(&node).map_or(0, Vec::len);
     let Some(partner) = &point.sides.partner else {
         return 3 - point.sides.nodes().map(held).min().unwrap_or(3);
     };
@@ -196,23 +193,4 @@ fn free_directions(point: &ContactPoint, fixed: &BTreeMap<u32, usize>) -> usize 
         (1..=3).rev().find(|&least| part(least) >= enough).unwrap_or(0)
     };
     3 - of_side(point.sides.own.nodes()).min(of_side(partner.nodes()))
-}
-
-/// Number of directions fixed at each node.
-fn fixed_directions(supports: &Supports) -> BTreeMap<u32, usize> {
-    let mut axes: BTreeMap<u32, ([bool; 3], usize)> = BTreeMap::new();
-    for support in &supports.nodes {
-        for &node in &support.nodes {
-            let entry = axes.entry(node).or_insert(([false; 3], 0));
-            match &support.directions {
-                Directions::All => entry.0 = [true; 3],
-                Directions::Components(on) => (0..3).for_each(|c| entry.0[c] |= on[c]),
-                Directions::Vectors(vectors) => entry.1 += vectors.len(),
-                _ => {}
-            }
-        }
-    }
-    let count = |(on, more): ([bool; 3], usize)| (on.iter().filter(|&&b| b).count() + more).min(3);
-    let nodes = axes.into_iter();
-    nodes.map(|(node, entry)| (node, count(entry))).collect()
 }

@@ -20,7 +20,6 @@ pub struct AlgebraicError {
 impl AlgebraicError {
     /// Error relative to the displacement, both in the energy norm: `sqrt(energy / scale)`. 0 where nothing is wrong,
     /// infinite where something is and there is no scale: no load, no displacement, no step before.
-    #[must_use]
     pub fn relative(&self) -> f64 {
         relative(self.energy, self.scale)
     }
@@ -63,27 +62,6 @@ pub struct AccuracyReport {
 
 /// Algebraic error with what earlier steps have left in it: the sum of the roots of all gaps, and the root of their
 /// sum.
-///
-/// ```
-/// use signorini_contact::{Analysis, Contact, Friction, Load, Scene, Settings, Simulation, Support};
-/// use signorini_contact::report::AccumulatedError;
-/// use signorini_fem_mesh::{brick, Brick, History, Hooke, Materials};
-///
-/// let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
-/// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(1e9, 0.3)?))
-///     .with_support(Support::fixed(brick::X_MIN))
-///     .with_load(Load::pressure(brick::Z_MAX, 1e6).with_history(History::ramp(1.0, 1.0)?))
-///     .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3)))
-///     .with_analysis(Analysis::quasistatic(1.0, 4));
-/// let mut simulation = Simulation::new(scene, Settings::default())?;
-/// let mut error = AccumulatedError::default();
-/// while !simulation.is_finished() {
-///     let result = simulation.step()?;
-///     error.add(&result);
-///     assert!(error.likely() <= error.at_most() && error.at_most() < 1e-4);
-/// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 pub struct AccumulatedError {
@@ -124,7 +102,6 @@ impl AccumulatedError {
 
     /// Likely error relative to the last displacement, both in the energy norm. 0 and infinity as in
     /// [`AlgebraicError::relative`].
-    #[must_use]
     pub fn likely(&self) -> f64 {
         relative(self.energy, self.scale)
     }
@@ -140,7 +117,6 @@ impl AccumulatedError {
     }
 
     /// The same if the errors of all steps point in the same direction.
-    #[must_use]
     pub fn at_most(&self) -> f64 {
         relative(self.sum * self.sum, self.scale)
     }

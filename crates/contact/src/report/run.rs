@@ -8,16 +8,6 @@ use crate::status::StepFailure;
 
 /// What [`Simulation::run`](crate::Simulation::run) did. Not converging is no error of a run: who needs every step to
 /// converge asks [`require_converged`](Self::require_converged).
-///
-/// ```
-/// use signorini_contact::{ContactError, Scene, Settings, Silent, Simulation};
-///
-/// fn strict(scene: Scene) -> Result<Simulation, ContactError> {
-///     let mut simulation = Simulation::new(scene, Settings::default())?;
-///     simulation.run(&mut Silent)?.require_converged()?;
-///     Ok(simulation)
-/// }
-/// ```
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 #[must_use = "steps may not have converged: see `failures`, or ask `require_converged`"]
@@ -54,23 +44,6 @@ impl RunReport {
     }
 
     /// What an engineer should look at, in scene and results: each kind once, where it was first met.
-    ///
-    /// ```
-    /// use signorini_contact::{Load, Scene, Settings, Silent, Simulation, Support, Warning};
-    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
-    ///
-    /// // loads in Pa, Young's modulus in MPa
-    /// let mesh = Brick::new([100.0, 10.0, 10.0], [10, 1, 1]).build()?;
-    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(210e3, 0.3)?))
-    ///     .with_support(Support::fixed(brick::X_MIN))
-    ///     .with_load(Load::pressure(brick::Z_MAX, 5e6));
-    /// let report = Simulation::new(scene, Settings::default())?.run(&mut Silent)?;
-    /// assert!(report.converged());
-    /// let far = |w: &Warning| matches!(w, Warning::LargeDisplacement { node: _, extent, .. } if *extent == 100.0);
-    /// assert!(report.warnings().iter().any(far));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }

@@ -24,8 +24,6 @@ pub struct StepReport {
     pub fallback: bool,
     /// Products with F that SMALSE took for that, contained in the counters.
     pub fallback_products: usize,
-    /// The solver's own estimate of the relative error of the multipliers, where it has one.
-    pub estimated_error: Option<f64>,
     /// Estimates of the step's errors; only with an [`Accuracy`](crate::Accuracy) that needs them.
     pub accuracy: Option<AccuracyReport>,
     /// The first earlier step that did not converge and on whose displacement this one depends, from 0: its slip is
@@ -44,7 +42,6 @@ impl StepReport {
             fixed_point: None,
             fallback: false,
             fallback_products: 0,
-            estimated_error: None,
             accuracy: None,
             unconverged_history: None,
         }

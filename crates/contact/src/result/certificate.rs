@@ -1,25 +1,8 @@
 //! The certificate of a step: how far the recovered displacement and the multipliers are from all conditions,
 //! in physical units. It uses no residual of any solver.
 //!
-//! | condition | violation | unit | relative to |
-//! |---|---|---|---|
-//! | equilibrium (5.26) | norm of `K u - f - Bᵀ lambda` | N | norm of the loads and of all multipliers |
-//! | continuity and supports (4.23) | largest difference between glued copies, or from a support | m | largest displacement |
-//! | gap (2.5) | largest penetration | m | largest displacement |
-//! | sign (2.5) | largest pulling normal force | N | largest contact force |
-//! | complementarity (2.5) | largest normal force times open gap | N m | largest contact force times largest displacement |
-//! | cone (2.11) | largest excess of friction over the slip bound | N | largest contact force |
-//! | direction (2.11) | largest norm of `r dU + abs(dU) lambda_T` | N m | largest contact force, or `r` if it is larger, times largest displacement |
-//!
-//! The gap is judged twice: at the contact points that have rows, and for each node of each contact against the
-//! obstacle of that contact alone. So it is the scene that is judged, not what was made of it.
-//!
-//! Each body is measured by its own loads, forces and displacements; what is reported is the worst of all. The largest
-//! displacement is that of the body or, if it is larger, what the load of a node would do to it with all others held,
-//! so that a body that does not move has a scale too.
-//!
-//! `r` is the slip bound of the step's own normal forces and `dU` the tangential difference `u_T - z`. The
-//! direction condition covers sticking as well: where `abs(lambda_T) < r`, it vanishes only with `dU`.
+//! The conditions, their violations and what each is relative to stand in docs/theory.md, section 10. Each body is measured
+//! by its own loads, forces and displacements; what is reported is the worst of all.
 
 /// A violation and the quantity it is relative to, in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -32,7 +15,6 @@ pub struct Violation {
 
 impl Violation {
     /// `value / reference`; 0 if nothing is violated.
-    #[must_use]
     pub fn relative(&self) -> f64 {
         if self.value == 0.0 {
             0.0
@@ -72,19 +54,16 @@ pub struct Certificate {
 
 impl Certificate {
     /// The largest relative violation; not a number if one is none.
-    #[must_use]
     pub fn largest(&self) -> f64 {
         self.worst().1.relative()
     }
 
     /// The condition that is violated most, relatively; one whose violation is not a number before all others.
-    #[must_use]
     pub fn worst(&self) -> (&'static str, Violation) {
         worst(self.parts())
     }
 
     /// Name and violation of every condition.
-    #[must_use]
     pub fn parts(&self) -> [(&'static str, Violation); 7] {
         [
             ("equilibrium", self.equilibrium),

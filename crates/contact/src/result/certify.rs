@@ -82,8 +82,10 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
         }
         sum / weight
     };
-    let depths = model.given_way(m.lambda);
-    for condition in &model.judged {
+    for (condition, point) in model.discrete.conditions.iter().zip(&model.standing) {
+        let Some(point) = *point else {
+            continue;
+        };
         let normal = &condition.frame.normal;
         let pose = m.problem.obstacles[0].get(condition.surface);
         let open = condition.gap_after(scene, &pose.copied().unwrap_or_default());
@@ -91,10 +93,7 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
         let open = open.unwrap_or(f64::NAN) + model.discrete.rounding;
         let sides = condition.sides.nodes();
         let way: f64 = sides.map(|(node, weight)| weight * along(node, normal)).sum();
-        let same = |(k, _): &&(usize, f64)| model.points[*k].contact.is_same(condition);
-        let own = depths.get(&condition.node());
-        let given = own.and_then(|points| points.iter().find(same)).map_or(0.0, |p| p.1);
-        let depth = way - open - given;
+        let depth = way - open - model.given_way(point, m.lambda);
         let copies = model.discrete.decomposition.copies(condition.node() as usize);
         let body = copies
             .first()

@@ -57,7 +57,6 @@ pub struct PointState {
 
 impl PointState {
     /// The whole contact force on the body, pressure and friction, N, in space. A partner has the opposite one.
-    #[must_use]
     pub fn force(&self) -> [f64; 3] {
         [0, 1, 2].map(|c| self.friction_force[c] + self.normal_force * self.normal[c])
     }

@@ -62,6 +62,13 @@ pub struct SupportReaction {
     pub nodes: Vec<NodalForce>,
 }
 
+impl SupportReaction {
+    fn add(&mut self, node: u32, arm: [f64; 3], force: [f64; 3]) {
+        self.resultant.add(arm, force);
+        self.nodes.push(NodalForce { node, force });
+    }
+}
+
 /// Forces on the body at the end of a step, and their moments about a point.
 ///
 /// Each force is counted once: at a node that several supports hold, a direction that an earlier support fixes belongs
@@ -88,7 +95,6 @@ pub struct Reactions {
 
 impl Reactions {
     /// What all supports do together.
-    #[must_use]
     pub fn of_supports(&self) -> Resultant {
         let mut sum = Resultant::default();
         self.supports.iter().for_each(|s| sum += s.resultant);
@@ -96,7 +102,6 @@ impl Reactions {
     }
 
     /// Supports, springs, contact and loads together: zero in equilibrium.
-    #[must_use]
     pub fn imbalance(&self) -> Resultant {
         let mut sum = self.of_supports();
         self.springs.iter().for_each(|s| sum += s.resultant);
@@ -219,14 +224,6 @@ pub(crate) fn reactions_about(
             contacts[tie.surface].add(arm(node), force.map(|f| weight * f));
         }
     }
-    let mut loads = Resultant::default();
-    for (factor, load) in problem.factors.iter().zip(&model.loads) {
-        let nodes = model.discrete.decomposition.subdomains().iter();
-        let nodes = nodes.flat_map(|s| &s.nodes);
-        for (&node, force) in nodes.zip(load.force.as_chunks::<3>().0) {
-            loads.add(arm(node), force.map(|f| factor * f));
-        }
-    }
     let forces = nodal_reactions(model, recovered, &ties);
     Reactions {
         point: about,
@@ -234,8 +231,21 @@ pub(crate) fn reactions_about(
         springs: by_spring(model, recovered, arm),
         contact,
         contacts,
-        loads,
+        loads: loads(model, problem, arm),
     }
+}
+
+/// What the loads do.
+pub(crate) fn loads(model: &Model, problem: &StepProblem, arm: impl Fn(u32) -> [f64; 3]) -> Resultant {
+    let mut sum = Resultant::default();
+    for (factor, load) in problem.factors.iter().zip(&model.loads) {
+        let nodes = model.discrete.decomposition.subdomains().iter();
+        let nodes = nodes.flat_map(|s| &s.nodes);
+        for (&node, force) in nodes.zip(load.force.as_chunks::<3>().0) {
+            sum.add(arm(node), force.map(|f| factor * f));
+        }
+    }
+    sum
 }
 
 /// What springs do, from the multipliers of their rows; several at a node have the parts that their stiffness has.
@@ -265,9 +275,7 @@ fn by_spring(model: &Model, recovered: &Recovered, arm: impl Fn(u32) -> [f64; 3]
                     stiffness * inverse * whole
                 }
             };
-            let force = [part[0], part[1], part[2]];
-            reaction.resultant.add(arm(node), force);
-            reaction.nodes.push(NodalForce { node, force });
+            reaction.add(node, arm(node), part.into());
         }
         reaction
     });
@@ -295,8 +303,7 @@ fn by_support(
                 let along = dot(whole, direction);
                 (0..3).for_each(|c| force[c] += along * direction[c]);
             }
-            reaction.resultant.add(arm(*node), force);
-            reaction.nodes.push(NodalForce { node: *node, force });
+            reaction.add(*node, arm(*node), force);
         }
         reaction
     };

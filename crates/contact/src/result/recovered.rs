@@ -40,7 +40,7 @@ impl Recovered {
     ) -> Result<Self, ContactError> {
         let tfeti = &model.tfeti;
         let force = problem.forces(model);
-        let [torn, residual] = tfeti.recover_with_residual(&force, lambda, alpha)?;
+        let [torn, residual] = tfeti.recover(&force, lambda, alpha)?;
         let mut rows = vec![0.0; tfeti.dual_dim()];
         tfeti.rows_times(&torn, &mut rows);
         let mut gives_way = Vec::new();

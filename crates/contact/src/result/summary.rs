@@ -87,9 +87,8 @@ pub(crate) fn summarise(
                 s.obstacle_work += force[c] * (now[c] - old[c]);
             }
             if active {
-                let [now, old] = [StepProblem::gap, StepProblem::gap_before];
-                let scene = &model.scene;
-                s.obstacle_work += point.normal_force * (now(problem, scene, touch)? - old(problem, scene, touch)?);
+                let gap = |ago| problem.gap(&model.scene, touch, ago);
+                s.obstacle_work += point.normal_force * (gap(0)? - gap(1)?);
             }
         }
     }

@@ -26,6 +26,7 @@ pub enum ContactNormal {
 
 /// A part of the boundary that may touch a rigid obstacle, or another body.
 #[derive(Debug, Clone)]
+#[must_use]
 pub struct Contact {
     pub(crate) tags: Vec<FacetTag>,
     /// Facets of the other body; none for a rigid obstacle.
@@ -55,7 +56,6 @@ const CREASE: f64 = 60.0;
 
 impl Contact {
     /// Contact of the facets with a tag with a rigid obstacle: touching, along the body's normals, no friction.
-    #[must_use]
     pub fn rigid(tag: FacetTag) -> Self {
         Self {
             tags: vec![tag],
@@ -83,23 +83,6 @@ impl Contact {
     /// curvature. Motions that turn the obstacle's normal at a node by more than 0.1 are refused
     /// ([`TurnedNormal`](ContactError::TurnedNormal)), displacements that do so at a node that touches are
     /// [warned](crate::Warning::TurnedNormal) of.
-    ///
-    /// ```
-    /// use signorini_contact::{Contact, Load, Obstacle, Scene, Settings, Simulation, Support};
-    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
-    ///
-    /// // a ball of radius 10 m pressed 0.02 m into a block from above
-    /// let ball = Obstacle::sphere([0.5, 0.5, 11.0 - 0.02], 10.0);
-    /// let mesh = Brick::new([1.0; 3], [4; 3]).build()?;
-    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(1e6, 0.3)?))
-    ///     .with_support(Support::fixed(brick::Z_MIN))
-    ///     .with_contact(Contact::obstacle(brick::Z_MAX, ball));
-    /// let mut simulation = Simulation::new(scene, Settings::default())?;
-    /// let result = simulation.step()?;
-    /// assert!(result.summary().normal_force > 1e3);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
     pub fn obstacle(tag: FacetTag, obstacle: Obstacle) -> Self {
         Self {
             gap: Gap::Obstacle,
@@ -123,30 +106,6 @@ impl Contact {
     /// the body with `tag`. The gap is measured between the sides, unless [`with_gap`](Self::with_gap) or
     /// [`with_gap_field`](Self::with_gap_field) tell another; sides may coincide. Displacements are small: a node keeps
     /// its partner, however far it slides.
-    ///
-    /// ```
-    /// use signorini_contact::{Contact, Friction, Load, Scene, Settings, Simulation, Support};
-    /// use signorini_fem_mesh::{brick, Brick, FacetTag, Hooke, Materials};
-    ///
-    /// // a cube on a cube; tags of the upper one are 10 larger
-    /// let lower = Brick::new([1.0, 1.0, 1.0], [2, 2, 2]).build()?;
-    /// let upper = lower
-    ///     .map_points(|[x, y, z]| [x, y, z + 1.0])?
-    ///     .map_tags(|tag| FacetTag(tag.0 + 10));
-    /// let top = FacetTag(brick::Z_MAX.0 + 10);
-    /// let scene = Scene::new(lower.append(&upper)?, Materials::uniform(Hooke::isotropic(1e9, 0.3)?))
-    ///     .with_support(Support::fixed(brick::Z_MIN))
-    ///     .with_load(Load::traction(top, [1e5, 0.0, -1e6]))
-    ///     .with_contact(
-    ///         Contact::between(FacetTag(brick::Z_MIN.0 + 10), brick::Z_MAX)
-    ///             .with_friction(Friction::coulomb(0.3)),
-    ///     );
-    /// let mut simulation = Simulation::new(scene, Settings::default())?;
-    /// let frame = simulation.step()?;
-    /// assert!((frame.summary().normal_force - 1e6).abs() < 10.0);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
     pub fn between(tag: FacetTag, partner: FacetTag) -> Self {
         Self {
             partner: vec![partner],
@@ -159,7 +118,6 @@ impl Contact {
     /// [between](Self::between) bodies but without contact and friction. A distance between them stays as it is, or
     /// changes as [`with_motion`](Self::with_motion) says: so is a bolt tightened that is cut across and whose parts
     /// are tied. Sides that lie in each other deeper than their facets are large are refused: they are hardly meant.
-    #[must_use]
     pub fn tied(tag: FacetTag, partner: FacetTag) -> Self {
         Self {
             partner: vec![partner],
@@ -169,7 +127,6 @@ impl Contact {
     }
 
     /// More facets of the other body. A rigid contact that was told no gap becomes one [between](Self::between) bodies.
-    #[must_use]
     pub fn with_partner(mut self, tag: FacetTag) -> Self {
         if self.partner.is_empty() && matches!(self.gap, Gap::None) && !self.tied {
             self.gap = Gap::Measured;
@@ -182,7 +139,6 @@ impl Contact {
     ///
     /// `point` lies on the plane, `outward` points out of the obstacle (up for a floor). A later
     /// [`with_gap`](Self::with_gap) takes the place of the distance to the plane; move `point` instead.
-    #[must_use]
     pub fn half_space(tag: FacetTag, point: [f64; 3], outward: [f64; 3]) -> Self {
         let length = norm(&outward);
         // what has no direction stays as it is, and is refused with the scene
@@ -193,14 +149,12 @@ impl Contact {
 
     /// More facets of the same kind. For another gap, direction or friction give a scene another contact
     /// ([`Scene::with_contact`](crate::Scene::with_contact)).
-    #[must_use]
     pub fn with_tag(mut self, tag: FacetTag) -> Self {
         self.tags.push(tag);
         self
     }
 
     /// A constant gap in m.
-    #[must_use]
     pub fn with_gap(mut self, gap: f64) -> Self {
         self.gap = if gap == 0.0 { Gap::None } else { Gap::Constant(gap) };
         self
@@ -208,7 +162,6 @@ impl Contact {
 
     /// A gap in m that depends on the place: how far a point is from the obstacle along the direction of contact. Where
     /// the obstacle [moves](Self::with_motion) along the surface it is also asked at places beside the surface.
-    #[must_use]
     pub fn with_gap_field(mut self, gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
         self.gap = Gap::Field(Function(Arc::new(gap)));
         self
@@ -219,17 +172,6 @@ impl Contact {
     /// again. Before the first step the factor is that at time 0. For obstacles and between bodies. What the growing
     /// interference does to the bodies is part of
     /// [`obstacle_work`](crate::result::ContactSummary::obstacle_work).
-    ///
-    /// ```
-    /// use signorini_contact::Contact;
-    /// use signorini_fem_mesh::{FacetTag, History};
-    ///
-    /// let (hub, shaft) = (FacetTag(1), FacetTag(2));
-    /// // 20 micrometres of interference, within a second
-    /// let fit = Contact::between(hub, shaft).with_gap(-20e-6).with_gap_history(History::ramp(1.0, 1.0)?);
-    /// # Ok::<(), signorini_fem_mesh::HistoryError>(())
-    /// ```
-    #[must_use]
     pub fn with_gap_history(mut self, history: History) -> Self {
         self.gap_history = Some(history);
         self
@@ -237,14 +179,12 @@ impl Contact {
 
     /// One direction of contact for all nodes, pointing into the obstacle: out of the body, at some contact node at
     /// least.
-    #[must_use]
     pub fn with_normal(mut self, into_obstacle: [f64; 3]) -> Self {
         self.normal = ContactNormal::Fixed(into_obstacle);
         self
     }
 
     /// The body's own outward normals as directions of contact: what [`rigid`](Self::rigid) has.
-    #[must_use]
     pub fn with_body_normals(mut self) -> Self {
         self.normal = ContactNormal::Body;
         self
@@ -254,7 +194,6 @@ impl Contact {
     /// default; in (0, 180], 180 for none). At a crease a node has one contact point for each side, so that an edge
     /// between floor and wall meets both; elsewhere one with the mean normal. Flat sides that meet at a smaller angle
     /// are to be contacts of their own. Without effect with [`with_normal`](Self::with_normal).
-    #[must_use]
     pub fn with_crease(mut self, degrees: f64) -> Self {
         self.crease = degrees;
         self
@@ -271,7 +210,6 @@ impl Contact {
     /// Friction laws that depend on the place stay with the nodes of the body.
     ///
     /// Of [tied](Self::tied) sides the first one moves against the other.
-    #[must_use]
     pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
         self.motion = Some((displacement, history));
         self
@@ -285,7 +223,6 @@ impl Contact {
     /// The gap of an [obstacle](Self::obstacle) is measured at its place at each step. A
     /// [gap field](Self::with_gap_field) turns with the obstacle. Other obstacles are taken to be of the shape of the
     /// body's surface, and their normals must not turn by more than 0.1.
-    #[must_use]
     pub fn with_rotation(mut self, point: [f64; 3], axis: [f64; 3], angle: History) -> Self {
         self.rotation = Some(Rotation { point, axis, angle });
         self
@@ -327,7 +264,6 @@ impl Contact {
     }
 
     /// The friction law. A bound or coefficient that is zero everywhere is no friction.
-    #[must_use]
     pub fn with_friction(mut self, friction: Friction) -> Self {
         self.friction = if friction.is_zero() { Friction::None } else { friction };
         self
@@ -337,42 +273,53 @@ impl Contact {
     /// to it there is `ratio` times as much. Friction forces are bounded by an ellipse, and points slide along its
     /// normal (the associated rule), not against the force. [`PointState::slip_bound`](crate::PointState::slip_bound)
     /// is the bound along the axis.
-    ///
-    /// ```
-    /// use signorini_contact::{Contact, Friction};
-    /// use signorini_fem_mesh::brick;
-    ///
-    /// // ground along x: 0.3 there, 0.6 across
-    /// let floor = Contact::rigid(brick::Z_MIN)
-    ///     .with_friction(Friction::coulomb(0.3))
-    ///     .with_friction_axis([1.0, 0.0, 0.0], 0.6 / 0.3);
-    /// ```
-    #[must_use]
     pub fn with_friction_axis(mut self, axis: [f64; 3], ratio: f64) -> Self {
         self.friction_axis = Some((axis, ratio));
         self
     }
 
+    /// Rough surfaces give way under pressure: where they touch, the distance is `-compliance` (m/Pa) times the
+    /// pressure, a negative gap in [`PointState`](crate::PointState). Zero, the default, is the exact law. The inverse
+    /// is the contact stiffness of other codes (N/m³, the slope of a linear pressure-overclosure).
+    ///
+    /// Contacts that meet a node along one direction need the same compliances and gaps. A node that a support holds
+    /// along the normal still may not be inside the obstacle: no pressure is known there.
+    pub fn with_normal_compliance(mut self, compliance: f64) -> Self {
+        self.compliance[0] = compliance;
+        self
+    }
+
+    /// Elastic slip: below the slip bound a point moves along the surface by `compliance` (m/Pa) times the friction
+    /// stress, and goes back with it. The inverse is the stick slope of other codes (N/m³). Zero, the default, is
+    /// Coulomb's law as it stands. Without friction it has no effect.
+    ///
+    /// Differences, slip rates and friction work of results are those of the slip beyond it, which is lost.
+    pub fn with_tangential_compliance(mut self, compliance: f64) -> Self {
+        self.compliance[1] = compliance;
+        self
+    }
+
+    /// Compliance along the normal and along the surface, m/Pa; zero for the exact law.
+    pub fn compliance(&self) -> [f64; 2] {
+        self.compliance
+    }
+
     /// The friction law.
-    #[must_use]
     pub fn friction(&self) -> &Friction {
         &self.friction
     }
 
     /// The tags of its facets.
-    #[must_use]
     pub fn tags(&self) -> &[FacetTag] {
         &self.tags
     }
 
     /// The distance to the obstacle.
-    #[must_use]
     pub fn gap(&self) -> &Gap {
         &self.gap
     }
 
     /// The direction in which the obstacle is met.
-    #[must_use]
     pub fn normal(&self) -> ContactNormal {
         self.normal
     }

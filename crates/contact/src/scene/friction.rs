@@ -14,6 +14,7 @@ pub type RateField = Function<dyn Fn([f64; 3], f64) -> f64 + Send + Sync>;
 /// The friction on a contact surface.
 #[derive(Debug, Clone, Default)]
 #[non_exhaustive]
+#[must_use]
 pub enum Friction {
     /// No friction: no tangential rows, no slip bounds, no history of the tangential displacement.
     #[default]
@@ -27,19 +28,16 @@ pub enum Friction {
 
 impl Friction {
     /// Coulomb friction with one coefficient everywhere.
-    #[must_use]
     pub fn coulomb(coefficient: f64) -> Self {
         Self::Coulomb(Coefficient::Constant(coefficient))
     }
 
     /// Given friction with one bound of the friction stress, in Pa.
-    #[must_use]
     pub fn tresca(stress: f64) -> Self {
         Self::Tresca(SlipBound::Stress(stress))
     }
 
     /// Whether there are tangential forces at all.
-    #[must_use]
     pub fn is_some(&self) -> bool {
         !matches!(self, Self::None)
     }
@@ -62,6 +60,7 @@ impl Friction {
 /// Bound of the friction stress in given friction.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
+#[must_use]
 pub enum SlipBound {
     /// The same bound everywhere, in Pa; a node carries it times its area.
     Stress(f64),
@@ -71,7 +70,6 @@ pub enum SlipBound {
 
 impl SlipBound {
     /// A function of the place.
-    #[must_use]
     pub fn field(f: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
         Self::StressField(Function(Arc::new(f)))
     }
@@ -93,6 +91,7 @@ impl SlipBound {
 /// rate 0 in the first step, as in the paper (after (2.11)).
 #[derive(Debug, Clone)]
 #[non_exhaustive]
+#[must_use]
 pub enum Coefficient {
     /// The same everywhere.
     Constant(f64),
@@ -115,13 +114,11 @@ pub enum Coefficient {
 
 impl Coefficient {
     /// A function of the place.
-    #[must_use]
     pub fn field(f: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
         Self::Field(Function(Arc::new(f)))
     }
 
     /// A function of place and slip rate.
-    #[must_use]
     pub fn rate_field(f: impl Fn([f64; 3], f64) -> f64 + Send + Sync + 'static) -> Self {
         Self::RateField(Function(Arc::new(f)))
     }
@@ -145,34 +142,33 @@ impl Coefficient {
 
     /// Checks what can be checked without a place; `contact` is whose law it is.
     pub(crate) fn validate(&self, contact: usize) -> Result<(), ContactError> {
-        let numbers: Vec<(&'static str, f64)> = match self {
-            Self::Field(_) | Self::RateField(_) => Vec::new(),
-            Self::Constant(value) => vec![("coefficient", *value)],
-            Self::Exponential { fixed, kinetic, .. } => {
-                vec![("coefficient at rest", *fixed), ("kinetic coefficient", *kinetic)]
+        let check = |good: bool, what, value| {
+            let error = ContactError::Coefficient { contact, what, value };
+            good.then_some(()).ok_or(error)
+        };
+        match self {
+            Self::Field(_) | Self::RateField(_) => Ok(()),
+            Self::Constant(value) => check(is_good(*value), "coefficient", *value),
+            Self::Exponential { fixed, kinetic, decay } => {
+                check(is_good(*fixed), "coefficient at rest", *fixed)?;
+                check(is_good(*kinetic), "kinetic coefficient", *kinetic)?;
+                check(is_good(*decay) && *decay > 0.0, "decay rate", *decay)
             }
             Self::Table(points) => {
-                let mut before = f64::NEG_INFINITY;
-                for (entry, &(rate, _)) in points.iter().enumerate() {
-                    if !(rate.is_finite() && rate > before) {
-                        return Err(ContactError::TableRate { contact, entry, rate });
-                    }
-                    before = rate;
-                }
                 if points.is_empty() {
                     return Err(ContactError::EmptyTable { contact });
                 }
-                points.iter().map(|p| ("coefficient in the table", p.1)).collect()
+                let mut before = f64::NEG_INFINITY;
+                for (entry, &(rate, value)) in points.iter().enumerate() {
+                    if !(rate.is_finite() && rate > before) {
+                        return Err(ContactError::TableRate { contact, entry, rate });
+                    }
+                    check(is_good(value), "coefficient in the table", value)?;
+                    before = rate;
+                }
+                Ok(())
             }
-        };
-        let mut bad = numbers.into_iter().find(|(_, value)| !is_good(*value));
-        if let Self::Exponential { decay, .. } = self
-            && !(decay.is_finite() && *decay > 0.0)
-        {
-            bad = bad.or(Some(("decay rate", *decay)));
         }
-        let error = |(what, value)| Err(ContactError::Coefficient { contact, what, value });
-        bad.map_or(Ok(()), error)
     }
 
     /// The coefficient at a node, checked. `rate` in m/s.

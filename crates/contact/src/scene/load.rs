@@ -4,6 +4,7 @@ use signorini_fem_mesh::{FacetTag, History, LoadDensity};
 
 /// A load in space and time.
 #[derive(Debug, Clone)]
+#[must_use]
 pub struct Load {
     pub(crate) density: LoadDensity,
     pub(crate) history: History,
@@ -11,7 +12,6 @@ pub struct Load {
 
 impl Load {
     /// A load that is constant in time.
-    #[must_use]
     pub fn new(density: LoadDensity) -> Self {
         Self {
             density,
@@ -20,58 +20,38 @@ impl Load {
     }
 
     /// Force per area on a tag, Pa.
-    #[must_use]
     pub fn traction(tag: FacetTag, value: [f64; 3]) -> Self {
         Self::new(LoadDensity::traction(tag, value))
     }
 
     /// A force on a tag, N, spread evenly over its facets: a bolt force on the print of its head, say. The sum of the
     /// load is this force to rounding, whatever area the facets of a curved surface have.
-    ///
-    /// ```
-    /// use signorini_contact::{Load, Scene, Settings, Simulation, Support};
-    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
-    ///
-    /// let mesh = Brick::new([1.0, 0.3, 0.7], [4, 2, 3]).build()?;
-    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(2.1e11, 0.3)?))
-    ///     .with_support(Support::fixed(brick::X_MIN))
-    ///     .with_load(Load::force(brick::X_MAX, [0.0, 0.0, -1500.0]));
-    /// let result = Simulation::new(scene, Settings::default())?.step()?;
-    /// assert!((result.load_resultant()[2] + 1500.0).abs() < 1e-9);
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
     pub fn force(tag: FacetTag, value: [f64; 3]) -> Self {
         Self::new(LoadDensity::force(tag, value))
     }
 
     /// Pressure on a tag, Pa, positive into the body.
-    #[must_use]
     pub fn pressure(tag: FacetTag, value: f64) -> Self {
         Self::new(LoadDensity::pressure(tag, value))
     }
 
     /// Force per volume, N/m³.
-    #[must_use]
     pub fn body(value: [f64; 3]) -> Self {
         Self::new(LoadDensity::body(value))
     }
 
     /// The load is multiplied by `history(t)`.
-    #[must_use]
     pub fn with_history(mut self, history: History) -> Self {
         self.history = history;
         self
     }
 
     /// The load in space.
-    #[must_use]
     pub fn density(&self) -> &LoadDensity {
         &self.density
     }
 
     /// Its factor in time.
-    #[must_use]
     pub fn history(&self) -> &History {
         &self.history
     }

@@ -8,7 +8,6 @@
 //! In: calls of builders. Out: a [`Scene`] whose data can be asked one by one.
 //! `validate` says what can be said against a scene without computing; the rest is said by `discrete`.
 
-mod compliance;
 mod contact;
 mod facets;
 mod friction;

@@ -3,8 +3,8 @@
 use super::facets::Facets;
 use crate::error::ContactError;
 use crate::tolerances::{NEWTON, RAY, STEEP};
+use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
-use std::fmt;
 use std::sync::Arc;
 
 type Field = dyn Fn([f64; 3]) -> (f64, [f64; 3]) + Send + Sync;
@@ -27,25 +27,17 @@ type Field = dyn Fn([f64; 3]) -> (f64, [f64; 3]) + Send + Sync;
 /// // a socket: the body is inside
 /// assert_eq!(ball.hollow().distance([0.0, 0.0, -1.0]), (0.5, [-0.0, -0.0, -1.0]));
 /// ```
-#[derive(Clone)]
+#[derive(Debug, Clone)]
+#[must_use]
 pub struct Obstacle {
-    field: Arc<Field>,
+    field: Function<Field>,
     /// What has to be finite and positive, with its name.
     sizes: Vec<(&'static str, f64)>,
-}
-
-impl fmt::Debug for Obstacle {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Obstacle")
-            .field("sizes", &self.sizes)
-            .finish_non_exhaustive()
-    }
 }
 
 impl Obstacle {
     /// Any shape: its signed distance (m, positive outside) and the gradient of that. Both are asked at nodes of the
     /// body, where the gradient must have length 1 to within a thousandth.
-    #[must_use]
     pub fn from_distance(
         distance: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static,
         gradient: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static,
@@ -54,7 +46,6 @@ impl Obstacle {
     }
 
     /// The half-space below a plane: `point` lies on the plane, `outward` points out of the obstacle.
-    #[must_use]
     pub fn half_space(point: [f64; 3], outward: [f64; 3]) -> Self {
         let length = norm(outward);
         let unit = outward.map(|c| c / length);
@@ -65,7 +56,6 @@ impl Obstacle {
     }
 
     /// A ball; its radius in m.
-    #[must_use]
     pub fn sphere(centre: [f64; 3], radius: f64) -> Self {
         Self::new(vec![("radius of an obstacle", radius)], move |x| {
             from_core(sub(x, centre), radius)
@@ -73,7 +63,6 @@ impl Obstacle {
     }
 
     /// An endless cylinder about an axis through `point`; its radius in m.
-    #[must_use]
     pub fn cylinder(point: [f64; 3], axis: [f64; 3], radius: f64) -> Self {
         let length = norm(axis);
         let unit = axis.map(|c| c / length);
@@ -98,7 +87,6 @@ impl Obstacle {
     }
 
     /// What this obstacle leaves free is the obstacle: of a ball a socket, of a cylinder a bore.
-    #[must_use]
     pub fn hollow(self) -> Self {
         let field = self.field;
         Self::new(self.sizes, move |x| {
@@ -111,12 +99,11 @@ impl Obstacle {
         sizes: Vec<(&'static str, f64)>,
         field: impl Fn([f64; 3]) -> (f64, [f64; 3]) + Send + Sync + 'static,
     ) -> Self {
-        let field = Arc::new(field);
+        let field = Function(Arc::new(field) as Arc<Field>);
         Self { field, sizes }
     }
 
     /// The signed distance of a place, m, and its gradient.
-    #[must_use]
     pub fn distance(&self, place: [f64; 3]) -> (f64, [f64; 3]) {
         (self.field)(place)
     }

@@ -11,6 +11,7 @@ use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 
 /// Everything that says what is to be simulated, and nothing about how.
 #[derive(Debug, Clone)]
+#[must_use]
 pub struct Scene {
     pub(crate) mesh: TetMesh,
     pub(crate) materials: Materials,
@@ -24,7 +25,6 @@ pub struct Scene {
 
 impl Scene {
     /// A free body without loads: static, cut into subdomains as its size asks for.
-    #[must_use]
     pub fn new(mesh: TetMesh, materials: Materials) -> Self {
         Self {
             mesh,
@@ -39,21 +39,18 @@ impl Scene {
     }
 
     /// Adds a support.
-    #[must_use]
     pub fn with_support(mut self, support: Support) -> Self {
         self.supports.push(support);
         self
     }
 
     /// Adds an elastic foundation.
-    #[must_use]
     pub fn with_spring(mut self, spring: Spring) -> Self {
         self.springs.push(spring);
         self
     }
 
     /// Adds a load.
-    #[must_use]
     pub fn with_load(mut self, load: Load) -> Self {
         self.loads.push(load);
         self
@@ -66,22 +63,13 @@ impl Scene {
     /// Where the directions are the same (to 1.4e-6 radians) it has one for all of them: that of the obstacle that is
     /// nearer, with its law and area; where both are as near, with the law of the contact that was added first and
     /// the area of both.
-    #[must_use]
     pub fn with_contact(mut self, contact: Contact) -> Self {
         self.contacts.push(contact);
         self
     }
 
-    /// One contact surface in the place of those there are; `None` for no contact.
-    #[must_use]
-    pub fn replace_contact(mut self, contact: Option<Contact>) -> Self {
-        self.contacts = contact.into_iter().collect();
-        self
-    }
-
     /// Cuts the body into boxes. Empty boxes are dropped and disconnected ones split (see
     /// [`Decomposition::boxes`]), so any mesh and any positive counts will do.
-    #[must_use]
     pub fn with_boxes(mut self, boxes: [usize; 3]) -> Self {
         self.partition = Partition::Boxes(boxes);
         self
@@ -90,14 +78,12 @@ impl Scene {
     /// Cuts the body by part numbers, one an element, those of a graph partitioner for instance. Ragged parts take two
     /// to six times the iterations of compact ones: tetrahedra at the interfaces may change sides, and crumbs and loose
     /// pieces join their neighbours (see [`Partition::Parts`]).
-    #[must_use]
     pub fn with_parts(mut self, parts: Vec<u32>) -> Self {
         self.partition = Partition::Parts(parts);
         self
     }
 
     /// Cuts the body by part numbers, one an element, and leaves the parts as they are.
-    #[must_use]
     pub fn with_parts_as_given(mut self, parts: Vec<u32>) -> Self {
         self.partition = Partition::AsGiven(parts);
         self
@@ -105,64 +91,54 @@ impl Scene {
 
     /// Cuts the body into so many subdomains of similar size, as compact as can be; without a partition the number
     /// follows from the size.
-    #[must_use]
     pub fn with_subdomains(mut self, count: usize) -> Self {
         self.partition = Partition::Subdomains(count);
         self
     }
 
     /// Leaves each body in one piece. Factors of large bodies are expensive, and their contact needs more iterations.
-    #[must_use]
     pub fn without_subdomains(mut self) -> Self {
         self.partition = Partition::Whole;
         self
     }
 
     /// Sets the analysis; static by default.
-    #[must_use]
     pub fn with_analysis(mut self, analysis: Analysis) -> Self {
         self.analysis = analysis;
         self
     }
 
     /// The mesh.
-    #[must_use]
     pub fn mesh(&self) -> &TetMesh {
         &self.mesh
     }
 
     /// The materials.
-    #[must_use]
     pub fn materials(&self) -> &Materials {
         &self.materials
     }
 
     /// The supports, in the order in which they were added.
-    #[must_use]
     pub fn supports(&self) -> &[Support] {
         &self.supports
     }
 
     /// The loads, in the order in which they were added.
-    #[must_use]
     pub fn loads(&self) -> &[Load] {
         &self.loads
     }
 
     /// How the body is cut.
-    #[must_use]
     pub fn partition(&self) -> &Partition {
         &self.partition
     }
 
     /// The contact surfaces.
-    #[must_use]
     pub fn contacts(&self) -> &[Contact] {
         &self.contacts
     }
 
     /// The analysis.
-    #[must_use]
     pub fn analysis(&self) -> &Analysis {
         &self.analysis
     }

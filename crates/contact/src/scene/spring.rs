@@ -12,23 +12,8 @@ use signorini_fem_mesh::FacetTag;
 /// order 2 at mid-nodes only. Where a support fixes a direction of a node the spring acts at right angles to it. Nodes
 /// that are contact nodes as well (edges) may be; where springs are very soft or stiff against the body they cost many
 /// products there.
-///
-/// ```
-/// use signorini_contact::{Load, Scene, Settings, Simulation, Spring};
-/// use signorini_fem_mesh::{brick, Brick, Hooke};
-///
-/// let mesh = Brick::new([1.0; 3], [3; 3]).build()?;
-/// let scene = Scene::new(mesh, Hooke::isotropic(2.1e11, 0.3)?.into())
-///     .with_spring(Spring::components(brick::Z_MIN, [1e7, 1e7, 1e8]))
-///     .with_load(Load::pressure(brick::Z_MAX, 1e6));
-/// let result = Simulation::new(scene, Settings::default())?.step()?;
-/// // 1 MPa on 100 MPa/m: down by a centimetre
-/// assert!(result.displacement().iter().all(|u| (u[2] + 0.01).abs() < 1e-4));
-/// let ground = result.reactions().springs[0].resultant.force;
-/// assert!((ground[2] - 1e6).abs() < 1.0);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[must_use]
 pub struct Spring {
     pub(crate) tag: FacetTag,
     pub(crate) stiffness: Stiffness,
@@ -43,7 +28,6 @@ pub(crate) enum Stiffness {
 
 impl Spring {
     /// Along the normal of each facet.
-    #[must_use]
     pub fn normal(tag: FacetTag, stiffness: f64) -> Self {
         Self {
             tag,
@@ -52,7 +36,6 @@ impl Spring {
     }
 
     /// Along x, y and z; zero for none.
-    #[must_use]
     pub fn components(tag: FacetTag, stiffness: [f64; 3]) -> Self {
         Self {
             tag,

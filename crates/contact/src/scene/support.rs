@@ -39,6 +39,7 @@ impl<const N: usize> From<[u32; N]> for Place {
 
 /// A support: directions of nodes that are fixed, or moved in a prescribed way.
 #[derive(Debug, Clone)]
+#[must_use]
 pub struct Support {
     pub(crate) place: Place,
     pub(crate) directions: Directions,
@@ -61,13 +62,11 @@ impl Support {
     /// let bolt = Support::components(bolt, [true, true, false]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    #[must_use]
     pub fn fixed(place: impl Into<Place>) -> Self {
         Self::partial(place, Directions::All)
     }
 
     /// Some directions are zero.
-    #[must_use]
     pub fn partial(place: impl Into<Place>, directions: Directions) -> Self {
         Self {
             place: place.into(),
@@ -77,7 +76,6 @@ impl Support {
     }
 
     /// Single components (x, y, z) are zero.
-    #[must_use]
     pub fn components(place: impl Into<Place>, components: [bool; 3]) -> Self {
         Self::partial(place, Directions::Components(components))
     }
@@ -89,33 +87,28 @@ impl Support {
     ///
     /// Supports that share nodes must move them alike: equal displacements with equal histories, which are equal tables
     /// or clones of one function.
-    #[must_use]
     pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
         self.motion = Some((vec![displacement], history));
         self
     }
 
     /// The same with one displacement a node, in the order of the nodes (ascending for a tag).
-    #[must_use]
     pub fn with_motions(mut self, displacements: Vec<[f64; 3]>, history: History) -> Self {
         self.motion = Some((displacements, history));
         self
     }
 
     /// Where it acts.
-    #[must_use]
     pub fn place(&self) -> &Place {
         &self.place
     }
 
     /// The directions that it fixes.
-    #[must_use]
     pub fn directions(&self) -> &Directions {
         &self.directions
     }
 
     /// Its displacements (m; one for all nodes or one a node) and their history; `None` if it does not move.
-    #[must_use]
     pub fn motion(&self) -> Option<(&[[f64; 3]], &History)> {
         let (values, history) = self.motion.as_ref()?;
         Some((values, history))

@@ -26,34 +26,29 @@ impl DifferenceFormula {
     /// [`ContactError::Formula`] unless `alpha > 0`, `alpha + beta + gamma = 0` (a body at rest has rate 0) and
     /// `-beta - 2 gamma = 1` (uniform motion has its rate).
     pub fn new(alpha: f64, beta: f64, gamma: f64) -> Result<Self, ContactError> {
-        let error = |rule| {
-            Err(ContactError::Formula {
-                alpha,
-                beta,
-                gamma,
-                rule,
-            })
+        let rule = if !(alpha.is_finite() && beta.is_finite() && gamma.is_finite() && alpha > 0.0) {
+            "alpha must be positive and all three finite"
+        } else if (alpha + beta + gamma).abs() > ROUNDING * alpha {
+            "the sum must be 0"
+        } else if (-beta - 2.0 * gamma - 1.0).abs() > ROUNDING {
+            "-beta - 2 gamma must be 1"
+        } else {
+            return Ok(Self([alpha, beta, gamma]));
         };
-        if !(alpha.is_finite() && beta.is_finite() && gamma.is_finite() && alpha > 0.0) {
-            return error("alpha must be positive and all three finite");
-        }
-        if (alpha + beta + gamma).abs() > ROUNDING * alpha {
-            return error("the sum must be 0");
-        }
-        if (-beta - 2.0 * gamma - 1.0).abs() > ROUNDING {
-            return error("-beta - 2 gamma must be 1");
-        }
-        Ok(Self([alpha, beta, gamma]))
+        Err(ContactError::Formula {
+            alpha,
+            beta,
+            gamma,
+            rule,
+        })
     }
 
     /// The weights `alpha`, `beta`, `gamma` of the new displacement, the last one and the one before.
-    #[must_use]
     pub fn weights(&self) -> [f64; 3] {
         self.0
     }
 
     /// Whether only one old displacement is needed.
-    #[must_use]
     pub fn is_one_step(&self) -> bool {
         self.0[2] == 0.0
     }
@@ -71,7 +66,6 @@ impl DifferenceFormula {
     }
 
     /// `z` of section 3: the displacement at which the difference vanishes, `-(beta u[i] + gamma u[i-1]) / alpha`.
-    #[must_use]
     pub fn offset(&self, last: f64, before: f64) -> f64 {
         let [alpha, beta, gamma] = self.0;
         -(beta * last + gamma * before) / alpha
@@ -88,6 +82,7 @@ impl Default for DifferenceFormula {
 /// Whether the scene has a history.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub enum Analysis {
     /// One state of equilibrium at one time; friction acts against the displacement from the rest position.
     Static {
@@ -144,7 +139,6 @@ const MOST: usize = 100_000_000;
 
 impl Analysis {
     /// One state at time 1.
-    #[must_use]
     pub fn statics() -> Self {
         Self::Static { time: 1.0 }
     }
@@ -152,7 +146,6 @@ impl Analysis {
     /// `steps` equal steps up to `end` seconds, by backward Euler. The paper's [`PAPER`](DifferenceFormula::PAPER) is
     /// asked for with [`with_formula`](Self::with_formula): it remembers the step before the last, so that points
     /// that slid creep on where loads are held, and its first step sees one and a half times the slip rate.
-    #[must_use]
     pub fn quasistatic(end: f64, steps: usize) -> Self {
         // none, which is refused when the scene is used
         let steps = if steps > MOST { 0 } else { steps };
@@ -164,7 +157,6 @@ impl Analysis {
     }
 
     /// The same with another difference formula (static scenes have none).
-    #[must_use]
     pub fn with_formula(mut self, new: DifferenceFormula) -> Self {
         if let Self::Quasistatic { formula, .. } = &mut self {
             *formula = new;
@@ -190,39 +182,30 @@ impl Analysis {
     }
 
     /// Number of steps.
-    #[must_use]
     pub fn steps(&self) -> usize {
         self.times().len()
     }
 
     /// Time to which a step leads, counted from 0, s.
-    #[must_use]
     pub fn time(&self, step: usize) -> Option<f64> {
         self.times().get(step).copied()
     }
 
-    /// Length of a step, s; `None` for a static scene.
-    fn step_size(&self, step: usize) -> Option<f64> {
-        let Self::Quasistatic { times, .. } = self else {
-            return None;
-        };
-        let end = times.get(step)?;
-        Some(end - step.checked_sub(1).map_or(0.0, |before| times[before]))
-    }
-
     /// A whole step; `None` after the last.
     pub(crate) fn increment(&self, step: usize) -> Option<Increment> {
+        let end = self.time(step)?;
+        let start = step.checked_sub(1).and_then(|before| self.time(before));
+        let formula = self.formula();
         Some(Increment {
             index: step,
-            start: step.checked_sub(1).and_then(|before| self.time(before)),
-            end: self.time(step)?,
-            length: self.step_size(step),
-            formula: self.formula(),
+            start,
+            end,
+            length: formula.map(|_| end - start.unwrap_or(0.0)),
+            formula,
         })
     }
 
     /// The difference formula; `None` for a static scene.
-    #[must_use]
     pub fn formula(&self) -> Option<DifferenceFormula> {
         match self {
             Self::Static { .. } => None,

@@ -110,47 +110,30 @@ impl Scene {
         if (contact.moves() && !contact.tied || contact.shape.as_ref().is_some()) && !contact.partner.is_empty() {
             return Err(ContactError::MovedPartner { contact: index });
         }
-        if let Some((displacement, _)) = contact.motion
-            && let Some(value) = displacement.iter().find(|c| !c.is_finite())
-        {
-            return Err(ContactError::Setting {
-                name: "displacement of the obstacle",
-                value: *value,
-                range: "of finite numbers",
-            });
+        let check = ContactError::check;
+        if let Some((displacement, _)) = &contact.motion {
+            let name = "displacement of the obstacle";
+            let mut values = displacement.iter();
+            values.try_for_each(|c| check(c.is_finite(), name, *c, "of finite numbers"))?;
         }
         if let Some(Rotation { point, axis, .. }) = &contact.rotation {
+            let name = "length of the axis of rotation of an obstacle";
             let length = norm(*axis);
-            if !(length.is_finite() && length > 0.0 && is_finite(*point)) {
-                return Err(ContactError::Setting {
-                    name: "length of the axis of rotation of an obstacle",
-                    value: length,
-                    range: "(0, inf), through a finite point",
-                });
-            }
+            let good = length.is_finite() && length > 0.0 && is_finite(*point);
+            check(good, name, length, "(0, inf), through a finite point")?;
         }
         if let Some((name, value)) = contact.shape.as_ref().and_then(Obstacle::flaw) {
-            let range = "(0, inf)";
-            return Err(ContactError::Setting { name, value, range });
+            check(false, name, value, "(0, inf)")?;
         }
         if let Some(&value) = contact.compliance.iter().find(|c| !(c.is_finite() && **c >= 0.0)) {
             return Err(ContactError::Compliance { contact: index, value });
         }
-        if !(contact.crease > 0.0 && contact.crease <= 180.0) {
-            return Err(ContactError::Setting {
-                name: "crease",
-                value: contact.crease,
-                range: "(0, 180]",
-            });
-        }
-        if let Some((_, value)) = contact.friction_axis
-            && !(value.is_finite() && value > 0.0)
-        {
-            return Err(ContactError::Setting {
-                name: "ratio of friction across its axis",
-                value,
-                range: "(0, inf): an ellipse has two axes",
-            });
+        let crease = contact.crease;
+        check(crease > 0.0 && crease <= 180.0, "crease", crease, "(0, 180]")?;
+        if let Some((_, ratio)) = contact.friction_axis {
+            let name = "ratio of friction across its axis";
+            let good = ratio.is_finite() && ratio > 0.0;
+            check(good, name, ratio, "(0, inf): an ellipse has two axes")?;
         }
         if let Friction::Coulomb(coefficient) = &contact.friction {
             coefficient.validate(index)?;
@@ -159,16 +142,13 @@ impl Scene {
     }
 }
 
-/// Refuses a value of a history that is none; `place` is what has it, and its position in the scene.
-fn check_value(place: (&'static str, usize), time: f64, value: f64) -> Result<(), ContactError> {
-    let (what, index) = place;
-    if value.is_finite() {
-        return Ok(());
-    }
-    Err(ContactError::HistoryValue {
+/// Refuses a value of a history that is none; of what, and its position in the scene.
+fn check_value((what, index): (&'static str, usize), time: f64, value: f64) -> Result<(), ContactError> {
+    let error = ContactError::HistoryValue {
         what,
         index,
         time,
         value,
-    })
+    };
+    value.is_finite().then_some(()).ok_or(error)
 }

@@ -1,22 +1,16 @@
-//! When the solve of a step ends.
-//!
-//! `Relative` and `Balanced` solve loosely, estimate the algebraic error by the duality gap, tighten the solver's
-//! tolerance by what is missing, and go on from the present iterate. The error of the mesh is estimated again once the
-//! elastic energy has changed by a factor of four, and at every eighth step. Where steps inherit errors each has an
-//! equal share of the squared error that is left. An error in the energy norm is a mean: a few points may weigh little
-//! in it. So a step also needs a [`Certificate`](crate::Certificate) whose contact conditions are violated by at most
-//! five times the target ([`certificate_limit`](crate::report::AccuracyReport::certificate_limit)), and ends as
-//! [`NotCertified`](crate::StepStatus::NotCertified) where no tolerance reaches that.
+//! When the solve of a step ends; docs/theory.md, section 10, tells how `Relative` and `Balanced` decide.
 
 use crate::error::ContactError;
 
 /// When the solve of a step ends.
 ///
-/// Estimates are those of the energy of the whole body, beside a loose bound on the contact conditions: forces that
-/// carry little of it (a light touch after a long rigid motion, friction of a drag far below the elastic displacement)
-/// need `Tolerance`.
+/// Estimates are those of the energy of the whole body, beside a
+/// [bound](crate::report::AccuracyReport::certificate_limit) of five times the target on the contact conditions: forces
+/// that carry little of it (a light touch after a long rigid motion, friction of a drag far below the elastic
+/// displacement) need `Tolerance`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
+#[must_use]
 pub enum Accuracy {
     /// At the tolerance of the settings. No error is estimated.
     #[default]
@@ -34,20 +28,20 @@ pub enum Accuracy {
 
 impl Accuracy {
     /// Balanced with fraction 0.1.
-    #[must_use]
     pub fn balanced() -> Self {
         Self::Balanced { fraction: 0.1 }
     }
 
     pub(crate) fn validate(self) -> Result<(), ContactError> {
-        let (name, value, range, good) = match self {
-            Self::Tolerance => return Ok(()),
-            Self::Balanced { fraction: f } => ("accuracy.fraction", f, "(0, 1]", f > 0.0 && f <= 1.0),
-            Self::Relative(x) => ("accuracy.relative", x, "[1e-11, 0.5]", (1e-11..=0.5).contains(&x)),
-        };
-        match good {
-            true => Ok(()),
-            false => Err(ContactError::Setting { name, value, range }),
+        match self {
+            Self::Tolerance => Ok(()),
+            Self::Balanced { fraction: f } => {
+                ContactError::check(f > 0.0 && f <= 1.0, "accuracy.fraction", f, "(0, 1]")
+            }
+            Self::Relative(x) => {
+                let good = (1e-11..=0.5).contains(&x);
+                ContactError::check(good, "accuracy.relative", x, "[1e-11, 0.5]")
+            }
         }
     }
 }

@@ -5,6 +5,7 @@ use signorini_qp::{ActiveSetSettings, SmalseSettings};
 /// How the inequality-constrained problem of a step is solved.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
+#[must_use]
 pub enum Method {
     /// The default: active sets predicted by the natural map, projected preconditioned conjugate gradients on
     /// each, slip bounds following as soon as the contact set has settled. Falls back to
@@ -26,7 +27,6 @@ pub enum Method {
 
 impl Method {
     /// The paper's method with the settings that served best on the brick.
-    #[must_use]
     pub fn paper() -> Self {
         Self::SuccessiveApproximations {
             smalse: paper_smalse(),
@@ -35,13 +35,11 @@ impl Method {
     }
 
     /// The paper's one inexact loop with the same settings.
-    #[must_use]
     pub fn one_loop() -> Self {
         Self::OneLoop { smalse: paper_smalse() }
     }
 
     /// Which method it is, without its settings.
-    #[must_use]
     pub fn kind(&self) -> MethodKind {
         match self {
             Self::ActiveSet(_) => MethodKind::ActiveSet,
@@ -87,26 +85,13 @@ pub(crate) fn paper_smalse() -> SmalseSettings {
 }
 
 /// Accuracy of the Tresca problems inside the fixed-point loop.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum InnerAccuracy {
     /// The final tolerance each time.
     Fixed,
-    /// `factor` times the last relative change of the normal multipliers, never looser than `loosest` and never tighter
-    /// than the final tolerance.
-    Adaptive {
-        /// In (0, 1).
-        factor: f64,
-        /// In (0, 1).
-        loosest: f64,
-    },
-}
-
-impl Default for InnerAccuracy {
-    fn default() -> Self {
-        Self::Adaptive {
-            factor: 0.1,
-            loosest: 1e-3,
-        }
-    }
+    /// A tenth of the last relative change of the normal multipliers, never looser than 1e-3 and never tighter than the
+    /// final tolerance.
+    #[default]
+    Adaptive,
 }

@@ -1,7 +1,7 @@
 //! Settings of a simulation: how, not what.
 
 use super::accuracy::Accuracy;
-use super::method::{InnerAccuracy, Method};
+use super::method::Method;
 use crate::error::ContactError;
 use crate::tolerances::MOST_HALVINGS;
 use signorini_tfeti::{Alone, Communicator, InverseSettings};
@@ -31,11 +31,11 @@ pub enum Preconditioner {
 /// let settings = Settings::default().with_method(Method::paper()).with_tolerance(1e-8);
 /// ```
 #[derive(Debug, Clone)]
+#[must_use]
 pub struct Settings {
     pub(crate) method: Method,
     pub(crate) tolerance: f64,
     pub(crate) accuracy: Accuracy,
-    pub(crate) max_fixed_point: usize,
     pub(crate) extrapolate: bool,
     pub(crate) share_translates: bool,
     pub(crate) inverse: InverseSettings,
@@ -51,7 +51,6 @@ impl Default for Settings {
             method: Method::default(),
             tolerance: 1e-6,
             accuracy: Accuracy::default(),
-            max_fixed_point: 200,
             extrapolate: true,
             share_translates: true,
             inverse: InverseSettings::default(),
@@ -65,7 +64,6 @@ impl Default for Settings {
 
 impl Settings {
     /// The solver of a step; [`Method::ActiveSet`] by default.
-    #[must_use]
     pub fn with_method(mut self, method: Method) -> Self {
         self.method = method;
         self
@@ -73,49 +71,36 @@ impl Settings {
 
     /// Relative accuracy of the multipliers at every step, and of the fixed point: `eps` of the paper, in [1e-12, 0.1],
     /// 1e-6 by default.
-    #[must_use]
     pub fn with_tolerance(mut self, tolerance: f64) -> Self {
         self.tolerance = tolerance;
         self
     }
 
     /// Whether a step ends at that tolerance (the default) or by an estimate of its error.
-    #[must_use]
     pub fn with_accuracy(mut self, accuracy: Accuracy) -> Self {
         self.accuracy = accuracy;
         self
     }
 
-    /// Most evaluations of the Coulomb map a step, at least 1, by default 200.
-    #[must_use]
-    pub fn with_max_fixed_point(mut self, max: usize) -> Self {
-        self.max_fixed_point = max;
-        self
-    }
-
     /// Whether a step starts from the line through the last two, as it does by default, or from the last one.
-    #[must_use]
     pub fn with_extrapolation(mut self, on: bool) -> Self {
         self.extrapolate = on;
         self
     }
 
     /// Whether equal subdomains share factors, as translates do by default.
-    #[must_use]
     pub fn with_share_translates(mut self, share: bool) -> Self {
         self.share_translates = share;
         self
     }
 
     /// How the generalised inverse is held, by cost unless told otherwise.
-    #[must_use]
     pub fn with_inverse(mut self, inverse: InverseSettings) -> Self {
         self.inverse = inverse;
         self
     }
 
     /// Preconditioner of the default method, lumped by default.
-    #[must_use]
     pub fn with_preconditioner(mut self, preconditioner: Preconditioner) -> Self {
         self.preconditioner = preconditioner;
         self
@@ -123,7 +108,6 @@ impl Settings {
 
     /// Most products with F of one call of the active-set method's fall-back (SMALSE), after which a step ends as
     /// [`IterationLimit`](crate::StepStatus::IterationLimit); at least 1, by default 20,000.
-    #[must_use]
     pub fn with_max_fallback_products(mut self, max: usize) -> Self {
         self.max_fallback_products = max;
         self
@@ -138,7 +122,6 @@ impl Settings {
     /// [`between`](crate::report::Counters::between)), works of friction and obstacles are its sums. With a difference
     /// formula of three displacements unequal increments have weights of their own. Where the shortest increment does
     /// not converge either, the step ends with its status. Static scenes have nothing to halve.
-    #[must_use]
     pub fn with_step_halving(mut self, most: u32) -> Self {
         self.step_halving = most;
         self
@@ -151,56 +134,34 @@ impl Settings {
     /// spread over the ranks. Observers are told on every rank; a run ends where any of them ends it. The library's own
     /// files (`ResultWriter`, checkpoints) and lines ([`Progress`](crate::Progress)) are those of
     /// rank 0; checkpoints are read by all.
-    #[must_use]
     pub fn with_communicator(mut self, communicator: Arc<dyn Communicator>) -> Self {
         self.communicator = communicator;
         self
     }
 
     /// The relative accuracy of a step.
-    #[must_use]
     pub fn tolerance(&self) -> f64 {
         self.tolerance
     }
 
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
-        let check = |good, name, value, range| match good {
-            true => Ok(()),
-            false => Err(ContactError::Setting { name, value, range }),
-        };
+        let check = ContactError::check;
         let tolerance = self.tolerance;
-        check(
-            (1e-12..=0.1).contains(&tolerance),
-            "tolerance",
-            tolerance,
-            "[1e-12, 0.1]",
-        )?;
+        let good = (1e-12..=0.1).contains(&tolerance);
+        check(good, "tolerance", tolerance, "[1e-12, 0.1]")?;
         self.accuracy.validate()?;
-        check(self.max_fixed_point > 0, "max_fixed_point", 0.0, "at least 1")?;
+        let products = self.max_fallback_products;
+        check(products > 0, "max_fallback_products", 0.0, "at least 1")?;
+        let halvings = self.step_halving;
         check(
-            self.max_fallback_products > 0,
-            "max_fallback_products",
-            0.0,
-            "at least 1",
-        )?;
-        let most = f64::from(self.step_halving);
-        check(
-            self.step_halving <= MOST_HALVINGS,
+            halvings <= MOST_HALVINGS,
             "step_halving",
-            most,
+            halvings.into(),
             "of at most 20",
         )?;
         match &self.method {
             Method::ActiveSet(settings) => settings.validate()?,
-            Method::OneLoop { smalse } => smalse.validate()?,
-            Method::SuccessiveApproximations { smalse, accuracy } => {
-                smalse.validate()?;
-                if let InnerAccuracy::Adaptive { factor, loosest } = *accuracy {
-                    let open = |x: f64| x > 0.0 && x < 1.0;
-                    check(open(factor), "accuracy.factor", factor, "(0, 1)")?;
-                    check(open(loosest), "accuracy.loosest", loosest, "(0, 1)")?;
-                }
-            }
+            Method::OneLoop { smalse } | Method::SuccessiveApproximations { smalse, .. } => smalse.validate()?,
         }
         Ok(())
     }

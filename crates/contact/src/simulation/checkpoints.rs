@@ -7,9 +7,8 @@ use super::observer::Observer;
 use super::simulation::Simulation;
 use crate::error::ContactError;
 use crate::report::{RunReport, Warning};
-use crate::state::State;
+use crate::state::{State, explained, failed};
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
@@ -52,32 +51,6 @@ impl Simulation {
     /// A newest checkpoint that is damaged is kept as `step-NUMBER.state.damaged`, the one before is taken, and
     /// [`Warning::DamagedCheckpoint`] says so.
     ///
-    /// ```
-    /// use signorini_contact::{Analysis, Flow, Load, Scene, Settings, Silent, Simulation, StepResult, Support};
-    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
-    ///
-    /// # fn main() -> Result<(), Box<dyn std::error::Error>> {
-    /// fn scene() -> Result<Scene, Box<dyn std::error::Error>> {
-    ///     let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
-    ///     Ok(Scene::new(mesh, Hooke::isotropic(1e9, 0.3)?.into())
-    ///         .with_support(Support::fixed(brick::X_MIN))
-    ///         .with_load(Load::pressure(brick::Z_MAX, 1e5))
-    ///         .with_analysis(Analysis::quasistatic(1.0, 8)))
-    /// }
-    /// let folder = std::env::temp_dir().join(format!("signorini-doc-{}", std::process::id()));
-    /// // ends after five steps
-    /// let mut first = Simulation::new(scene()?, Settings::default())?;
-    /// let mut five = |result: &StepResult| if result.step() == 4 { Flow::Stop } else { Flow::Continue };
-    /// assert_eq!(first.run_or_resume(&folder, 2, &mut five)?.steps, 5);
-    /// // the same call in another process
-    /// let mut second = Simulation::new(scene()?, Settings::default())?;
-    /// let report = second.run_or_resume(&folder, 2, &mut Silent)?;
-    /// assert_eq!(report.steps, 3);
-    /// # std::fs::remove_dir_all(&folder)?;
-    /// # Ok(())
-    /// # }
-    /// ```
-    ///
     /// # Errors
     /// As [`run`](Self::run). [`ContactError::Checkpoint`] where the newest checkpoint belongs to another scene, and
     /// where none that there are can be read; it names the files, which are left as they are.
@@ -91,13 +64,7 @@ impl Simulation {
     ) -> Result<RunReport, ContactError> {
         let folder = folder.as_ref();
         let every = every.into();
-        if every == Every::Steps(0) {
-            return Err(ContactError::Setting {
-                name: "every",
-                value: 0.0,
-                range: "of at least one step",
-            });
-        }
+        ContactError::check(every != Every::Steps(0), "every", 0.0, "of at least one step")?;
         let warnings = self.resume_in_turn(folder)?;
         let mut stored_at = Instant::now();
         self.run_and_keep(observer, warnings, |simulation, last| {
@@ -150,7 +117,9 @@ impl Simulation {
         for (_, path) in stored(folder)? {
             match State::load(&path) {
                 Ok(state) => {
-                    self.resume(state).map_err(|error| foreign(&path, error))?;
+                    let foreign =
+                        |reason: String| format!("{}: {reason}; or give this run a folder of its own", path.display());
+                    self.resume(state).map_err(|error| explained(error, foreign))?;
                     return set_aside(damaged, path);
                 }
                 Err(ContactError::Checkpoint { reason }) => damaged.push((path, reason)),
@@ -201,22 +170,4 @@ fn set_aside(damaged: Vec<(PathBuf, String)>, taken: PathBuf) -> Result<Option<W
         });
     }
     Ok(warning)
-}
-
-/// A checkpoint that is none of this scene.
-fn foreign(path: &Path, error: ContactError) -> ContactError {
-    match error {
-        ContactError::Checkpoint { reason } => ContactError::Checkpoint {
-            reason: format!("{}: {reason}; or give this run a folder of its own", path.display()),
-        },
-        other => other,
-    }
-}
-
-fn failed<'a>(what: &'static str, path: &'a Path) -> impl FnOnce(io::Error) -> ContactError + 'a {
-    move |source| ContactError::CheckpointFile {
-        what,
-        path: path.into(),
-        source,
-    }
 }

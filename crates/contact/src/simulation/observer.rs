@@ -9,19 +9,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Whether a run goes on.
 ///
-/// A `Result` converts into it, so that an observer that can fail ends with `Flow::from(...)`:
-///
-/// ```
-/// use signorini_contact::{Flow, StepResult};
-///
-/// let mut log = Vec::new();
-/// let mut write = |result: &StepResult| {
-///     use std::io::Write;
-///     Flow::from(writeln!(log, "{} {}", result.time(), result.summary().active))
-/// };
-/// # fn check(_: &mut impl signorini_contact::Observer) {}
-/// # check(&mut write);
-/// ```
+/// A `Result` converts into it, so that an observer that can fail ends with `Flow::from(...)`.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Flow {
@@ -81,25 +69,6 @@ impl<F: FnMut(&StepResult) -> Flow> Observer for F {
 
 /// A flag that others may set, such as a handler of Ctrl-C or another thread: the run ends after the step in which it
 /// was set. [`RunReport::stopped`](crate::report::RunReport::stopped) says so.
-///
-/// ```
-/// use signorini_contact::{Analysis, Load, Scene, Settings, Simulation, Support};
-/// use signorini_fem_mesh::{brick, Brick, Hooke};
-/// use std::sync::Arc;
-/// use std::sync::atomic::{AtomicBool, Ordering};
-///
-/// let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
-/// let scene = Scene::new(mesh, Hooke::isotropic(1e9, 0.3)?.into())
-///     .with_support(Support::fixed(brick::X_MIN))
-///     .with_load(Load::pressure(brick::Z_MAX, 1e5))
-///     .with_analysis(Analysis::quasistatic(1.0, 8));
-/// let mut stop = Arc::new(AtomicBool::new(false));
-/// let handler = stop.clone();
-/// handler.store(true, Ordering::Relaxed);
-/// let report = Simulation::new(scene, Settings::default())?.run(&mut stop)?;
-/// assert!(report.stopped && report.steps == 1);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 impl Observer for Arc<AtomicBool> {
     fn step(&mut self, _: &StepResult) -> Flow {
         match self.load(Ordering::Relaxed) {

@@ -14,23 +14,6 @@ const RECENT: usize = 10;
 /// Writes a line a step: its number, time, products, and how long the run will still take if its steps last as long as
 /// the last ten did. Warnings are lines of their own. Of several processes rank 0 writes. A writer that fails ends the
 /// run with its error.
-///
-/// ```
-/// use signorini_contact::{Flow, Load, Progress, Scene, Settings, Simulation, StepResult, Support};
-/// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
-///
-/// let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
-/// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(1e9, 0.3)?))
-///     .with_support(Support::fixed(brick::X_MIN))
-///     .with_load(Load::pressure(brick::Z_MAX, 1e5));
-/// let mut simulation = Simulation::new(scene, Settings::default())?;
-/// let mut lines = Vec::new();
-/// // an observer of one's own beside it
-/// let own = |result: &StepResult| Flow::from(result.require_converged());
-/// simulation.run(&mut (Progress::new(&mut lines), own))?.require_converged()?;
-/// assert!(String::from_utf8(lines)?.starts_with("1 of 1 steps, t = 1 s, "));
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug)]
 pub struct Progress<W> {
     out: W,

@@ -6,7 +6,7 @@ use crate::model::Model;
 use crate::report::{AccumulatedError, AlgebraicError, StepReport, Warning, require};
 use crate::result::{
     Certificate, ContactSummary, Lengths, PointState, Reactions, Recovered, SurfaceStress, coarse_mesh, is_strained,
-    nodal_reactions, points_at_nodes, reactions_about, tied_forces, warnings,
+    loads, nodal_reactions, points_at_nodes, reactions_about, tied_forces, warnings,
 };
 use crate::scene::Scene;
 use crate::status::StepFailure;
@@ -28,43 +28,36 @@ pub struct StepResult {
 
 impl StepResult {
     /// Position of the step in the analysis, from 0.
-    #[must_use]
     pub fn step(&self) -> usize {
         self.problem.index
     }
 
     /// Time, s.
-    #[must_use]
     pub fn time(&self) -> f64 {
         self.problem.time
     }
 
     /// The scene.
-    #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.model.scene
     }
 
     /// The decomposition.
-    #[must_use]
     pub fn decomposition(&self) -> &Decomposition {
         &self.model.discrete.decomposition
     }
 
     /// All contact surfaces, in the order of [`Scene::contacts`].
-    #[must_use]
     pub fn surfaces(&self) -> &[Surface] {
         &self.model.discrete.surfaces
     }
 
     /// How the step was solved.
-    #[must_use]
     pub fn report(&self) -> &StepReport {
         &self.report
     }
 
     /// What there is to say of a step that did not converge.
-    #[must_use]
     pub fn failure(&self) -> Option<StepFailure> {
         (!self.report.status.converged()).then_some(StepFailure {
             step: self.step(),
@@ -85,27 +78,12 @@ impl StepResult {
     }
 
     /// How well all conditions hold.
-    #[must_use]
     pub fn certificate(&self) -> &Certificate {
         &self.recovered.certificate
     }
 
     /// What in this result is allowed but hardly meant, each kind at its worst place: large displacements, strains and
     /// slips. Looked for when asked; a [run](crate::Simulation::run) asks at every step.
-    ///
-    /// ```
-    /// use signorini_contact::{Scene, Settings, Simulation, Support, Warning};
-    /// use signorini_fem_mesh::{brick, Brick, History, Hooke, Materials};
-    ///
-    /// let mesh = Brick::new([3.0, 1.0, 1.0], [3, 1, 1]).build()?;
-    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(1e9, 0.3)?))
-    ///     .with_support(Support::fixed(brick::X_MIN))
-    ///     .with_support(Support::fixed(brick::X_MAX).with_motion([0.2, 0.0, 0.0], History::constant(1.0)));
-    /// let result = Simulation::new(scene, Settings::default())?.step()?;
-    /// assert!(matches!(result.warnings()[..], [Warning::LargeStrain { .. }]));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
     pub fn warnings(&self) -> Vec<Warning> {
         self.warnings_but(&[])
     }
@@ -130,32 +108,27 @@ impl StepResult {
     }
 
     /// Sums over the contact surface.
-    #[must_use]
     pub fn summary(&self) -> &ContactSummary {
         &self.summary
     }
 
     /// States of the contact points, in the order of the rows.
-    #[must_use]
     pub fn points(&self) -> &[PointState] {
         &self.recovered.points
     }
 
     /// The displacement of every subdomain, one after another, m.
-    #[must_use]
     pub fn torn_displacement(&self) -> &[f64] {
         &self.recovered.torn
     }
 
     /// Displacement of each mesh node, m: the mean of the copies.
-    #[must_use]
     pub fn displacement(&self) -> Vec<[f64; 3]> {
         let mean = self.model.tfeti.nodal_mean(&self.recovered.torn);
         mean.as_chunks().0.to_vec()
     }
 
     /// Stress in every tetrahedron (xx, yy, zz, yz, xz, xy), Pa; not a number where the displacement is none.
-    #[must_use]
     pub fn stress(&self) -> Vec<[f64; 6]> {
         let (mesh, materials) = (self.scene().mesh(), self.scene().materials());
         let stresses = fields::stresses(mesh, materials, self.displacement().as_flattened());
@@ -163,7 +136,6 @@ impl StepResult {
     }
 
     /// Elastic energy, J; not a number if the displacement is none.
-    #[must_use]
     pub fn strain_energy(&self) -> f64 {
         let (mesh, materials) = (self.scene().mesh(), self.scene().materials());
         let energy = fields::strain_energy(mesh, materials, self.displacement().as_flattened());
@@ -171,7 +143,6 @@ impl StepResult {
     }
 
     /// Estimated algebraic error (by the duality gap): how far the solver stopped from the discrete solution.
-    #[must_use]
     pub fn algebraic_error(&self) -> AlgebraicError {
         Solved {
             model: &self.model,
@@ -191,7 +162,6 @@ impl StepResult {
     }
 
     /// Reactions of the supports, with moments about the origin. See [`reactions_about`](Self::reactions_about).
-    #[must_use]
     pub fn reactions(&self) -> Reactions {
         self.reactions_about([0.0; 3])
     }
@@ -200,31 +170,11 @@ impl StepResult {
     /// obstacle and the loads do. Computed from the multipliers when asked for.
     ///
     /// Signs: forces *on the body*. A column that stands on a support and is pressed down has an upward reaction.
-    ///
-    /// ```
-    /// use signorini_contact::{Load, Scene, Settings, Simulation, Support};
-    /// use signorini_fem_mesh::{brick, Brick, Hooke, Materials};
-    ///
-    /// let mesh = Brick::new([1.0, 1.0, 3.0], [2, 2, 6]).build()?;
-    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(2.1e11, 0.3)?))
-    ///     .with_support(Support::fixed(brick::Z_MIN))
-    ///     .with_load(Load::pressure(brick::Z_MAX, 1e6));
-    /// let mut simulation = Simulation::new(scene, Settings::default())?;
-    /// let reactions = simulation.step()?.reactions_about([0.5, 0.5, 0.0]);
-    /// for support in &reactions.supports {
-    ///     let resultant = support.resultant;
-    ///     assert!((resultant.force[2] - 1e6).abs() < 1.0);
-    ///     assert!(resultant.moment.iter().all(|m| m.abs() < 1.0));
-    /// }
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
     pub fn reactions_about(&self, point: [f64; 3]) -> Reactions {
         reactions_about(&self.model, &self.problem, &self.recovered, point)
     }
 
     /// Reactions of all supports at each mesh node, N: a field for output. Zero at nodes without support.
-    #[must_use]
     pub fn reaction_field(&self) -> Vec<[f64; 3]> {
         let mut field = vec![[0.0; 3]; self.model.scene.mesh.points().len()];
         let ties = tied_forces(&self.model, &self.recovered);
@@ -236,7 +186,6 @@ impl StepResult {
 
     /// Contact forces at each mesh node, N: a field for output. Pressure and friction of all contact surfaces together,
     /// so that nodes in edges need no care; partners on other bodies have the opposite forces. Zero elsewhere.
-    #[must_use]
     pub fn contact_force_field(&self) -> Vec<[f64; 3]> {
         let mut field = vec![[0.0; 3]; self.model.scene.mesh.points().len()];
         for (state, point) in self.recovered.points.iter().zip(&self.model.points) {
@@ -258,31 +207,12 @@ impl StepResult {
     /// and at nodes that two surfaces share. The edge of contact is widened by two facets: pressures there, and forces
     /// of few nodes, are the less to be trusted the fewer facets touch. At a crease it is that of the side
     /// that is pressed most, and nothing is averaged around it.
-    ///
-    /// ```
-    /// use signorini_contact::{Contact, Load, Scene, Settings, Simulation, Support};
-    /// use signorini_fem_mesh::{Brick, Hooke, Materials, brick};
-    ///
-    /// let mesh = Brick::new([1.0; 3], [4; 3]).perturbed(0.15, 1).build()?;
-    /// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(2.1e11, 0.3)?))
-    ///     .with_support(Support::components(brick::X_MIN, [true, false, false]))
-    ///     .with_support(Support::components(brick::Y_MIN, [false, true, false]))
-    ///     .with_load(Load::pressure(brick::Z_MAX, 1e6))
-    ///     .with_contact(Contact::rigid(brick::Z_MIN));
-    /// let mut simulation = Simulation::new(scene, Settings::default())?;
-    /// let result = simulation.step()?;
-    /// let pressure = result.contact_pressure(0).expect("a contact surface");
-    /// assert!(pressure.iter().all(|p| (p - 1e6).abs() < 10.0));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    #[must_use]
     pub fn contact_pressure(&self, surface: usize) -> Option<Vec<f64>> {
         self.surface_stress(surface).map(|stress| stress.pressure)
     }
 
     /// Friction stress on the body at each of [`Surface::nodes`] of a contact surface, Pa, in space: averaged as the
     /// [pressure](Self::contact_pressure), component by component.
-    #[must_use]
     pub fn friction_stress(&self, surface: usize) -> Option<Vec<[f64; 3]>> {
         self.surface_stress(surface).map(|stress| stress.friction)
     }
@@ -294,7 +224,6 @@ impl StepResult {
 
     /// The contact point at each of [`Surface::nodes`] of a contact surface; `None` if there is no such surface. At a
     /// crease it is the point that is pressed most, else the nearest one; nodes that a support holds have none.
-    #[must_use]
     pub fn points_at_nodes(&self, surface: usize) -> Option<Vec<Option<&PointState>>> {
         let places = self.places_at_nodes(surface)?;
         let state = |place: Option<usize>| place.map(|k| &self.recovered.points[k]);
@@ -308,17 +237,8 @@ impl StepResult {
     }
 
     /// Sum of all loads at this step, N.
-    #[must_use]
     pub fn load_resultant(&self) -> [f64; 3] {
-        let mut sum = [0.0; 3];
-        for (factor, load) in self.problem.factors.iter().zip(&self.model.loads) {
-            for node in load.force.chunks_exact(3) {
-                for c in 0..3 {
-                    sum[c] += factor * node[c];
-                }
-            }
-        }
-        sum
+        loads(&self.model, &self.problem, |_| [0.0; 3]).force
     }
 }
 

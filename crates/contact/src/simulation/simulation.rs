@@ -17,26 +17,6 @@ use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// A scene being simulated, step by step.
-///
-/// ```
-/// use signorini_contact::{Analysis, Contact, Friction, Load, Scene, Settings, Simulation, Support};
-/// use signorini_fem_mesh::{brick, Brick, History, Hooke, Materials};
-///
-/// let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build()?;
-/// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(211.9e9, 0.277)?))
-///     .with_support(Support::fixed(brick::X_MIN))
-///     .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -3e9]).with_history(History::ramp(1.0, 1.0)?))
-///     .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.1).with_friction(Friction::coulomb(0.3)))
-///     .with_boxes([3, 1, 1])
-///     .with_analysis(Analysis::quasistatic(1.0, 4));
-/// let mut simulation = Simulation::new(scene, Settings::default())?;
-/// while !simulation.is_finished() {
-///     let result = simulation.step()?;
-///     assert!(result.report().status.converged());
-///     assert!(result.certificate().largest() < 1e-6);
-/// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 pub struct Simulation {
     pub(crate) model: Arc<Model>,
     pub(crate) caches: Arc<Caches>,
@@ -110,75 +90,63 @@ impl Simulation {
     }
 
     /// The plan.
-    #[must_use]
     pub fn plan(&self) -> &Plan {
         &self.model.plan
     }
 
     /// The scene.
-    #[must_use]
     pub fn scene(&self) -> &Scene {
         &self.model.scene
     }
 
     /// The decomposition.
-    #[must_use]
     pub fn decomposition(&self) -> &Decomposition {
         &self.model.discrete.decomposition
     }
 
     /// The T-FETI system, with its set-up report: for those who measure the solver.
     #[doc(hidden)]
-    #[must_use]
     pub fn tfeti(&self) -> &Tfeti {
         &self.model.tfeti
     }
 
     /// The contact points with their rows.
-    #[must_use]
     pub fn constrained_points(&self) -> &[ConstrainedPoint] {
         &self.model.points
     }
 
     /// The settings.
-    #[must_use]
     pub fn settings(&self) -> &Settings {
         &self.settings
     }
 
     /// Wall-clock time of the set-up.
-    #[must_use]
     pub fn setup_time(&self) -> Duration {
         self.setup
     }
 
     /// Wall-clock time, within the set-up, of the search for what the sides of the contacts face.
-    #[must_use]
     pub fn search_time(&self) -> Duration {
         self.model.discrete.search
     }
 
     /// Counters of all steps so far.
-    #[must_use]
     pub fn counters(&self) -> &Counters {
         &self.total
     }
 
     /// The state between steps; store it to continue later.
-    #[must_use]
     pub fn state(&self) -> &State {
         &self.state
     }
 
     /// Whether all steps are solved.
-    #[must_use]
     pub fn is_finished(&self) -> bool {
         self.state.step() >= self.model.scene.analysis.steps()
     }
 
     /// The result of the last step; `None` before the first one, after [`resume`](Self::resume) and after a step that
     /// failed.
-    #[must_use]
     pub fn result(&self) -> Option<&Arc<StepResult>> {
         self.result.as_ref()
     }

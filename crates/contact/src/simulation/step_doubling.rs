@@ -1,17 +1,13 @@
 //! Estimate of the error of the time steps by step doubling.
 //!
-//! Every step is taken once, as two half steps and as four quarter steps, each run going on from its own last state. If
-//! the error falls like the step to the power `p`, that of the *whole* step is the difference to the quarter steps
-//! times `1 / (1 - 4^-p)`, and the two differences measure `p`. Both difference formulas are of first order where
-//! sliding begins, ends and turns, better where nothing changes, and without order where another step leads to another
-//! sequence of sticking and sliding. A difference that is not three times as large as what the solver has left in both
-//! runs ([`AccumulatedError::likely`]) says nothing of the time steps, and does not enter the order.
+//! Every step is taken once, as two half steps and as four quarter steps, each run going on from its own last state
+//! (docs/theory.md, section 11). Both difference formulas are of first order where sliding begins, ends and turns, better
+//! where nothing changes, and without order where another step leads to another sequence of sticking and sliding.
 
 use super::result::StepResult;
 use super::simulation::Simulation;
 use crate::error::ContactError;
 use crate::report::{AccumulatedError, Counters, relative};
-use crate::result::PointState;
 use crate::scene::{Analysis, Scene};
 use crate::settings::Settings;
 use crate::tolerances::{ABOVE_SOLVER, ORDERS};
@@ -19,7 +15,7 @@ use signorini_fem_mesh::fields;
 use std::sync::Arc;
 
 /// Difference between a step and two half steps, at the end of the step.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct TimeError {
     /// Position of the step, from 0.
@@ -28,23 +24,12 @@ pub struct TimeError {
     pub time: f64,
     /// Energy of the difference of the displacements, `1/2 |u - u'|²`, J.
     energy: f64,
-    /// Elastic energy of the half steps' displacement, J.
-    elastic: f64,
-    /// What energies are compared with, J: that, or more for a [body at rest](crate::report::AlgebraicError::scale).
+    /// What energies are compared with, J: the elastic energy of the half steps' displacement, or more for a
+    /// [body at rest](crate::report::AlgebraicError::scale).
     scale: f64,
     /// What the solver is likely to have left in the difference of the two finest runs, as an energy, J: the square of
     /// the sum of the roots of their accumulated algebraic errors.
     algebraic: f64,
-    /// Euclidean norm of the differences of the nodal contact forces, N.
-    contact_force: f64,
-    /// Euclidean norm of the nodal contact forces, N.
-    contact_force_size: f64,
-    /// Difference of the work of friction since the start, J.
-    pub dissipated_work: f64,
-    /// That work, J.
-    pub dissipated_work_size: f64,
-    /// Contact points whose state (open, sticking, sliding) is another one after the half steps.
-    pub changed_points: usize,
     /// Energy of the difference of the whole to the quarter steps, J.
     quarter_energy: f64,
     /// Energy of the difference of the half to the quarter steps, J.
@@ -56,7 +41,6 @@ pub struct TimeError {
 
 impl TimeError {
     /// Difference of the displacements relative to the displacement, in the energy norm. 0 where nothing differs.
-    #[must_use]
     pub fn displacement(&self) -> f64 {
         relative(self.energy, self.scale)
     }
@@ -64,7 +48,6 @@ impl TimeError {
     /// Estimated error of the displacement after the whole step, relative, in the energy norm: the difference to the
     /// quarter steps, extrapolated with the measured order (taken into its admissible range), or with order one if none
     /// was measured.
-    #[must_use]
     pub fn whole_error(&self) -> f64 {
         let order = self.order.unwrap_or(1.0).clamp(ORDERS[0], ORDERS[1]);
         relative(self.quarter_energy, self.scale) / (1.0 - 4.0_f64.powf(-order))
@@ -73,7 +56,6 @@ impl TimeError {
     /// Whether the difference of the two finest runs is no more than what their solver may have left in it: at most
     /// three times the algebraic error. The error of the time steps is then as small as that or smaller; how small only
     /// a smaller tolerance can tell.
-    #[must_use]
     pub fn is_below_solver(&self) -> bool {
         self.finest_energy <= ABOVE_SOLVER * ABOVE_SOLVER * self.algebraic
     }
@@ -81,46 +63,12 @@ impl TimeError {
     /// Whether the error falls with the step: the measured order is at least 0.5. Where it does not, smaller steps lead
     /// to another sequence of sticking and sliding, and the estimate tells no more than that the results still differ.
     /// `None` where the difference [is no more than the solver's error](Self::is_below_solver).
-    #[must_use]
     pub fn is_reliable(&self) -> Option<bool> {
         (!self.is_below_solver()).then(|| self.order.is_some_and(|order| order >= ORDERS[0]))
     }
-
-    /// Relative difference of the contact forces. Infinite where no point touches any more after the half steps.
-    #[must_use]
-    pub fn force(&self) -> f64 {
-        ratio(self.contact_force, self.contact_force_size)
-    }
-}
-
-/// 0 for no value, whatever the size.
-fn ratio(value: f64, size: f64) -> f64 {
-    if value == 0.0 { 0.0 } else { value / size }
 }
 
 /// A run beside the same run with steps of half and of a quarter of the length.
-///
-/// ```
-/// use signorini_contact::{
-///     Analysis, Contact, Friction, Load, Scene, Settings, StepDoubling, Support,
-/// };
-/// use signorini_fem_mesh::{brick, Brick, History, Hooke, Materials};
-///
-/// let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
-/// let ramp = History::ramp(1.0, 1.0)?;
-/// let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(1e9, 0.3)?))
-///     .with_support(Support::fixed(brick::X_MIN))
-///     .with_load(Load::pressure(brick::Z_MAX, 1e6).with_history(ramp.clone()))
-///     .with_load(Load::traction(brick::X_MAX, [1e6, 0.0, 0.0]).with_history(ramp))
-///     .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3)))
-///     .with_analysis(Analysis::quasistatic(1.0, 4));
-/// let mut doubling = StepDoubling::new(&scene, &Settings::default())?;
-/// while !doubling.is_finished() {
-///     let error = doubling.step()?;
-///     assert!(error.displacement() < 0.1);
-/// }
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
 #[derive(Debug)]
 pub struct StepDoubling {
     whole: Simulation,
@@ -128,8 +76,6 @@ pub struct StepDoubling {
     quarter: Simulation,
     /// Energies of the differences whole - half and half - quarter, relative, summed over the steps.
     differences: [f64; 2],
-    /// Work of friction so far, of the whole and the half steps.
-    work: [f64; 2],
     /// Algebraic errors so far of the half and quarter steps.
     solver: [AccumulatedError; 2],
 }
@@ -155,31 +101,21 @@ impl StepDoubling {
             half: run(&half)?,
             quarter: run(&halves(&half))?,
             differences: [0.0; 2],
-            work: [0.0; 2],
             solver: [AccumulatedError::default(); 2],
         })
     }
 
     /// Whether all steps are solved.
-    #[must_use]
     pub fn is_finished(&self) -> bool {
         self.whole.is_finished()
     }
 
     /// The run with whole steps.
-    #[must_use]
     pub fn whole(&self) -> &Simulation {
         &self.whole
     }
 
-    /// The run with half steps.
-    #[must_use]
-    pub fn half(&self) -> &Simulation {
-        &self.half
-    }
-
     /// What all runs have cost.
-    #[must_use]
     pub fn counters(&self) -> Counters {
         let mut sum = *self.whole.counters();
         sum += *self.half.counters();
@@ -194,19 +130,23 @@ impl StepDoubling {
     pub fn step(&mut self) -> Result<TimeError, ContactError> {
         let [of_half, of_quarter] = &mut self.solver;
         let whole = self.whole.step()?;
-        let half = advance(&mut self.half, 2, of_half, &mut self.work[1])?;
-        let quarter = advance(&mut self.quarter, 4, of_quarter, &mut 0.0)?;
-        self.work[0] += whole.summary().friction_work;
-        let mut error = compare(&whole, &half, self.work);
-        error.energy = energy_of_difference(&whole, &half)?;
-        error.quarter_energy = energy_of_difference(&whole, &quarter)?;
-        error.finest_energy = energy_of_difference(&half, &quarter)?;
-        error.scale = error.elastic.max(of_half.scale());
-        error.algebraic = of_half.likely_difference(of_quarter);
+        let half = advance(&mut self.half, 2, of_half)?;
+        let quarter = advance(&mut self.quarter, 4, of_quarter)?;
+        let mut error = TimeError {
+            step: whole.step(),
+            time: whole.time(),
+            energy: energy_of_difference(&whole, &half)?,
+            quarter_energy: energy_of_difference(&whole, &quarter)?,
+            finest_energy: energy_of_difference(&half, &quarter)?,
+            scale: half.strain_energy().max(of_half.scale()),
+            algebraic: of_half.likely_difference(of_quarter),
+            order: None,
+        };
         if !error.is_below_solver() {
             let energies = [error.energy, error.finest_energy];
             for (sum, energy) in self.differences.iter_mut().zip(energies) {
-                *sum += ratio(energy, error.scale);
+                // no difference is none, whatever the size
+                *sum += if energy == 0.0 { 0.0 } else { energy / error.scale };
             }
         }
         let [first, second] = self.differences;
@@ -216,20 +156,13 @@ impl StepDoubling {
     }
 }
 
-/// Takes some steps of a run, the last of which it returns, and adds up algebraic errors and work of friction.
-fn advance(
-    run: &mut Simulation,
-    steps: usize,
-    errors: &mut AccumulatedError,
-    work: &mut f64,
-) -> Result<Arc<StepResult>, ContactError> {
+/// Takes some steps of a run, the last of which it returns, and adds up algebraic errors.
+fn advance(run: &mut Simulation, steps: usize, errors: &mut AccumulatedError) -> Result<Arc<StepResult>, ContactError> {
     let mut result = run.step()?;
-    for step in 1..=steps {
+    errors.add(&result);
+    for _ in 1..steps {
+        result = run.step()?;
         errors.add(&result);
-        *work += result.summary().friction_work;
-        if step < steps {
-            result = run.step()?;
-        }
     }
     Ok(result)
 }
@@ -255,27 +188,4 @@ fn energy_of_difference(a: &StepResult, b: &StepResult) -> Result<f64, ContactEr
         scene.materials(),
         difference.as_flattened(),
     )?)
-}
-
-/// What differs at the contact points; energies are to be entered.
-fn compare(whole: &StepResult, half: &StepResult, work: [f64; 2]) -> TimeError {
-    let mut error = TimeError {
-        step: whole.step(),
-        time: whole.time(),
-        elastic: half.strain_energy(),
-        dissipated_work: work[0] - work[1],
-        dissipated_work_size: work[1],
-        ..TimeError::default()
-    };
-    for (a, b) in whole.points().iter().zip(half.points()) {
-        error.changed_points += usize::from(a.state != b.state);
-        let forces = |p: &PointState| [[p.normal_force, 0.0, 0.0], p.friction_force];
-        for (a, b) in forces(a).as_flattened().iter().zip(forces(b).as_flattened()) {
-            error.contact_force += (a - b).powi(2);
-            error.contact_force_size += b.powi(2);
-        }
-    }
-    error.contact_force = error.contact_force.sqrt();
-    error.contact_force_size = error.contact_force_size.sqrt();
-    error
 }

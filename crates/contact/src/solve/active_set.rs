@@ -202,7 +202,6 @@ impl ActiveSetSolver {
                     report.counters.preconditionings += outcome.preconditionings;
                     report.counters.coarse_factorisations += outcome.factorisations;
                     report.counters.active_sets += if contact { sets } else { 0 };
-                    report.estimated_error = Some(outcome.error.max(outcome.constrained_error));
                     outcome.status
                 }
                 // the prediction ran away, or the free rows do not hold the body: the paper's method needs neither

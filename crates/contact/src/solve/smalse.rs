@@ -9,7 +9,7 @@ use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::{InnerAccuracy, Method, Settings, paper_smalse};
 use crate::status::StepStatus;
-use crate::tolerances::{BALANCED, BALANCING, INNER_STALL, SMALSE_SAFETY};
+use crate::tolerances::{BALANCED, BALANCING, INNER_FACTOR, INNER_LOOSEST, INNER_STALL, SMALSE_SAFETY};
 use signorini_qp::internal::Contraction;
 use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
@@ -20,6 +20,9 @@ use signorini_tfeti::{DualOperator, OrthonormalCoarse};
 
 /// How often a step may tighten the inner tolerance tenfold.
 const MAX_TIGHTENINGS: usize = 3;
+
+/// Most evaluations of the Coulomb map in a step.
+const MAX_EVALUATIONS: usize = 200;
 
 pub(crate) struct SmalseSolver {
     rows: OrthonormalRows,
@@ -188,8 +191,8 @@ impl SmalseSolver {
             x.copy_from_slice(&iterate.lambda[normal.clone()]);
             Ok(tolerances.is_full(tolerance))
         };
-        let (least, most) = (problem.least(settings.tolerance)[1], settings.max_fixed_point);
-        let outcome = successive_approximations(&mut x, settings.tolerance, least, most, map);
+        let least = problem.least(settings.tolerance)[1];
+        let outcome = successive_approximations(&mut x, settings.tolerance, least, MAX_EVALUATIONS, map);
         let mut outcome = match outcome {
             Ok(outcome) => outcome,
             // no products left
@@ -303,9 +306,7 @@ impl InnerTolerance {
         }
         self.last = change;
         match self.accuracy {
-            InnerAccuracy::Adaptive { factor, loosest } if self.exact == 0 => {
-                (factor * change).min(loosest).max(self.full)
-            }
+            InnerAccuracy::Adaptive if self.exact == 0 => (INNER_FACTOR * change).min(INNER_LOOSEST).max(self.full),
             // once at full accuracy, always: a looser solve would undo it
             _ => self.full,
         }

@@ -75,8 +75,7 @@ impl State {
     /// # Errors
     /// [`ContactError::CheckpointFile`] if the file system refuses.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), ContactError> {
-        signorini_fem_mesh::replace_file(&path, &self.to_bytes()?)
-            .map_err(|source| file_error(path.as_ref(), "write", source))
+        signorini_fem_mesh::replace_file(&path, &self.to_bytes()?).map_err(failed("write", path.as_ref()))
     }
 
     /// Reads what [`save`](Self::save) stored (feature `checkpoint`).
@@ -86,18 +85,23 @@ impl State {
     /// where there is no file yet; [`ContactError::Checkpoint`] as [`from_bytes`](Self::from_bytes), with the file.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ContactError> {
         let path = path.as_ref();
-        let bytes = std::fs::read(path).map_err(|source| file_error(path, "read", source))?;
-        Self::from_bytes(&bytes).map_err(|error| match error {
-            ContactError::Checkpoint { reason } => ContactError::Checkpoint {
-                reason: format!("{}: {reason}", path.display()),
-            },
-            other => other,
-        })
+        let bytes = std::fs::read(path).map_err(failed("read", path))?;
+        let named = |reason| format!("{}: {reason}", path.display());
+        Self::from_bytes(&bytes).map_err(|error| explained(error, named))
     }
 }
 
-fn file_error(path: &Path, what: &'static str, source: std::io::Error) -> ContactError {
-    ContactError::CheckpointFile {
+/// The same error with more to say of the checkpoint.
+pub(crate) fn explained(error: ContactError, text: impl FnOnce(String) -> String) -> ContactError {
+    match error {
+        ContactError::Checkpoint { reason } => ContactError::Checkpoint { reason: text(reason) },
+        other => other,
+    }
+}
+
+/// What the file system refuses.
+pub(crate) fn failed<'a>(what: &'static str, path: &'a Path) -> impl FnOnce(std::io::Error) -> ContactError + 'a {
+    move |source| ContactError::CheckpointFile {
         what,
         path: path.into(),
         source,

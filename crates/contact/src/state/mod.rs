@@ -12,6 +12,8 @@ mod fingerprint;
 mod state;
 mod tolerance;
 
+#[cfg(feature = "checkpoint")]
+pub(crate) use bytes::{explained, failed};
 pub(crate) use fingerprint::{Fingerprint, operator_hash};
 pub use state::State;
 pub(crate) use state::{Kept, Peak};

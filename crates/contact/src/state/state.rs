@@ -10,6 +10,7 @@ use crate::tolerances::MOST_HALVINGS;
 /// A simulation that starts from a stored state continues bit by bit like one that was never interrupted.
 #[derive(Clone, PartialEq, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[must_use]
 pub struct State {
     /// Steps solved.
     pub(crate) step: usize,
@@ -85,13 +86,11 @@ pub(crate) struct Kept {
 
 impl State {
     /// Steps solved so far.
-    #[must_use]
     pub fn step(&self) -> usize {
         self.step
     }
 
     /// Bytes held.
-    #[must_use]
     pub fn memory(&self) -> usize {
         8 * self.numbers().map(Vec::len).sum::<usize>() + self.sliding.len()
     }
@@ -99,7 +98,6 @@ impl State {
     /// The same state for a scene that is another one on purpose: [`Simulation::resume`](crate::Simulation::resume)
     /// then compares sizes only. Multipliers are start values there; tangential displacements and slip rates are taken
     /// for those of the points with the same numbers.
-    #[must_use]
     pub fn without_origin(mut self) -> Self {
         self.origin = None;
         self
@@ -118,7 +116,6 @@ impl State {
 
     /// The first step that did not converge and on whose displacement later steps depend, from 0. `None` where all
     /// converged, and in scenes without history (no friction, or static), whose steps stand alone.
-    #[must_use]
     pub fn unconverged_history(&self) -> Option<usize> {
         self.unconverged
     }

@@ -9,7 +9,7 @@ use crate::vec3::dot;
 use signorini_qp::vector;
 use std::borrow::Cow;
 
-/// Data of one step; vectors are allocated once and rewritten.
+/// Data of one step.
 #[derive(Debug, Default, Clone)]
 pub(crate) struct StepProblem {
     /// Position in the analysis, from 0.
@@ -59,24 +59,17 @@ impl StepProblem {
         self.time = time;
         self.step = increment.length;
         self.formula = increment.formula;
-        self.peaks.clear();
-        self.peaks.extend_from_slice(&state.peaks);
+        self.peaks.clone_from(&state.peaks);
         self.peaks.resize(model.bodies.count().max(1), Peak::default());
-        self.factors.clear();
-        self.factors
-            .extend(model.scene.loads.iter().map(|load| load.history.value(time)));
-        let rows = model.tfeti.dual_dim();
-        for (vector, len) in [(&mut self.load, rows), (&mut self.rhs, model.tfeti.coarse().rows())] {
-            vector.clear();
-            vector.resize(len, 0.0);
-        }
+        let loads = model.scene.loads.iter();
+        self.factors = loads.map(|load| load.history.value(time)).collect();
+        self.load = vec![0.0; model.tfeti.dual_dim()];
+        self.rhs = vec![0.0; model.tfeti.coarse().rows()];
         for (factor, load) in self.factors.iter().zip(&model.loads) {
             vector::axpy(*factor, &load.dual, &mut self.load);
             vector::axpy(*factor, &load.coarse, &mut self.rhs);
         }
-        self.handed_on.clear();
-        self.handed_on
-            .resize(if model.points.is_empty() { rows } else { 0 }, 0.0);
+        self.handed_on = vec![0.0; if model.points.is_empty() { self.load.len() } else { 0 }];
         for (factor, lambda) in self.factors.iter().zip(&model.handed_on) {
             vector::axpy(*factor, lambda, &mut self.handed_on);
         }
@@ -97,10 +90,8 @@ impl StepProblem {
         }
         self.find_obstacles(model, increment.start);
         self.add_offsets(model, state)?;
-        self.linear.resize(rows, 0.0);
-        for ((d, c), l) in self.linear.iter_mut().zip(&self.offset).zip(&self.load) {
-            *d = c - l;
-        }
+        let offsets = self.offset.iter().zip(&self.load);
+        self.linear = offsets.map(|(c, load)| c - load).collect();
         self.find_friction(model, state)
     }
 
@@ -111,7 +102,7 @@ impl StepProblem {
         let start = model.tangential_start();
         for point in &model.points {
             if effects.gap {
-                self.offset[point.row] += point.scale * self.gap(&model.scene, point)?;
+                self.offset[point.row] += point.scale * self.gap(&model.scene, point, 0)?;
             }
             if let Some(formula) = formula {
                 for (_, k, scale) in point.along() {
@@ -175,14 +166,12 @@ impl StepProblem {
     }
 
     /// The gap of a point with what an obstacle that moves along the surface has brought and its factor in time,
-    /// without what the obstacle opens, m.
-    pub(crate) fn gap(&self, scene: &Scene, point: &ConstrainedPoint) -> Result<f64, ContactError> {
-        gap_brought(scene, point, &self.obstacles[0])
-    }
-
-    /// The same a step before.
-    pub(crate) fn gap_before(&self, scene: &Scene, point: &ConstrainedPoint) -> Result<f64, ContactError> {
-        gap_brought(scene, point, &self.obstacles[1])
+    /// without what the obstacle opens, m: now (0), or an increment before (1).
+    pub(crate) fn gap(&self, scene: &Scene, point: &ConstrainedPoint, ago: usize) -> Result<f64, ContactError> {
+        match self.obstacles[ago].get(point.surface()) {
+            Some(pose) => point.contact.gap_brought(scene, pose),
+            None => Ok(point.contact.gap),
+        }
     }
 
     /// Where the obstacle of a point is; at rest where none moves.
@@ -249,13 +238,6 @@ impl StepProblem {
     pub(crate) fn forces(&self, model: &Model) -> Vec<f64> {
         let loads: Vec<_> = self.factors.iter().copied().zip(&model.loads).collect();
         model.tfeti.combine_forces(&loads)
-    }
-}
-
-fn gap_brought(scene: &Scene, point: &ConstrainedPoint, obstacles: &[Pose]) -> Result<f64, ContactError> {
-    match obstacles.get(point.contact.surface) {
-        Some(pose) => point.contact.gap_brought(scene, pose),
-        None => Ok(point.contact.gap),
     }
 }
 

@@ -181,6 +181,6 @@ fn supports_that_rest_have_no_motion() {
 #[test]
 fn translates_share_their_factors() {
     let simulation = set_up(benchmark(ramp(), 1));
-    let report = simulation.tfeti().report();
-    assert_eq!((report.subdomains, report.classes.len()), (3, 2));
+    let system = simulation.tfeti();
+    assert_eq!((system.subdomains(), system.report().classes.len()), (3, 2));
 }

@@ -177,7 +177,7 @@ fn tied_blocks_are_one() {
             assert!(effects.ties && !effects.contact && !effects.partners, "{what}");
             assert_eq!(simulation.plan().method, MethodKind::Linear, "{what}");
             assert!(results[0].points.is_empty(), "{what}");
-            let rows = &simulation.tfeti().report().rows;
+            let rows = simulation.tfeti().gluing().ranges();
             assert!(!rows.tied.is_empty() && rows.contact().is_empty(), "{what}");
             assert_eq!(simulation.plan().dual(), rows.total(), "{what}");
             let pulled: Vec<f64> = results[0].displacement.iter().map(|u| -u).collect();

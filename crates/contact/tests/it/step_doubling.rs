@@ -3,39 +3,6 @@
 use crate::common::*;
 
 #[test]
-fn doubled_steps_tell_the_error_of_the_time_steps() {
-    let scene = |steps: usize, formula| {
-        small_benchmark(Friction::coulomb(0.3), steps)
-            .with_analysis(Analysis::quasistatic(1.0, steps).with_formula(formula))
-    };
-    for formula in [DifferenceFormula::BACKWARD_EULER, DifferenceFormula::PAPER] {
-        let work_at = |steps: usize| {
-            let mut s = Simulation::new(scene(steps, formula), at(1e-8)).expect("set-up");
-            let results = rest(&mut s);
-            results.iter().map(|l| l.summary.friction_work).sum::<f64>()
-        };
-        let exact = work_at(640);
-        let mut doubling = StepDoubling::new(&scene(20, formula), &at(1e-8)).expect("set-up");
-        let mut last = None;
-        while !doubling.is_finished() {
-            last = Some(doubling.step().expect("step"));
-        }
-        let last = last.expect("a step");
-        let half = last.dissipated_work_size;
-        let index = last.dissipated_work / (half - exact);
-        println!(
-            "{formula:?}: difference {:.3e}, error of the half steps {:.3e} of {exact:.3e}, index {index:.2}; u {:.1e}, force {:.1e}",
-            last.dissipated_work,
-            half - exact,
-            last.displacement(),
-            last.force()
-        );
-        assert!((0.3..3.0).contains(&index));
-        assert!(doubling.counters().products > doubling.half().counters().products);
-    }
-}
-
-#[test]
 fn whole_steps_are_those_of_a_run_without_doubling() {
     let scene = small_benchmark(Friction::coulomb(0.3), 10).with_analysis(Analysis::quasistatic(1.0, 10));
     let mut doubling = StepDoubling::new(&scene, &tight()).expect("set-up");
@@ -45,11 +12,9 @@ fn whole_steps_are_those_of_a_run_without_doubling() {
         let result = step(&mut plain);
         let whole = doubling.whole().result().expect("a step").displacement();
         assert_eq!(result.displacement, whole.as_flattened());
-        let half = forces(doubling.half().result().expect("a step").points());
-        let off = distance(&half, &forces(&result.points));
-        assert!(off <= 2.0 * error.force() + 1e-12);
         assert_eq!(error.step, plain.state().step() - 1);
     }
+    assert!(doubling.counters().products > 2 * doubling.whole().counters().products);
     let statics = pressed(1, Friction::None).with_analysis(Analysis::statics());
     let refused = StepDoubling::new(&statics, &tight());
     assert!(matches!(refused, Err(ContactError::Doubling { .. })));
@@ -115,7 +80,6 @@ fn twice_doubled_steps_tell_the_error_and_its_order() {
                 truth += relative_distance(&scene, u.as_flattened(), &result.displacement).powi(2);
                 plain += error.displacement().powi(2);
                 better += error.whole_error().powi(2);
-                assert!(error.changed_points <= doubling.whole().constrained_points().len());
                 last = Some(error);
             }
             let last = last.expect("a step");

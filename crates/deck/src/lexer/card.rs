@@ -1,6 +1,6 @@
 //! A keyword with its parameters and data lines.
 
-use crate::error::{DeckError, Fault, Location};
+use crate::error::{DeckError, Fault, Location, Word};
 
 /// Largest number of a node or element.
 const LARGEST: u32 = i32::MAX as u32;
@@ -9,21 +9,35 @@ const LARGEST: u32 = i32::MAX as u32;
 #[derive(Debug, Clone)]
 pub(crate) struct Param {
     /// As it is written: `TYPE=C3D4`.
-    pub(crate) word: String,
+    pub(crate) word: Word,
     /// Upper case without blanks.
-    pub(crate) key: String,
+    key: String,
     /// What follows the equals sign, as it is written.
     pub(crate) value: Option<String>,
 }
 
-/// A data line.
+/// A name as it is compared, and the word that has it.
 #[derive(Debug, Clone)]
-pub(crate) struct Line {
-    pub(crate) location: Location,
-    pub(crate) text: String,
+pub(crate) struct Named {
+    pub(crate) name: String,
+    pub(crate) word: Word,
 }
 
-impl Line {
+/// What a data line says.
+impl Word {
+    /// A part of the line.
+    pub(crate) fn part(&self, text: &str) -> Self {
+        Self::new(&self.location, text)
+    }
+
+    /// An entry of the line; all of it where that is missing or blank.
+    pub(crate) fn entry(&self, fields: &[&str], at: usize) -> Self {
+        match fields.get(at) {
+            None | Some(&"") => self.clone(),
+            Some(text) => self.part(text),
+        }
+    }
+
     /// The entries, without blanks around them; a comma at the end adds none.
     pub(crate) fn fields(&self) -> Vec<&str> {
         let mut fields: Vec<&str> = self.text.split(',').map(str::trim).collect();
@@ -33,15 +47,11 @@ impl Line {
         fields
     }
 
-    pub(crate) fn fault(&self, word: &str, fault: Fault) -> DeckError {
-        DeckError::at(&self.location, word, fault)
-    }
-
     /// The entries, at most so many.
     pub(crate) fn at_most(&self, most: usize, wanted: &'static str) -> Result<Vec<&str>, DeckError> {
         let fields = self.fields();
         match fields.get(most) {
-            Some(extra) => Err(self.fault(if extra.is_empty() { "," } else { extra }, Fault::Expected(wanted))),
+            Some(extra) => Err(self.part(if extra.is_empty() { "," } else { extra }).expected(wanted)),
             None => Ok(fields),
         }
     }
@@ -50,29 +60,25 @@ impl Line {
     pub(crate) fn optional(&self, fields: &[&str], at: usize, wanted: &'static str) -> Result<Option<f64>, DeckError> {
         match fields.get(at) {
             None | Some(&"") => Ok(None),
-            Some(text) => match real(text) {
-                Some(value) => Ok(Some(value)),
-                None => Err(self.fault(text, Fault::Expected(wanted))),
-            },
+            Some(text) => real(text).map(Some).ok_or_else(|| self.part(text).expected(wanted)),
         }
     }
 
     /// A finite number.
     pub(crate) fn real(&self, fields: &[&str], at: usize, wanted: &'static str) -> Result<f64, DeckError> {
         let value = self.optional(fields, at, wanted)?;
-        value.ok_or_else(|| self.fault(self.text.trim(), Fault::Expected(wanted)))
+        value.ok_or_else(|| self.expected(wanted))
     }
 
     /// A number of a node or element.
     pub(crate) fn label(&self, fields: &[&str], at: usize, wanted: &'static str) -> Result<u32, DeckError> {
-        let text = fields.get(at).copied().unwrap_or("");
-        let word = if text.is_empty() { self.text.trim() } else { text };
-        label(text).ok_or_else(|| self.fault(word, Fault::Expected(wanted)))
+        let found = fields.get(at).and_then(|text| label(text));
+        found.ok_or_else(|| self.entry(fields, at).expected(wanted))
     }
 }
 
 /// A finite number, also with the exponent letter D of Fortran.
-pub(crate) fn real(text: &str) -> Option<f64> {
+fn real(text: &str) -> Option<f64> {
     // words such as "inf" and "nan" are names here
     let digits = |c: char| c.is_ascii_digit() || "+-.eEdD".contains(c);
     if !text.chars().all(digits) {
@@ -102,47 +108,36 @@ pub(crate) fn name(text: &str) -> String {
 /// A keyword, its parameters, and the data lines up to the next keyword.
 #[derive(Debug, Clone)]
 pub(crate) struct Card {
-    pub(crate) location: Location,
     /// As it is written: `*Node file`.
-    pub(crate) word: String,
+    pub(crate) word: Word,
     /// Upper case without blanks and star: `NODEFILE`.
     pub(crate) key: String,
     pub(crate) params: Vec<Param>,
-    pub(crate) lines: Vec<Line>,
+    pub(crate) lines: Vec<Word>,
 }
 
 impl Card {
     /// Takes a keyword line, with its continuation lines, apart.
-    pub(crate) fn new(location: Location, text: &str) -> Self {
+    pub(crate) fn new(location: &Location, text: &str) -> Self {
         let mut items = split(text).into_iter();
-        let word = items.next().unwrap_or_default().trim().to_owned();
-        let key = name(word.trim_start_matches('*'));
+        let word = items.next().unwrap_or_default().trim();
         let params = items.filter(|item| !item.trim().is_empty()).map(|item| {
             let (left, value) = match item.split_once('=') {
                 Some((left, value)) => (left, Some(value.trim().to_owned())),
                 None => (item, None),
             };
             Param {
-                word: item.trim().to_owned(),
+                word: Word::new(location, item.trim()),
                 key: name(left),
                 value,
             }
         });
         Self {
-            location,
-            word,
-            key,
+            key: name(word.trim_start_matches('*')),
+            word: Word::new(location, word),
             params: params.collect(),
             lines: Vec::new(),
         }
-    }
-
-    pub(crate) fn fault(&self, fault: Fault) -> DeckError {
-        DeckError::at(&self.location, &self.word, fault)
-    }
-
-    pub(crate) fn param_fault(&self, param: &Param, fault: Fault) -> DeckError {
-        DeckError::at(&self.location, &param.word, fault)
     }
 
     /// Refuses parameters that are not in the list (upper case, as they are written with blanks), and those
@@ -150,14 +145,13 @@ impl Card {
     pub(crate) fn allow(&self, known: &[&str]) -> Result<(), DeckError> {
         for (index, param) in self.params.iter().enumerate() {
             if !known.iter().any(|k| name(k) == param.key) {
-                let fault = Fault::UnknownParameter {
-                    keyword: self.word.clone(),
+                return Err(param.word.fault(Fault::UnknownParameter {
+                    keyword: self.word.text.clone(),
                     known: known.iter().map(|k| (*k).to_owned()).collect(),
-                };
-                return Err(self.param_fault(param, fault));
+                }));
             }
             if self.params[..index].iter().any(|p| p.key == param.key) {
-                return Err(self.param_fault(param, Fault::RepeatedParameter));
+                return Err(param.word.fault(Fault::RepeatedParameter));
             }
         }
         Ok(())
@@ -168,30 +162,29 @@ impl Card {
         self.params.iter().find(|p| p.key == key)
     }
 
+    /// A parameter that has to be there.
+    pub(crate) fn need_param(&self, key: &'static str) -> Result<&Param, DeckError> {
+        let param = self.param(key);
+        param.ok_or_else(|| self.word.fault(Fault::MissingParameter(key)))
+    }
+
     /// Whether a parameter without a value is there.
     pub(crate) fn flag(&self, key: &str) -> Result<bool, DeckError> {
         match self.param(key) {
             None => Ok(false),
             Some(Param { value: None, .. }) => Ok(true),
-            Some(param) => Err(self.param_fault(param, Fault::Expected("this parameter without a value"))),
+            Some(param) => Err(param.word.expected("this parameter without a value")),
         }
     }
 
-    /// The value of a parameter, as names are compared.
-    pub(crate) fn value(&self, key: &str) -> Result<Option<String>, DeckError> {
-        let Some(param) = self.param(key) else {
-            return Ok(None);
-        };
-        match param.value.as_deref().map(name) {
-            Some(value) if !value.is_empty() => Ok(Some(value)),
-            _ => Err(self.param_fault(param, Fault::Expected("a value after an equals sign"))),
-        }
+    /// The value of a parameter.
+    pub(crate) fn value(&self, key: &str) -> Result<Option<Named>, DeckError> {
+        self.param(key).map(Param::named).transpose()
     }
 
     /// The value of a parameter that has to be there.
-    pub(crate) fn need(&self, key: &'static str) -> Result<String, DeckError> {
-        let value = self.value(key)?;
-        value.ok_or_else(|| self.fault(Fault::MissingParameter(key)))
+    pub(crate) fn need(&self, key: &'static str) -> Result<Named, DeckError> {
+        self.need_param(key)?.named()
     }
 
     /// The value of a parameter, one of those listed (upper case, without blanks), by its position.
@@ -199,25 +192,32 @@ impl Card {
         let Some(value) = self.value(key)? else {
             return Ok(None);
         };
-        match (choices.iter().position(|c| *c == value), self.param(key)) {
-            (None, Some(param)) => Err(self.param_fault(param, Fault::Expected(wanted))),
-            (found, _) => Ok(found),
-        }
+        let found = choices.iter().position(|c| *c == value.name);
+        found.map(Some).ok_or_else(|| value.word.expected(wanted))
     }
 
     /// Refuses data beyond the first `most` lines.
     pub(crate) fn lines_at_most(&self, most: usize, wanted: &'static str) -> Result<(), DeckError> {
         match self.lines.get(most) {
-            Some(line) => Err(line.fault(line.text.trim(), Fault::Expected(wanted))),
+            Some(line) => Err(line.expected(wanted)),
             None => Ok(()),
         }
     }
 
     /// The only data line.
-    pub(crate) fn only_line(&self, wanted: &'static str) -> Result<&Line, DeckError> {
+    pub(crate) fn only_line(&self, wanted: &'static str) -> Result<&Word, DeckError> {
         self.lines_at_most(1, wanted)?;
-        let line = self.lines.first();
-        line.ok_or_else(|| self.fault(Fault::Expected(wanted)))
+        self.lines.first().ok_or_else(|| self.word.expected(wanted))
+    }
+}
+
+impl Param {
+    /// Its value, as names are compared.
+    fn named(&self) -> Result<Named, DeckError> {
+        let name = self.value.as_deref().map(name).filter(|name| !name.is_empty());
+        let name = name.ok_or_else(|| self.word.expected("a value after an equals sign"))?;
+        let word = self.word.clone();
+        Ok(Named { name, word })
     }
 }
 

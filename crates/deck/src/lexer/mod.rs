@@ -7,5 +7,5 @@
 mod card;
 mod source;
 
-pub(crate) use card::{Card, Line, Param, label, name};
+pub(crate) use card::{Card, Named, label, name};
 pub(crate) use source::cards;

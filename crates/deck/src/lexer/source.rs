@@ -5,8 +5,8 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::card::{Card, Line};
-use crate::error::{DeckError, Fault, Location};
+use super::card::Card;
+use crate::error::{DeckError, Fault, Location, Word};
 
 /// Most included files, how deep they may include each other, and the bytes and lines of all files together:
 /// far beyond any model that a machine holds, so that a damaged file cannot fill the memory.
@@ -55,21 +55,17 @@ impl Reader {
             let text = text.trim();
             self.lines += 1;
             if self.lines > LINES {
-                let fault = Fault::TooMany {
+                return Err(Word::new(&location, text).fault(Fault::TooMany {
                     what: "lines in all files",
                     most: LINES,
                     remedy: "split the model",
-                };
-                return Err(DeckError::at(&location, text, fault));
+                }));
             }
             if !text.starts_with('*') {
-                let line = Line {
-                    location,
-                    text: text.to_owned(),
-                };
+                let line = Word::new(&location, text);
                 match self.cards.last_mut() {
                     Some(card) => card.lines.push(line),
-                    None => return Err(line.fault(text, Fault::NoKeyword)),
+                    None => return Err(line.fault(Fault::NoKeyword)),
                 }
                 continue;
             }
@@ -79,10 +75,10 @@ impl Reader {
                     Some((_, more)) if !more.trim_start().starts_with('*') => {
                         keyword.push_str(more.trim());
                     }
-                    _ => return Err(DeckError::at(&location, &keyword, Fault::NotContinued)),
+                    _ => return Err(Word::new(&location, keyword).fault(Fault::NotContinued)),
                 }
             }
-            let card = Card::new(location, &keyword);
+            let card = Card::new(&location, &keyword);
             if card.key == "INCLUDE" {
                 self.include(&card)?;
             } else {
@@ -95,22 +91,19 @@ impl Reader {
     fn include(&mut self, card: &Card) -> Result<(), DeckError> {
         card.allow(&["INPUT"])?;
         card.need("INPUT")?;
-        let Some(param) = card.param("INPUT") else {
-            return Ok(());
-        };
+        let param = card.need_param("INPUT")?;
         // the path as it is written: names of files have cases
         let written = param.value.as_deref().unwrap_or("").trim_matches('"');
-        let folder = card.location.file.parent().unwrap_or(Path::new(""));
+        let folder = card.word.location.file.parent().unwrap_or(Path::new(""));
         let path = folder.join(written);
         let this = identity(&path);
         if self.open.contains(&this) {
-            return Err(card.param_fault(param, Fault::IncludeLoop));
+            return Err(param.word.fault(Fault::IncludeLoop));
         }
         self.files += 1;
         let too_many = |what, most| {
             let remedy = "put them together";
-            let fault = Fault::TooMany { what, most, remedy };
-            card.param_fault(param, fault)
+            param.word.fault(Fault::TooMany { what, most, remedy })
         };
         if self.files > FILES {
             return Err(too_many("included files", FILES));
@@ -120,7 +113,7 @@ impl Reader {
         }
         let bytes = load(&path, BYTES - self.bytes).map_err(|source| {
             let path = path.clone();
-            card.param_fault(param, Fault::Include { path, source })
+            param.word.fault(Fault::Include { path, source })
         })?;
         self.bytes += bytes.len() as u64;
         self.open.push(this);

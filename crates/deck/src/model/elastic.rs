@@ -6,15 +6,6 @@ use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
 use signorini_fem_mesh::{Hooke, HookeError};
 
-/// What a card says, what its numbers are, and their count.
-const KINDS: [(&str, &str, usize); 5] = [
-    ("ISO", ISOTROPIC, 2),
-    ("ISOTROPIC", ISOTROPIC, 2),
-    ("ORTHO", ORTHOTROPIC, 9),
-    ("ORTHOTROPIC", ORTHOTROPIC, 9),
-    ("ENGINEERINGCONSTANTS", ENGINEERING, 9),
-];
-
 const ISOTROPIC: &str = "Young's modulus and Poisson's ratio in one line, and at most a temperature: laws that depend \
     on temperature are not read";
 const ORTHOTROPIC: &str = "nine numbers, eight in the first line: D1111, D1122, D2222, D1133, D2233, D3333, D1212, \
@@ -30,40 +21,42 @@ pub(super) fn elastic(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         "*ELASTIC belongs to a material; put *MATERIAL before it",
     )?;
     let kind = card.value("TYPE")?;
-    let kind = kind.as_deref().unwrap_or("ISO");
-    let (wanted, count) = match (KINDS.iter().find(|k| k.0 == kind), card.param("TYPE")) {
-        (None, Some(param)) => {
+    let (wanted, count) = match kind.as_ref().map_or("ISO", |kind| &kind.name) {
+        "ISO" | "ISOTROPIC" => (ISOTROPIC, 2),
+        "ORTHO" | "ORTHOTROPIC" => (ORTHOTROPIC, 9),
+        "ENGINEERINGCONSTANTS" => (ENGINEERING, 9),
+        _ => {
             let why = "isotropic laws, orthotropic ones and engineering constants are read (a program can set any \
                 law with Hooke::from_voigt)";
-            return Err(card.param_fault(param, Fault::Unsupported(why)));
+            let word = kind.as_ref().map_or(&card.word, |kind| &kind.word);
+            return Err(word.fault(Fault::Unsupported(why)));
         }
-        (found, _) => found.map_or((ISOTROPIC, 2), |k| (k.1, k.2)),
     };
     let mut numbers = Vec::with_capacity(count + 1);
     for line in &card.lines {
         if numbers.len() >= count {
-            return Err(line.fault(line.text.trim(), Fault::Expected(wanted)));
+            return Err(line.expected(wanted));
         }
         let fields = line.at_most(count + 1 - numbers.len(), wanted)?;
         for at in 0..fields.len() {
             numbers.push(line.real(&fields, at, wanted)?);
         }
     }
-    let line = card.lines.last();
-    let line = line.ok_or_else(|| card.fault(Fault::Expected(wanted)))?;
+    let (Some(first), Some(last)) = (card.lines.first(), card.lines.last()) else {
+        return Err(card.word.expected(wanted));
+    };
     if numbers.len() < count {
-        return Err(line.fault(line.text.trim(), Fault::Expected(wanted)));
+        return Err(last.expected(wanted));
     }
-    if let Some((first, _)) = &material.elastic {
-        return Err(twice(card, first.line));
+    if let Some((before, _)) = &material.elastic {
+        return Err(twice(card, before));
     }
     let law = match (wanted, &numbers[..]) {
         (ORTHOTROPIC, n) => orthotropic([[n[0], n[1], n[3]], [n[1], n[2], n[4]], [n[3], n[4], n[5]]], &n[6..9]),
         (ENGINEERING, n) => orthotropic(inverse(n), &n[6..9]),
         (_, n) => Hooke::isotropic(n[0], n[1]),
     };
-    let first = &card.lines[0];
-    let law = law.map_err(|error| first.fault(first.text.trim(), Fault::Hooke(error)))?;
+    let law = law.map_err(|error| first.fault(Fault::Hooke(error)))?;
     material.elastic = Some((first.location.clone(), law));
     Ok(())
 }

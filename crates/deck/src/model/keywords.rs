@@ -1,6 +1,6 @@
 //! Which keyword is read by whom, where it may stand, and what is said about the others.
 
-use super::step::{self, Step};
+use super::step::{self, SOLVER, Step};
 use super::{Ignored, Model, elastic, mesh, property};
 use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
@@ -12,36 +12,18 @@ INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, 
 which are ignored and reported";
 
 /// Requests for output, which ask nothing of the solution.
-const OUTPUT: [&str; 20] = [
-    "NODEFILE",
-    "NODEPRINT",
-    "NODEOUTPUT",
-    "ELFILE",
-    "ELPRINT",
-    "ELEMENTOUTPUT",
-    "CONTACTFILE",
-    "CONTACTPRINT",
-    "CONTACTOUTPUT",
-    "FACEPRINT",
-    "SECTIONPRINT",
-    "ENERGYFILE",
-    "ENERGYPRINT",
-    "ENERGYOUTPUT",
-    "OUTPUT",
-    "FILEFORMAT",
-    "PREPRINT",
-    "MONITOR",
-    "PRINT",
-    "TIMEPOINTS",
-];
+const OUTPUT: &str = "NODEFILE NODEPRINT NODEOUTPUT ELFILE ELPRINT ELEMENTOUTPUT CONTACTFILE CONTACTPRINT \
+CONTACTOUTPUT FACEPRINT SECTIONPRINT ENERGYFILE ENERGYPRINT ENERGYOUTPUT OUTPUT FILEFORMAT PREPRINT MONITOR PRINT \
+TIMEPOINTS";
 
 /// Keywords of these programs that have no counterpart here, and what to do.
-const REFUSED: [(&str, &str); 36] = [
-    ("ASSEMBLY", FLAT),
-    ("PART", FLAT),
-    ("INSTANCE", FLAT),
-    ("EQUATION", "couplings of nodes are not here"),
-    ("MPC", "couplings of nodes are not here"),
+const REFUSED: [(&str, &str); 16] = [
+    (
+        "ASSEMBLY PART INSTANCE",
+        "decks with parts and an assembly are not read; write a flat one (in Abaqus/CAE: Edit Attributes, do not use \
+        parts and assemblies)",
+    ),
+    ("EQUATION MPC", "couplings of nodes are not here"),
     (
         "COUPLING",
         "couplings of nodes are not here; put the force or motion on the nodes themselves",
@@ -59,26 +41,24 @@ const REFUSED: [(&str, &str); 36] = [
         "supports and forces are along x, y, z; a program can hold any direction with Directions::Vectors",
     ),
     ("ORIENTATION", "the axes of materials are x, y, z"),
-    ("PLASTIC", ELASTIC),
-    ("CREEP", ELASTIC),
-    ("HYPERELASTIC", ELASTIC),
-    ("DAMPING", ELASTIC),
-    ("EXPANSION", THERMAL),
-    ("CONDUCTIVITY", THERMAL),
-    ("SPECIFICHEAT", THERMAL),
-    ("TEMPERATURE", THERMAL),
+    ("PLASTIC CREEP HYPERELASTIC DAMPING", "materials are linear and elastic"),
+    (
+        "EXPANSION CONDUCTIVITY SPECIFICHEAT TEMPERATURE",
+        "temperature plays no role here; remove it",
+    ),
     (
         "INITIALCONDITIONS",
         "the body is at rest and without stress before the first step",
     ),
-    ("SHELLSECTION", SOLID),
-    ("BEAMSECTION", SOLID),
-    ("MEMBRANESECTION", SOLID),
-    ("SPRING", SOLID),
-    ("MASS", SOLID),
+    (
+        "SHELLSECTION BEAMSECTION MEMBRANESECTION SPRING MASS",
+        "only solid elements C3D4 and C3D10 are read",
+    ),
     ("PRE-TENSIONSECTION", "bolts cannot be tightened from a deck"),
-    ("MODELCHANGE", "what a scene holds is there in all steps"),
-    ("CHANGEFRICTION", "a coefficient of friction holds for all steps"),
+    (
+        "MODELCHANGE CHANGEFRICTION",
+        "bodies, contacts and coefficients of friction hold for all steps",
+    ),
     (
         "CLEARANCE",
         "the gap is measured between the nodes; move one of the bodies",
@@ -87,21 +67,11 @@ const REFUSED: [(&str, &str); 36] = [
         "CONTACT",
         "general contact is not here; name the surfaces that may touch with *CONTACT PAIR",
     ),
-    ("DYNAMIC", PROCEDURE),
-    ("FREQUENCY", PROCEDURE),
-    ("BUCKLE", PROCEDURE),
-    ("HEATTRANSFER", PROCEDURE),
-    ("VISCO", PROCEDURE),
-    ("COUPLEDTEMPERATURE-DISPLACEMENT", PROCEDURE),
-    ("UNCOUPLEDTEMPERATURE-DISPLACEMENT", PROCEDURE),
+    (
+        "DYNAMIC FREQUENCY BUCKLE HEATTRANSFER VISCO COUPLEDTEMPERATURE-DISPLACEMENT UNCOUPLEDTEMPERATURE-DISPLACEMENT",
+        "only *STATIC is solved",
+    ),
 ];
-
-const FLAT: &str = "decks with parts and an assembly are not read; write a flat one (in Abaqus/CAE: Edit \
-Attributes, do not use parts and assemblies)";
-const ELASTIC: &str = "materials are linear and elastic";
-const THERMAL: &str = "temperature plays no role here; remove it";
-const SOLID: &str = "only solid elements C3D4 and C3D10 are read";
-const PROCEDURE: &str = "only *STATIC is solved";
 
 const BEFORE: &str = "this belongs to the model; put it before the first *STEP";
 const INSIDE: &str = "this belongs to a step; put it between *STEP and *END STEP";
@@ -114,10 +84,7 @@ pub(crate) fn read(cards: &[Card]) -> Result<Model, DeckError> {
         read_card(&mut model, &mut step, card)?;
     }
     match step {
-        Some(step) => {
-            let why = "the step does not end; put *END STEP after it";
-            Err(DeckError::at(&step.location, "*STEP", Fault::Misplaced(why)))
-        }
+        Some(step) => Err(step.word.cannot("the step does not end; put *END STEP after it")),
         None => Ok(model),
     }
 }
@@ -146,12 +113,12 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
     };
     if let Some(read) = of_model {
         if current.is_some() || !model.steps.is_empty() {
-            return Err(card.fault(Fault::Misplaced(BEFORE)));
+            return Err(card.word.cannot(BEFORE));
         }
         return read(model, card);
     }
     match (card.key.as_str(), current.as_mut()) {
-        ("BOUNDARY", None) if !model.steps.is_empty() => Err(card.fault(Fault::Misplaced(INSIDE))),
+        ("BOUNDARY", None) if !model.steps.is_empty() => Err(card.word.cannot(INSIDE)),
         ("BOUNDARY", step) => step::boundary(model, step, card),
         ("STEP", None) => {
             *current = Some(Step::new(model, card)?);
@@ -159,9 +126,9 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         }
         ("STEP", Some(_)) => {
             let why = "the step before has not ended; put *END STEP before this one";
-            Err(card.fault(Fault::Misplaced(why)))
+            Err(card.word.cannot(why))
         }
-        ("STATIC" | "CLOAD" | "DLOAD" | "DSLOAD" | "ENDSTEP", None) => Err(card.fault(Fault::Misplaced(INSIDE))),
+        ("STATIC" | "CLOAD" | "DLOAD" | "DSLOAD" | "ENDSTEP", None) => Err(card.word.cannot(INSIDE)),
         ("STATIC", Some(step)) => step.procedure(model, card),
         ("CLOAD", Some(step)) => step::forces(model, step, card),
         ("DLOAD", Some(step)) => step::distributed(model, step, card, false),
@@ -170,8 +137,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
             card.allow(&[])?;
             card.lines_at_most(0, "no data")?;
             if step.time.is_none() {
-                let why = "the step has no procedure; put *STATIC into it";
-                return Err(DeckError::at(&step.location, "*STEP", Fault::Misplaced(why)));
+                return Err(step.word.cannot("the step has no procedure; put *STATIC into it"));
             }
             model.steps.extend(current.take());
             Ok(())
@@ -182,21 +148,22 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
 
 /// Output is noted, anything else refused.
 fn other(model: &mut Model, card: &Card, key: &str) -> Result<(), DeckError> {
+    let among = |keys: &str| keys.split_whitespace().any(|known| known == key);
     let restart = key == "RESTART" && card.param("READ").is_none();
-    let why = if OUTPUT.contains(&key) || restart {
+    let why = if among(OUTPUT) || restart {
         "results are those that the program writes which runs the deck"
     } else if key == "CONTROLS" {
-        "a setting of another solver"
+        SOLVER
     } else if key == "RESTART" {
         let why = "a run is resumed from a state of this library, not from a restart file";
-        return Err(card.fault(Fault::Unsupported(why)));
+        return Err(card.word.fault(Fault::Unsupported(why)));
     } else {
-        let refused = REFUSED.iter().find(|(keyword, _)| *keyword == key);
-        return Err(card.fault(match refused {
+        let refused = REFUSED.iter().find(|(keys, _)| among(keys));
+        return Err(card.word.fault(match refused {
             Some((_, why)) => Fault::Unsupported(why),
             None => Fault::UnknownKeyword { known: READ.into() },
         }));
     };
-    model.ignored.push(Ignored::new(&card.location, &card.word, why));
+    model.ignored.push(Ignored::new(&card.word, why));
     Ok(())
 }

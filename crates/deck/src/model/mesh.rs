@@ -1,23 +1,33 @@
 //! Nodes, elements, sets and surfaces.
 
 use super::{Element, Faces, Kind, Member, Model, Node, Side, Target};
-use crate::error::{DeckError, Fault};
-use crate::lexer::{Card, Line, label, name};
+use crate::error::{DeckError, Fault, Word};
+use crate::lexer::{Card, label, name};
 
 /// Most members of one generated range.
 const RANGE: u64 = 100_000_000;
 
-const TYPES: &str = "only tetrahedra C3D4 and C3D10 are read, and R3D3 and R3D4 for rigid planes; mesh in \
-these, and \
-    leave out elements of surfaces and lines (in Gmsh: save only physical volumes)";
+/// Elements that are read: what they are, the number of their nodes, and what a line of them is.
+const TYPES: [(&str, Kind, usize, &str); 4] = [
+    ("C3D4", Kind::Solid, 4, "an element number and four node numbers"),
+    ("C3D10", Kind::Solid, 10, "an element number and ten node numbers"),
+    ("R3D3", Kind::Triangle, 3, "an element number and three node numbers"),
+    (
+        "R3D4",
+        Kind::Quadrilateral,
+        4,
+        "an element number and four node numbers",
+    ),
+];
+
+const LABEL: &str = "a number from 1 to 2147483647";
 
 pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NSET"])?;
     let set = card.value("NSET")?;
-    let mut members = Vec::new();
+    let first = model.nodes.len();
     for line in &card.lines {
-        let wanted = "a node number and up to three coordinates";
-        let fields = line.at_most(4, wanted)?;
+        let fields = line.at_most(4, "a node number and up to three coordinates")?;
         let label = line.label(&fields, 0, "a node number from 1 to 2147483647")?;
         let mut point = [0.0; 3];
         for (c, value) in point.iter_mut().enumerate() {
@@ -26,36 +36,26 @@ pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         }
         let location = line.location.clone();
         model.nodes.push(Node { label, point, location });
-        if set.is_some() {
-            members.push((Member::One(label), line.location.clone()));
-        }
     }
     if let Some(set) = set {
-        model.nsets.entry(set).append(&mut members);
+        let new = model.nodes[first..].iter();
+        let members = new.map(|node| (Member::One(node.label), node.location.clone()));
+        model.nsets.entry(set.name).extend(members);
     }
     Ok(())
 }
 
 pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["TYPE", "ELSET"])?;
-    let kinds = [Kind::Solid, Kind::Triangle, Kind::Quadrilateral, Kind::Solid];
     let kind = card.need("TYPE")?;
-    let kind = ["C3D4", "R3D3", "R3D4", "C3D10"].iter().position(|k| *k == kind);
-    let quadratic = kind == Some(3);
-    let (kind, nodes, wanted) = match (kind.map(|k| kinds[k]), card.param("TYPE")) {
-        (None, Some(param)) => {
-            return Err(card.param_fault(param, Fault::Unsupported(TYPES)));
-        }
-        (Some(_), _) if quadratic => (Kind::Solid, 10, "an element number and ten node numbers"),
-        (Some(Kind::Triangle), _) => (Kind::Triangle, 3, "an element number and three node numbers"),
-        (kind, _) => (
-            kind.unwrap_or(Kind::Solid),
-            4,
-            "an element number and four node numbers",
-        ),
+    let Some(&(_, kind, nodes, wanted)) = TYPES.iter().find(|k| k.0 == kind.name) else {
+        return Err(kind.word.fault(Fault::Unsupported(
+            "only tetrahedra C3D4 and C3D10 are read, and R3D3 and R3D4 for rigid planes; mesh in these, and leave out \
+            elements of surfaces and lines (in Gmsh: save only physical volumes)",
+        )));
     };
     let set = card.value("ELSET")?;
-    let mut members = Vec::new();
+    let first = model.elements.len();
     let mut lines = card.lines.iter();
     while let Some(line) = lines.next() {
         let mut numbers = Vec::with_capacity(1 + nodes);
@@ -64,7 +64,7 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         while let Some(line) = next {
             let fields = line.at_most(1 + nodes - numbers.len(), wanted)?;
             for at in 0..fields.len() {
-                numbers.push(line.label(&fields, at, "a number from 1 to 2147483647")?);
+                numbers.push(line.label(&fields, at, LABEL)?);
             }
             let open = numbers.len() < 1 + nodes && line.text.ends_with(',');
             next = if open { lines.next() } else { None };
@@ -73,22 +73,20 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
             [label, a, b, c] if nodes == 3 => (label, [a, b, c, c], [0; 6]),
             [label, a, b, c, d] if nodes == 4 => (label, [a, b, c, d], [0; 6]),
             [label, a, b, c, d, e, f, g, h, i, j] => (label, [a, b, c, d], [e, f, g, h, i, j]),
-            _ => return Err(line.fault(line.text.trim(), Fault::Expected(wanted))),
+            _ => return Err(line.expected(wanted)),
         };
-        let location = line.location.clone();
-        if set.is_some() {
-            members.push((Member::One(label), location.clone()));
-        }
         model.elements.push(Element {
             label,
             kind,
             nodes,
             mids,
-            location,
+            location: line.location.clone(),
         });
     }
     if let Some(set) = set {
-        model.elsets.entry(set).append(&mut members);
+        let new = model.elements[first..].iter();
+        let members = new.map(|element| (Member::One(element.label), element.location.clone()));
+        model.elsets.entry(set.name).extend(members);
     }
     Ok(())
 }
@@ -98,7 +96,7 @@ pub(super) fn set(model: &mut Model, card: &Card, key: &'static str) -> Result<(
     // INTERNAL only hides a set in a user interface
     card.allow(&[key, "GENERATE", "INTERNAL"])?;
     card.flag("INTERNAL")?;
-    let name = card.need(key)?;
+    let set = card.need(key)?;
     let generate = card.flag("GENERATE")?;
     let mut members = Vec::new();
     for line in &card.lines {
@@ -107,7 +105,10 @@ pub(super) fn set(model: &mut Model, card: &Card, key: &'static str) -> Result<(
             continue;
         }
         for field in line.fields() {
-            let member = member(line, field)?;
+            let member = match target(line, field)? {
+                Target::Number(number) => Member::One(number),
+                Target::Name(name) => Member::Set(name),
+            };
             members.push((member, line.location.clone()));
         }
     }
@@ -115,21 +116,11 @@ pub(super) fn set(model: &mut Model, card: &Card, key: &'static str) -> Result<(
         "NSET" => &mut model.nsets,
         _ => &mut model.elsets,
     };
-    sets.entry(name).append(&mut members);
+    sets.entry(set.name).append(&mut members);
     Ok(())
 }
 
-fn member(line: &Line, field: &str) -> Result<Member, DeckError> {
-    if let Some(number) = label(field) {
-        return Ok(Member::One(number));
-    }
-    match target(line, field)? {
-        Target::Number(number) => Ok(Member::One(number)),
-        Target::Name(name) => Ok(Member::Set(name)),
-    }
-}
-
-fn range(line: &Line) -> Result<Member, DeckError> {
+fn range(line: &Word) -> Result<Member, DeckError> {
     let wanted = "first number, last number and, if it is not 1, the increment";
     let fields = line.at_most(3, wanted)?;
     let [from, to] = [line.label(&fields, 0, wanted)?, line.label(&fields, 1, wanted)?];
@@ -138,30 +129,27 @@ fn range(line: &Line) -> Result<Member, DeckError> {
         Some(_) => line.label(&fields, 2, wanted)?,
     };
     if to < from {
-        let wanted = "a last number not below the first";
-        return Err(line.fault(line.text.trim(), Fault::Expected(wanted)));
+        return Err(line.expected("a last number not below the first"));
     }
     if u64::from((to - from) / step) >= RANGE {
-        let fault = Fault::TooMany {
+        return Err(line.fault(Fault::TooMany {
             what: "numbers in one range",
             most: RANGE,
             remedy: "check the last number",
-        };
-        return Err(line.fault(line.text.trim(), fault));
+        }));
     }
     Ok(Member::Range { from, to, step })
 }
 
 /// A number, or the name of a set.
-pub(super) fn target(line: &Line, field: &str) -> Result<Target, DeckError> {
+pub(super) fn target(line: &Word, field: &str) -> Result<Target, DeckError> {
     if let Some(number) = label(field) {
         return Ok(Target::Number(number));
     }
-    let wanted = "a number from 1 to 2147483647, or the name of a set";
     let begins = field.chars().next();
     if begins.is_none_or(|c| c.is_ascii_digit() || "+-.".contains(c)) {
-        let word = if field.is_empty() { line.text.trim() } else { field };
-        return Err(line.fault(word, Fault::Expected(wanted)));
+        let wanted = "a number from 1 to 2147483647, or the name of a set";
+        return Err(line.entry(&[field], 0).expected(wanted));
     }
     Ok(Target::Name(name(field)))
 }
@@ -170,22 +158,19 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NAME", "TYPE", "INTERNAL"])?;
     card.flag("INTERNAL")?;
     let surface = card.need("NAME")?;
-    if let (Some(kind), Some(param)) = (card.value("TYPE")?, card.param("TYPE")) {
-        let why = match kind.as_str() {
-            "ELEMENT" => None,
-            "NODE" => Some(
-                "a surface of nodes has no areas and normals, which contact and pressure need; give faces \
-                of elements, TYPE=ELEMENT",
-            ),
-            _ => Some("only surfaces of element faces are read, TYPE=ELEMENT"),
-        };
-        if let Some(why) = why {
-            return Err(card.param_fault(param, Fault::Unsupported(why)));
-        }
+    let kind = card.value("TYPE")?;
+    if let Some(kind) = kind.filter(|kind| kind.name != "ELEMENT") {
+        return Err(kind.word.fault(Fault::Unsupported(match kind.name.as_str() {
+            "NODE" => {
+                "a surface of nodes has no areas and normals, which contact and pressure need; give faces of \
+                elements, TYPE=ELEMENT"
+            }
+            _ => "only surfaces of element faces are read, TYPE=ELEMENT",
+        })));
     }
-    if model.surfaces.position(&surface).is_some() {
+    if model.surfaces.position(&surface.name).is_some() {
         let why = "a surface of this name is there already; give all its faces at once";
-        return Err(card.fault(Fault::Misplaced(why)));
+        return Err(card.word.cannot(why));
     }
     let mut faces = Vec::new();
     for line in &card.lines {
@@ -198,20 +183,15 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
             Some("S4") => Side::Face(4),
             Some("SPOS") => Side::Facet { positive: true },
             Some("SNEG") => Side::Facet { positive: false },
-            _ => {
-                let word = fields.get(1).copied().unwrap_or(line.text.trim());
-                return Err(line.fault(word, Fault::Expected(wanted)));
-            }
+            _ => return Err(line.entry(&fields, 1).expected(wanted)),
         };
-        faces.push(Faces {
-            target: target(line, fields[0])?,
-            side,
-            location: line.location.clone(),
-        });
+        let target = target(line, fields[0])?;
+        let word = line.part(&target.to_string());
+        faces.push(Faces { target, side, word });
     }
     if faces.is_empty() {
-        return Err(card.fault(Fault::Empty("the surface has no faces; give them in lines")));
+        return Err(card.word.cannot("the surface has no faces; give them in lines"));
     }
-    model.surfaces.add(surface, faces);
+    model.surfaces.add(surface.name, faces);
     Ok(())
 }

@@ -12,14 +12,15 @@ mod names;
 mod property;
 mod step;
 
-use crate::error::Location;
-use crate::lexer::Param;
+use crate::error::{DeckError, Location, Word};
+use crate::lexer::Named;
 use signorini_fem_mesh::{History, Hooke};
 
 pub(crate) use keywords::read;
 pub(crate) use names::Names;
-pub(crate) use property::named;
-pub(crate) use step::{Boundary, COMPONENT, Conditions, Distributed, DistributedKind, Force, INCREMENTS, Step, Target};
+pub(crate) use step::{
+    COMPONENT, Component, Components, Condition, Conditions, DistributedKind, Given, INCREMENTS, Step, Target,
+};
 
 /// A request of the deck that has no meaning here.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -33,9 +34,12 @@ pub struct Ignored {
 }
 
 impl Ignored {
-    pub(crate) fn new(location: &Location, word: &str, why: &'static str) -> Self {
-        let (location, word) = (location.clone(), word.to_owned());
-        Self { location, word, why }
+    pub(crate) fn new(word: &Word, why: &'static str) -> Self {
+        Self {
+            location: word.location.clone(),
+            word: word.text.clone(),
+            why,
+        }
     }
 }
 
@@ -74,6 +78,13 @@ pub(crate) struct Element {
     pub(crate) location: Location,
 }
 
+impl Element {
+    /// Its number, where it is defined.
+    pub(crate) fn word(&self) -> Word {
+        Word::new(&self.location, self.label.to_string())
+    }
+}
+
 /// Something that belongs to a set.
 #[derive(Debug, Clone)]
 pub(crate) enum Member {
@@ -102,7 +113,7 @@ pub(crate) enum Side {
 pub(crate) struct Faces {
     pub(crate) target: Target,
     pub(crate) side: Side,
-    pub(crate) location: Location,
+    pub(crate) word: Word,
 }
 
 #[derive(Debug, Clone)]
@@ -115,9 +126,8 @@ pub(crate) struct Material {
 
 #[derive(Debug, Clone)]
 pub(crate) struct Section {
-    pub(crate) location: Location,
-    pub(crate) elset: (String, String),
-    pub(crate) material: (String, String),
+    pub(crate) elset: Named,
+    pub(crate) material: Named,
 }
 
 #[derive(Debug, Clone)]
@@ -139,21 +149,27 @@ pub(crate) struct Interaction {
 /// Elements that keep their shape and follow a node.
 #[derive(Debug, Clone)]
 pub(crate) struct RigidBody {
-    pub(crate) location: Location,
-    pub(crate) elset: (String, String),
+    pub(crate) elset: Named,
     /// The node whose displacement it has, with the word that names it.
-    pub(crate) reference: (Target, String),
+    pub(crate) reference: (Target, Word),
     /// The node whose displacement is its rotation.
-    pub(crate) rotation: Option<(Target, String)>,
+    pub(crate) rotation: Option<(Target, Word)>,
 }
 
 #[derive(Debug, Clone)]
 pub(crate) struct Pair {
-    pub(crate) location: Location,
     /// `None` for bonded surfaces.
-    pub(crate) interaction: Option<Param>,
-    pub(crate) slave: String,
-    pub(crate) master: String,
+    pub(crate) interaction: Option<Named>,
+    pub(crate) slave: Named,
+    pub(crate) master: Named,
+}
+
+impl Model {
+    /// The material of a section.
+    pub(crate) fn material(&self, section: &Section) -> Result<&Material, DeckError> {
+        let Named { name, word } = &section.material;
+        Ok(self.materials.at(self.materials.find("material", name, word)?))
+    }
 }
 
 /// A deck in its own words.
@@ -171,7 +187,7 @@ pub(crate) struct Model {
     pub(crate) pairs: Vec<Pair>,
     pub(crate) rigid: Vec<RigidBody>,
     /// Supports that hold before the first step.
-    pub(crate) supports: Vec<Boundary>,
+    pub(crate) supports: Vec<Condition<Components>>,
     pub(crate) steps: Vec<Step>,
     pub(crate) ignored: Vec<Ignored>,
 }

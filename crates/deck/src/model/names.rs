@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::error::{DeckError, Fault, Location};
+use crate::error::{DeckError, Fault, Word};
 
 /// A table of named things.
 #[derive(Debug, Clone)]
@@ -48,15 +48,10 @@ impl<T> Names<T> {
     }
 
     /// The position of a name, or what an error at `word` says.
-    pub(crate) fn find(
-        &self,
-        what: &'static str,
-        name: &str,
-        (location, word): (&Location, &str),
-    ) -> Result<usize, DeckError> {
+    pub(crate) fn find(&self, what: &'static str, name: &str, word: &Word) -> Result<usize, DeckError> {
         self.position(name).ok_or_else(|| {
             let known = self.names();
-            DeckError::at(location, word, Fault::UnknownName { what, known })
+            word.fault(Fault::UnknownName { what, known })
         })
     }
 }

@@ -1,35 +1,31 @@
 //! Materials, sections, amplitudes, contact pairs and their interactions.
 
 use super::{Amplitude, Ignored, Interaction, Material, Model, Pair, RigidBody, Section, Target};
-use crate::error::{DeckError, Fault};
-use crate::lexer::{Card, Line, Param, label, name};
+use crate::error::{DeckError, Fault, Location, Word};
+use crate::lexer::{Card, Named, label, name};
 use signorini_fem_mesh::History;
-
-pub(super) const PENALTY: &str = "a number for penalty iterations only: the law is solved exactly here";
-
-fn word(param: Option<&Param>) -> String {
-    param.map(|p| p.word.clone()).unwrap_or_default()
-}
 
 /// The material or interaction that a card belongs to: the last one.
 pub(super) fn inside<'a, T>(last: Option<&'a mut T>, card: &Card, what: &'static str) -> Result<&'a mut T, DeckError> {
-    last.ok_or_else(|| card.fault(Fault::Misplaced(what)))
+    last.ok_or_else(|| card.word.cannot(what))
 }
 
-pub(super) fn twice(card: &Card, first: usize) -> DeckError {
-    let remedy = "keep one of them";
-    card.fault(Fault::Repeated { first, remedy })
+pub(super) fn twice(card: &Card, first: &Location) -> DeckError {
+    card.word.fault(Fault::Repeated {
+        first: first.line,
+        remedy: "keep one of them",
+    })
 }
 
 pub(super) fn material(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NAME"])?;
     card.lines_at_most(0, "no data; *ELASTIC follows as a keyword of its own")?;
-    let name = card.need("NAME")?;
+    let name = card.need("NAME")?.name;
     if let Some(at) = model.materials.position(&name) {
-        return Err(twice(card, model.materials.at(at).location.line));
+        return Err(twice(card, &model.materials.at(at).location));
     }
     let material = Material {
-        location: card.location.clone(),
+        location: card.word.location.clone(),
         elastic: None,
         density: None,
     };
@@ -49,7 +45,7 @@ pub(super) fn density(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     let fields = line.at_most(2, wanted)?;
     let value = line.real(&fields, 0, wanted)?;
     if value <= 0.0 || material.density.is_some() {
-        return Err(line.fault(fields[0], Fault::Expected(wanted)));
+        return Err(line.part(fields[0]).expected(wanted));
     }
     material.density = Some(value);
     Ok(())
@@ -63,17 +59,13 @@ pub(super) fn section(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     if let Some(line) = card.lines.first() {
         line.optional(&line.at_most(1, wanted)?, 0, wanted)?;
     }
-    model.sections.push(Section {
-        location: card.location.clone(),
-        elset: (elset, word(card.param("ELSET"))),
-        material: (material, word(card.param("MATERIAL"))),
-    });
+    model.sections.push(Section { elset, material });
     Ok(())
 }
 
 pub(super) fn amplitude(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NAME", "TIME", "VALUE", "DEFINITION"])?;
-    let amplitude = card.need("NAME")?;
+    let amplitude = card.need("NAME")?.name;
     card.choice("VALUE", &["RELATIVE"], "VALUE=RELATIVE; other values are not supported")?;
     card.choice(
         "DEFINITION",
@@ -84,7 +76,7 @@ pub(super) fn amplitude(model: &mut Model, card: &Card) -> Result<(), DeckError>
     let total = card.choice("TIME", &times, "TIME=STEP TIME or TIME=TOTAL TIME")? == Some(1);
     if model.amplitudes.position(&amplitude).is_some() {
         let why = "an amplitude of this name is there already; give all its points at once";
-        return Err(card.fault(Fault::Misplaced(why)));
+        return Err(card.word.cannot(why));
     }
     let mut numbers = Vec::new();
     for line in &card.lines {
@@ -94,10 +86,10 @@ pub(super) fn amplitude(model: &mut Model, card: &Card) -> Result<(), DeckError>
         }
     }
     if numbers.len() % 2 == 1 {
-        return Err(card.fault(Fault::Expected("pairs of time and value; one value is missing")));
+        return Err(card.word.expected("pairs of time and value; one value is missing"));
     }
     let points: Vec<(f64, f64)> = numbers.chunks_exact(2).map(|p| (p[0], p[1])).collect();
-    let history = History::table(points.clone()).map_err(|e| card.fault(Fault::History(e)))?;
+    let history = History::table(points.clone()).map_err(|e| card.word.fault(Fault::History(e)))?;
     let new = Amplitude { history, points, total };
     model.amplitudes.add(amplitude, new);
     Ok(())
@@ -105,22 +97,19 @@ pub(super) fn amplitude(model: &mut Model, card: &Card) -> Result<(), DeckError>
 
 pub(super) fn interaction(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NAME"])?;
-    let name = card.need("NAME")?;
+    let name = card.need("NAME")?.name;
     let wanted = "nothing, or the thickness that plane models have";
     card.lines_at_most(1, wanted)?;
     if let Some(line) = card.lines.first() {
         line.optional(&line.at_most(1, wanted)?, 0, wanted)?;
-        model.ignored.push(Ignored::new(
-            &line.location,
-            line.text.trim(),
-            "a thickness has a meaning in plane models only",
-        ));
+        let why = "a thickness has a meaning in plane models only";
+        model.ignored.push(Ignored::new(line, why));
     }
     if let Some(at) = model.interactions.position(&name) {
-        return Err(twice(card, model.interactions.at(at).location.line));
+        return Err(twice(card, &model.interactions.at(at).location));
     }
     let interaction = Interaction {
-        location: card.location.clone(),
+        location: card.word.location.clone(),
         friction: None,
         compliance: [0.0; 2],
     };
@@ -136,15 +125,15 @@ pub(super) fn behavior(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         "*SURFACE BEHAVIOR belongs to an interaction; put *SURFACE INTERACTION before it",
     )?;
     let law = card.value("PRESSURE-OVERCLOSURE")?;
-    if let (Some(law), Some(param)) = (&law, card.param("PRESSURE-OVERCLOSURE"))
-        && !["HARD", "LINEAR"].contains(&law.as_str())
-    {
-        let why = "contact is hard or has a linear law here; write PRESSURE-OVERCLOSURE=HARD without data lines, or \
-        LINEAR with the slope (tied surfaces: *TIE)";
-        return Err(card.param_fault(param, Fault::Unsupported(why)));
-    }
-    if law.is_none_or(|law| law == "HARD") {
-        return card.lines_at_most(0, "no data: hard contact has no numbers");
+    match law.as_ref().map_or("HARD", |law| &law.name) {
+        "LINEAR" => {}
+        "HARD" => return card.lines_at_most(0, "no data: hard contact has no numbers"),
+        _ => {
+            let why = "contact is hard or has a linear law here; write PRESSURE-OVERCLOSURE=HARD without data lines, \
+                or LINEAR with the slope (tied surfaces: *TIE)";
+            let word = law.as_ref().map_or(&card.word, |law| &law.word);
+            return Err(word.fault(Fault::Unsupported(why)));
+        }
     }
     let wanted = "one line with the slope of pressure over overclosure, a positive number";
     let line = card.only_line(wanted)?;
@@ -152,28 +141,24 @@ pub(super) fn behavior(model: &mut Model, card: &Card) -> Result<(), DeckError> 
     interaction.compliance[0] = inverse(line, &fields, 0, wanted)?;
     for at in [1, 2] {
         if line.optional(&fields, at, "a number")?.is_some() {
-            model.ignored.push(Ignored::new(
-                &line.location,
-                fields[at],
-                "pulling stress and reach of contact springs: there are none here where sides are apart",
-            ));
+            let why = "pulling stress and reach of contact springs: there are none here where sides are apart";
+            model.ignored.push(Ignored::new(&line.part(fields[at]), why));
         }
     }
     Ok(())
 }
 
 /// The inverse of a positive slope.
-fn inverse(line: &Line, fields: &[&str], at: usize, wanted: &'static str) -> Result<f64, DeckError> {
+fn inverse(line: &Word, fields: &[&str], at: usize, wanted: &'static str) -> Result<f64, DeckError> {
     let slope = line.real(fields, at, wanted)?;
     match slope > 0.0 {
         true => Ok(slope.recip()),
-        false => Err(line.fault(fields[at], Fault::Expected(wanted))),
+        false => Err(line.part(fields[at]).expected(wanted)),
     }
 }
 
 pub(super) fn friction(model: &mut Model, card: &Card) -> Result<(), DeckError> {
-    const PENALTIES: [&str; 2] = ["SLIP TOLERANCE", "ELASTIC SLIP"];
-    card.allow(&PENALTIES)?;
+    card.allow(&["SLIP TOLERANCE", "ELASTIC SLIP"])?;
     let interaction = inside(
         model.interactions.last_mut(),
         card,
@@ -184,31 +169,26 @@ pub(super) fn friction(model: &mut Model, card: &Card) -> Result<(), DeckError> 
     let fields = line.at_most(2, wanted)?;
     let value = line.real(&fields, 0, wanted)?;
     if value < 0.0 {
-        return Err(line.fault(fields[0], Fault::Expected(wanted)));
+        return Err(line.part(fields[0]).expected(wanted));
     }
     if interaction.friction.replace(value).is_some() {
         let why = "the interaction has a coefficient already; keep one of them";
-        return Err(card.fault(Fault::Misplaced(why)));
+        return Err(card.word.cannot(why));
     }
     let slope = "the stick slope, a positive number";
     if line.optional(&fields, 1, slope)?.is_some() {
         interaction.compliance[1] = inverse(line, &fields, 1, slope)?;
     }
-    let ignored = card
-        .params
-        .iter()
-        .map(|param| Ignored::new(&card.location, &param.word, PENALTY));
+    let why = "a number for penalty iterations only: the law is solved exactly here";
+    let ignored = card.params.iter().map(|param| Ignored::new(&param.word, why));
     model.ignored.extend(ignored);
     Ok(())
 }
 
 pub(super) fn pair(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["INTERACTION", "TYPE", "SMALL SLIDING"])?;
-    card.need("INTERACTION")?;
+    let interaction = card.need("INTERACTION")?;
     card.flag("SMALLSLIDING")?;
-    let Some(interaction) = card.param("INTERACTION") else {
-        return Ok(());
-    };
     let types = [
         "NODETOSURFACE",
         "SURFACETOSURFACE",
@@ -216,55 +196,57 @@ pub(super) fn pair(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         "LINMORTAR",
         "PGLINMORTAR",
     ];
-    let wanted = "NODE TO SURFACE, SURFACE TO SURFACE, MORTAR, LINMORTAR or PGLINMORTAR";
-    if card.choice("TYPE", &types, wanted)?.is_some() {
-        model.ignored.push(Ignored::new(
-            &card.location,
-            &word(card.param("TYPE")),
-            "matching meshes touch node by node, others by dual multipliers; there is one kind of contact here",
-        ));
+    card.choice(
+        "TYPE",
+        &types,
+        "NODE TO SURFACE, SURFACE TO SURFACE, MORTAR, LINMORTAR or PGLINMORTAR",
+    )?;
+    if let Some(kind) = card.param("TYPE") {
+        let why = "matching meshes touch node by node, others by dual multipliers; there is one kind of contact here";
+        model.ignored.push(Ignored::new(&kind.word, why));
     }
-    surfaces(model, card, Some(interaction))
+    surfaces(model, card, Some(&interaction))
 }
 
 /// `*TIE`.
 pub(super) fn tie(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NAME", "POSITION TOLERANCE", "ADJUST"])?;
     card.value("NAME")?;
-    if let (Some(0), Some(param)) = (
-        card.choice("ADJUST", &["YES", "NO"], "YES or NO")?,
-        card.param("ADJUST"),
-    ) {
+    card.choice("ADJUST", &["YES", "NO"], "YES or NO")?;
+    if let Some(adjust) = card.value("ADJUST")?.filter(|adjust| adjust.name == "YES") {
         let why = "nodes are not moved: a distance between tied surfaces stays as it is; write ADJUST=NO";
-        return Err(card.param_fault(param, Fault::Cannot(why.to_owned())));
+        return Err(adjust.word.cannot(why));
     }
-    if card.value("POSITIONTOLERANCE")?.is_some() {
-        model.ignored.push(Ignored::new(
-            &card.location,
-            &word(card.param("POSITIONTOLERANCE")),
-            "what faces the other surface is tied, at any distance; tie surfaces that lie on one another",
-        ));
+    if let Some(tolerance) = card.value("POSITIONTOLERANCE")? {
+        let why = "what faces the other surface is tied, at any distance; tie surfaces that lie on one another";
+        model.ignored.push(Ignored::new(&tolerance.word, why));
     }
     surfaces(model, card, None)
 }
 
 /// The lines of pairs of surfaces.
-fn surfaces(model: &mut Model, card: &Card, interaction: Option<&Param>) -> Result<(), DeckError> {
+fn surfaces(model: &mut Model, card: &Card, interaction: Option<&Named>) -> Result<(), DeckError> {
     for line in &card.lines {
         let wanted = "the dependent (slave) and the independent (master) surface";
         let fields = line.at_most(2, wanted)?;
+        let named = |text: &str| Named {
+            name: name(text),
+            word: line.part(text),
+        };
         match fields[..] {
             [slave, master] if !slave.is_empty() && !master.is_empty() => model.pairs.push(Pair {
-                location: line.location.clone(),
-                interaction: interaction.cloned(),
-                slave: slave.to_owned(),
-                master: master.to_owned(),
+                interaction: interaction.map(|Named { name, word }| Named {
+                    name: name.clone(),
+                    word: line.part(&word.text),
+                }),
+                slave: named(slave),
+                master: named(master),
             }),
-            _ => return Err(line.fault(line.text.trim(), Fault::Expected(wanted))),
+            _ => return Err(line.expected(wanted)),
         }
     }
     if card.lines.is_empty() {
-        return Err(card.fault(Fault::Empty("the pair has no surfaces; name two in a line")));
+        return Err(card.word.cannot("the pair has no surfaces; name two in a line"));
     }
     Ok(())
 }
@@ -274,28 +256,14 @@ pub(super) fn rigid(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["ELSET", "REF NODE", "ROT NODE"])?;
     card.lines_at_most(0, "no data")?;
     let elset = card.need("ELSET")?;
-    card.need("REFNODE")?;
-    let node = |key: &str| {
-        let text = card.value(key)?;
-        let target = text.map(|text| match label(&text) {
-            Some(number) => Target::Number(number),
-            None => Target::Name(text),
-        });
-        Ok::<_, DeckError>(target.map(|target| (target, word(card.param(key)))))
-    };
-    let Some(reference) = node("REFNODE")? else {
-        return Ok(());
+    let node = |value: Named| match label(&value.name) {
+        Some(number) => (Target::Number(number), value.word),
+        None => (Target::Name(value.name), value.word),
     };
     model.rigid.push(RigidBody {
-        location: card.location.clone(),
-        elset: (elset, word(card.param("ELSET"))),
-        reference,
-        rotation: node("ROTNODE")?,
+        elset,
+        reference: node(card.need("REFNODE")?),
+        rotation: card.value("ROTNODE")?.map(node),
     });
     Ok(())
-}
-
-/// The interaction of a pair, as names are compared.
-pub(crate) fn named(param: &Param) -> String {
-    name(param.value.as_deref().unwrap_or(""))
 }

@@ -1,9 +1,14 @@
 //! Steps: their times, supports and loads.
 
+use std::fmt;
+
 use super::mesh::target;
 use super::{Ignored, Model};
-use crate::error::{DeckError, Fault, Location};
-use crate::lexer::{Card, Line, label, name};
+use crate::error::{DeckError, Fault, Word};
+use crate::lexer::{Card, label, name};
+
+/// Why some settings are ignored.
+pub(super) const SOLVER: &str = "a setting of another solver";
 
 /// Most increments of a deck.
 pub(crate) const INCREMENTS: f64 = 1e6;
@@ -15,33 +20,45 @@ pub(crate) enum Target {
     Name(String),
 }
 
+impl fmt::Display for Target {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Number(number) => write!(f, "{number}"),
+            Self::Name(name) => f.write_str(name),
+        }
+    }
+}
+
+/// A value and the position of its amplitude.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Given {
+    pub(crate) value: f64,
+    pub(crate) amplitude: Option<usize>,
+}
+
+/// What a line says of a target.
+#[derive(Debug, Clone)]
+pub(crate) struct Condition<K> {
+    /// The word that names the target.
+    pub(crate) word: Word,
+    pub(crate) target: Target,
+    pub(crate) kind: K,
+    pub(crate) given: Given,
+}
+
 /// Components of nodes that are held or moved.
 #[derive(Debug, Clone)]
-pub(crate) struct Boundary {
-    pub(crate) location: Location,
-    pub(crate) word: String,
-    pub(crate) target: Target,
+pub(crate) struct Components {
     /// Displacements, then rotations, which nodes of rigid bodies have.
-    pub(crate) components: [bool; 6],
+    pub(crate) on: [bool; 6],
     /// The word that asks for a rotation by its number.
-    pub(crate) rotation: Option<String>,
-    pub(crate) value: f64,
-    /// Position of the amplitude.
-    pub(crate) amplitude: Option<usize>,
+    pub(crate) rotation: Option<Word>,
 }
 
-/// A force at nodes.
-#[derive(Debug, Clone)]
-pub(crate) struct Force {
-    pub(crate) location: Location,
-    pub(crate) word: String,
-    pub(crate) target: Target,
-    /// 0 to 2.
-    pub(crate) component: usize,
-    pub(crate) value: f64,
-    pub(crate) amplitude: Option<usize>,
-}
+/// A component, 0 to 2, of a force at nodes.
+pub(crate) type Component = usize;
 
+/// A pressure, on elements or a surface, or a load of the volume.
 #[derive(Debug, Clone)]
 pub(crate) enum DistributedKind {
     /// Pressure on face 1 to 4 of elements.
@@ -54,34 +71,22 @@ pub(crate) enum DistributedKind {
     Body(usize),
 }
 
-/// A pressure or a load of the volume.
-#[derive(Debug, Clone)]
-pub(crate) struct Distributed {
-    pub(crate) location: Location,
-    pub(crate) word: String,
-    /// Elements, or the surface.
-    pub(crate) target: Target,
-    pub(crate) kind: DistributedKind,
-    pub(crate) value: f64,
-    pub(crate) amplitude: Option<usize>,
-}
-
 /// What the cards of one kind of condition say in a step.
 #[derive(Debug)]
-pub(crate) struct Conditions<T> {
-    /// Where the first card is, and whether it removes what was there before.
-    pub(crate) first: Option<(Location, String, bool)>,
-    pub(crate) lines: Vec<T>,
+pub(crate) struct Conditions<K> {
+    /// The first card, or its OP, and whether it removes what was there before.
+    pub(crate) first: Option<(Word, bool)>,
+    pub(crate) lines: Vec<Condition<K>>,
 }
 
-impl<T> Default for Conditions<T> {
+impl<K> Default for Conditions<K> {
     fn default() -> Self {
         let (first, lines) = (None, Vec::new());
         Self { first, lines }
     }
 }
 
-impl<T> Conditions<T> {
+impl<K> Conditions<K> {
     /// Notes the parameter OP of a card: that of the first one counts.
     fn card(&mut self, card: &Card) -> Result<(), DeckError> {
         let wanted = "OP=MOD or OP=NEW";
@@ -89,12 +94,12 @@ impl<T> Conditions<T> {
         match &self.first {
             None => {
                 let word = card.param("OP").map_or(&card.word, |p| &p.word).clone();
-                self.first = Some((card.location.clone(), word, new));
+                self.first = Some((word, new));
             }
-            Some((_, _, before)) if new != *before && card.param("OP").is_some() => {
+            Some((_, before)) if new != *before && card.param("OP").is_some() => {
                 let why = "only the first card of its kind in a step can say OP, and it says another; move \
                 it to that card";
-                return Err(card.fault(Fault::Misplaced(why)));
+                return Err(card.word.cannot(why));
             }
             Some(_) => {}
         }
@@ -103,7 +108,7 @@ impl<T> Conditions<T> {
 
     /// Whether what was there before is removed.
     pub(crate) fn removes(&self) -> bool {
-        self.first.as_ref().is_some_and(|first| first.2)
+        self.first.as_ref().is_some_and(|first| first.1)
     }
 }
 
@@ -135,45 +140,44 @@ impl Increments {
 /// A step of the deck: a span of time with increments.
 #[derive(Debug)]
 pub(crate) struct Step {
-    pub(crate) location: Location,
+    pub(crate) word: Word,
     /// Whether loads without an amplitude grow along a straight line; else they jump.
     pub(crate) ramp: bool,
-    increments: Option<(f64, Location, String)>,
-    /// Where the procedure is, and its increments.
-    pub(crate) time: Option<(Location, Increments)>,
-    pub(crate) boundary: Conditions<Boundary>,
-    pub(crate) forces: Conditions<Force>,
-    pub(crate) distributed: Conditions<Distributed>,
+    increments: Option<(f64, Word)>,
+    /// The procedure, and its increments.
+    pub(crate) time: Option<(Word, Increments)>,
+    pub(crate) boundary: Conditions<Components>,
+    pub(crate) forces: Conditions<Component>,
+    pub(crate) distributed: Conditions<DistributedKind>,
 }
 
 impl Step {
     pub(super) fn new(model: &mut Model, card: &Card) -> Result<Self, DeckError> {
         card.allow(&["NAME", "INC", "NLGEOM", "AMPLITUDE", "UNSYMM", "PERTURBATION"])?;
         if let Some(param) = card.param("NLGEOM")
-            && card.value("NLGEOM").ok().flatten().as_deref() != Some("NO")
+            && !card
+                .value("NLGEOM")
+                .is_ok_and(|value| value.is_some_and(|v| v.name == "NO"))
         {
             let why = "displacements and rotations are small here; remove it, or write NLGEOM=NO";
-            return Err(card.param_fault(param, Fault::Unsupported(why)));
+            return Err(param.word.fault(Fault::Unsupported(why)));
         }
         if let Some(param) = card.param("PERTURBATION") {
             let why = "contact is not linear, and a perturbation is; make it a step of its own";
-            return Err(card.param_fault(param, Fault::Unsupported(why)));
+            return Err(param.word.fault(Fault::Unsupported(why)));
         }
         if let Some(param) = card.param("UNSYMM") {
-            model
-                .ignored
-                .push(Ignored::new(&card.location, &param.word, "a setting of another solver"));
+            model.ignored.push(Ignored::new(&param.word, SOLVER));
         }
         let amplitude = card.choice("AMPLITUDE", &["RAMP", "STEP"], "RAMP or STEP")?;
         let mut increments = None;
         if let Some(param) = card.param("INC") {
-            let wanted = "a number of increments";
             let number = param.value.as_deref().and_then(|v| label(v.trim()));
-            let number = number.ok_or_else(|| card.param_fault(param, Fault::Expected(wanted)))?;
-            increments = Some((f64::from(number), card.location.clone(), param.word.clone()));
+            let number = number.ok_or_else(|| param.word.expected("a number of increments"))?;
+            increments = Some((f64::from(number), param.word.clone()));
         }
         Ok(Self {
-            location: card.location.clone(),
+            word: Word::new(&card.word.location, "*STEP"),
             ramp: amplitude != Some(1),
             increments,
             time: None,
@@ -188,14 +192,12 @@ impl Step {
         card.allow(&["DIRECT", "SOLVER"])?;
         card.flag("DIRECT")?;
         if let Some(param) = card.param("SOLVER") {
-            model
-                .ignored
-                .push(Ignored::new(&card.location, &param.word, "a setting of another solver"));
+            model.ignored.push(Ignored::new(&param.word, SOLVER));
         }
-        if let Some((first, ..)) = &self.time {
-            let first = first.line;
+        if let Some((first, _)) = &self.time {
+            let first = first.location.line;
             let remedy = "a step has one procedure; begin another *STEP";
-            return Err(card.fault(Fault::Repeated { first, remedy }));
+            return Err(card.word.fault(Fault::Repeated { first, remedy }));
         }
         let wanted = "first increment, period, least and largest increment: positive numbers";
         card.lines_at_most(1, wanted)?;
@@ -206,7 +208,7 @@ impl Step {
                 *value = line.optional(&fields, at, wanted)?;
                 // a largest increment of zero is none
                 if value.is_some_and(|v| v < 0.0) || at < 2 && *value == Some(0.0) {
-                    return Err(line.fault(fields[at], Fault::Expected(wanted)));
+                    return Err(line.part(fields[at]).expected(wanted));
                 }
             }
         }
@@ -214,41 +216,35 @@ impl Step {
         let largest = values[3].filter(|&v| v > 0.0).unwrap_or(period);
         let increment = values[0].unwrap_or(period).min(largest).min(period);
         let count = (period / increment * (1.0 - Increments::ROUNDING)).ceil();
-        let (location, word) = match card.lines.first() {
-            Some(line) => (&line.location, line.text.as_str()),
-            None => (&card.location, card.word.as_str()),
-        };
         if count > INCREMENTS {
-            let fault = Fault::TooMany {
+            return Err(card.lines.first().unwrap_or(&card.word).fault(Fault::TooMany {
                 what: "increments",
                 most: INCREMENTS as u64,
                 remedy: "make the first increment larger",
-            };
-            return Err(DeckError::at(location, word, fault));
+            }));
         }
-        if let Some((most, location, word)) = &self.increments
+        if let Some((most, word)) = &self.increments
             && count > *most
         {
-            let text = format!("the step needs {count} increments of {increment}; raise INC or the increment");
-            return Err(DeckError::at(location, word, Fault::Cannot(text)));
+            return Err(word.cannot(format!(
+                "the step needs {count} increments of {increment}; raise INC or the increment"
+            )));
         }
         let increments = Increments {
             size: increment,
             period,
             count: count.max(1.0) as usize,
         };
-        self.time = Some((card.location.clone(), increments));
+        self.time = Some((Word::new(&card.word.location, "*STATIC"), increments));
         Ok(())
     }
 }
 
 /// The position of the amplitude that a card names.
 fn amplitude(model: &Model, card: &Card) -> Result<Option<usize>, DeckError> {
-    let Some((name, param)) = card.value("AMPLITUDE")?.zip(card.param("AMPLITUDE")) else {
-        return Ok(None);
-    };
-    let at = (&card.location, param.word.as_str());
-    model.amplitudes.find("amplitude", &name, at).map(Some)
+    let named = card.value("AMPLITUDE")?;
+    let position = named.map(|n| model.amplitudes.find("amplitude", &n.name, &n.word));
+    position.transpose()
 }
 
 /// `*BOUNDARY`, in a step or before the first.
@@ -262,9 +258,9 @@ pub(super) fn boundary(model: &mut Model, step: Option<&mut Step>, card: &Card) 
     let mut lines = Vec::with_capacity(card.lines.len());
     for line in &card.lines {
         let given = boundary_line(line, amplitude)?;
-        if step.is_none() && given.value != 0.0 {
+        if step.is_none() && given.given.value != 0.0 {
             let why = "before the first *STEP a support cannot move; give its value in a step";
-            return Err(line.fault(line.text.trim(), Fault::Misplaced(why)));
+            return Err(line.cannot(why));
         }
         lines.push(given);
     }
@@ -282,41 +278,35 @@ pub(super) fn boundary(model: &mut Model, step: Option<&mut Step>, card: &Card) 
 pub(crate) const COMPONENT: &str = "a component: 1, 2 or 3 (solid elements have no rotations), ENCASTRE, \
 PINNED, XSYMM, YSYMM or ZSYMM";
 
-fn boundary_line(line: &Line, amplitude: Option<usize>) -> Result<Boundary, DeckError> {
+fn boundary_line(line: &Word, amplitude: Option<usize>) -> Result<Condition<Components>, DeckError> {
     let wanted = "a node or node set, first and last component (1 to 3), and a value";
     let fields = line.at_most(4, wanted)?;
     let target = target(line, fields[0])?;
-    let second = fields.get(1).copied().unwrap_or("");
-    let word = if second.is_empty() { line.text.trim() } else { second };
-    let by_name = |name: &str| {
-        let on = match name {
-            "ENCASTRE" => [1, 1, 1, 1, 1, 1],
-            "PINNED" => [1, 1, 1, 0, 0, 0],
-            "XSYMM" => [1, 0, 0, 0, 1, 1],
-            "YSYMM" => [0, 1, 0, 1, 0, 1],
-            "ZSYMM" => [0, 0, 1, 1, 1, 0],
-            _ => return None,
-        };
-        Some(on.map(|on| on == 1))
+    let by_name = match name(fields.get(1).unwrap_or(&"")).as_str() {
+        "ENCASTRE" => Some([1, 1, 1, 1, 1, 1]),
+        "PINNED" => Some([1, 1, 1, 0, 0, 0]),
+        "XSYMM" => Some([1, 0, 0, 0, 1, 1]),
+        "YSYMM" => Some([0, 1, 0, 1, 0, 1]),
+        "ZSYMM" => Some([0, 0, 1, 1, 1, 0]),
+        _ => None,
     };
     let mut rotation = None;
-    let (components, value) = match by_name(&name(second)) {
-        Some(components) => (components, 0.0),
+    let (on, value) = match by_name {
+        Some(on) => {
+            if let Some(extra) = fields.get(2) {
+                return Err(line.part(extra).expected("nothing after the name of a condition"));
+            }
+            (on.map(|on| on == 1), 0.0)
+        }
         None => {
-            let mut component = |at: usize| {
-                let text = fields.get(at).copied().unwrap_or("");
-                match label(text) {
-                    Some(number @ 1..=6) => {
-                        if number > 3 {
-                            rotation = Some(text.to_owned());
-                        }
-                        Ok(number as usize - 1)
+            let mut component = |at: usize| match fields.get(at).and_then(|text| label(text)) {
+                Some(number @ 1..=6) => {
+                    if number > 3 {
+                        rotation = Some(line.part(fields[at]));
                     }
-                    _ => {
-                        let word = if text.is_empty() { word } else { text };
-                        Err(line.fault(word, Fault::Expected(COMPONENT)))
-                    }
+                    Ok(number as usize - 1)
                 }
+                _ => Err(line.entry(&fields, at).expected(COMPONENT)),
             };
             let first = component(1)?;
             let last = match fields.get(2) {
@@ -324,27 +314,18 @@ fn boundary_line(line: &Line, amplitude: Option<usize>) -> Result<Boundary, Deck
                 Some(_) => component(2)?,
             };
             if last < first {
-                let wanted = "a last component not below the first";
-                return Err(line.fault(fields[2], Fault::Expected(wanted)));
+                return Err(line.part(fields[2]).expected("a last component not below the first"));
             }
             let value = line.optional(&fields, 3, "a displacement, a finite number")?;
             let on = [0, 1, 2, 3, 4, 5].map(|c| (first..=last).contains(&c));
             (on, value.unwrap_or(0.0))
         }
     };
-    if !second.starts_with(|c: char| c.is_ascii_digit())
-        && let Some(extra) = fields.get(2)
-    {
-        return Err(line.fault(extra, Fault::Expected("nothing after the name of a condition")));
-    }
-    Ok(Boundary {
-        location: line.location.clone(),
-        word: fields[0].to_owned(),
+    Ok(Condition {
+        word: line.part(fields[0]),
         target,
-        components,
-        rotation,
-        value,
-        amplitude,
+        kind: Components { on, rotation },
+        given: Given { value, amplitude },
     })
 }
 
@@ -359,18 +340,16 @@ pub(super) fn forces(model: &Model, step: &mut Step, card: &Card) -> Result<(), 
         let target = target(line, fields[0])?;
         let component = match fields.get(1).and_then(|f| label(f)) {
             Some(number @ 1..=3) => number as usize - 1,
-            _ => {
-                let word = fields.get(1).copied().unwrap_or(line.text.trim());
-                return Err(line.fault(word, Fault::Expected(wanted)));
-            }
+            _ => return Err(line.entry(&fields, 1).expected(wanted)),
         };
-        step.forces.lines.push(Force {
-            location: line.location.clone(),
-            word: fields[0].to_owned(),
+        step.forces.lines.push(Condition {
+            word: line.part(fields[0]),
             target,
-            component,
-            value: line.real(&fields, 2, wanted)?,
-            amplitude,
+            kind: component,
+            given: Given {
+                value: line.real(&fields, 2, wanted)?,
+                amplitude,
+            },
         });
     }
     Ok(())
@@ -388,8 +367,7 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
             "an element or element set, one of P1 to P4, GRAV, BX, BY, BZ, a value, and with GRAV a direction"
         };
         let fields = line.at_most(6, wanted)?;
-        let kind = fields.get(1).copied().unwrap_or("");
-        let found = match (on_surface, name(kind).as_str()) {
+        let found = match (on_surface, name(fields.get(1).unwrap_or(&"")).as_str()) {
             (true, "P") => Some(DistributedKind::Surface),
             (false, "P1") => Some(DistributedKind::Face(1)),
             (false, "P2") => Some(DistributedKind::Face(2)),
@@ -402,8 +380,7 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
             _ => None,
         };
         let Some(mut kind) = found else {
-            let word = if kind.is_empty() { line.text.trim() } else { kind };
-            return Err(line.fault(word, Fault::Expected(wanted)));
+            return Err(line.entry(&fields, 1).expected(wanted));
         };
         let value = line.real(&fields, 2, wanted)?;
         if let DistributedKind::Gravity(direction) = &mut kind {
@@ -413,22 +390,20 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
             }
             let length = direction.iter().map(|d| d * d).sum::<f64>();
             if !(length > 0.0 && length.is_finite()) {
-                return Err(line.fault(line.text.trim(), Fault::Expected(wanted)));
+                return Err(line.expected(wanted));
             }
         } else if let Some(extra) = fields.get(3) {
-            return Err(line.fault(extra, Fault::Expected(wanted)));
+            return Err(line.part(extra).expected(wanted));
         }
         let target = match on_surface {
             true => Target::Name(name(fields[0])),
             false => target(line, fields[0])?,
         };
-        step.distributed.lines.push(Distributed {
-            location: line.location.clone(),
-            word: fields[0].to_owned(),
+        step.distributed.lines.push(Condition {
+            word: line.part(fields[0]),
             target,
             kind,
-            value,
-            amplitude,
+            given: Given { value, amplitude },
         });
     }
     Ok(())

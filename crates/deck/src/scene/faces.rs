@@ -11,7 +11,8 @@ use signorini_fem_mesh::{Facet, FacetTag, vec3};
 use super::mesh::Raw;
 use super::numbers::Sets;
 use super::rigid::{RigidBodies, RigidFace};
-use crate::error::{DeckError, Fault, Location};
+use super::timeline::Timeline;
+use crate::error::{DeckError, Fault, Word};
 use crate::model::{FACES, Model, Names, Side, Target};
 
 #[derive(Debug)]
@@ -20,8 +21,7 @@ pub(super) struct Face {
     /// The tetrahedron that names it first, and the number of the face there.
     tet: u32,
     number: u8,
-    location: Location,
-    word: String,
+    word: Word,
     /// Positions of the surfaces that it is in, ascending.
     surfaces: Vec<u32>,
     /// Its pressure, if it has one.
@@ -37,13 +37,14 @@ pub(super) struct FaceTable {
     pub(super) rigid: Vec<Vec<RigidFace>>,
 }
 
-/// What is known of the model where faces are looked up.
+/// What is known of the model where faces are looked up and conditions followed.
 #[derive(Clone, Copy)]
 pub(super) struct Known<'a> {
     pub(super) model: &'a Model,
-    pub(super) sets: &'a Sets,
+    pub(super) sets: &'a Sets<'a>,
     pub(super) bodies: &'a RigidBodies,
     pub(super) raw: &'a Raw,
+    pub(super) timeline: &'a Timeline<'a>,
 }
 
 fn key(mut nodes: [u32; 3]) -> [u32; 3] {
@@ -53,7 +54,7 @@ fn key(mut nodes: [u32; 3]) -> [u32; 3] {
 
 impl FaceTable {
     /// The position of a face (1 to 4) of a tetrahedron, noted at its first appearance.
-    fn face(&mut self, raw: &Raw, tet: u32, number: u8, at: (&Location, &str)) -> u32 {
+    fn face(&mut self, raw: &Raw, tet: u32, number: u8, word: &Word) -> u32 {
         let corners = raw.tets[tet as usize];
         let nodes = FACES[usize::from(number) - 1].map(|i| corners[i]);
         let next = self.list.len() as u32;
@@ -63,8 +64,7 @@ impl FaceTable {
                 nodes,
                 tet,
                 number,
-                location: at.0.clone(),
-                word: at.1.to_owned(),
+                word: word.clone(),
                 surfaces: Vec::new(),
                 pressure: None,
             });
@@ -77,15 +77,14 @@ impl FaceTable {
         &mut self,
         known: Known,
         (target, number): (&Target, u8),
-        at: (&Location, &str),
+        word: &Word,
     ) -> Result<Vec<u32>, DeckError> {
         let mut faces = Vec::new();
-        for element in known.sets.elements(known.model, target, at)? {
+        for element in known.sets.elements(target, word)? {
             let Some(tet) = known.raw.tet(element) else {
-                let text = "a pressure on a rigid body acts on nothing; load elastic elements";
-                return Err(DeckError::at(at.0, at.1, Fault::Cannot(text.into())));
+                return Err(word.cannot("a pressure on a rigid body acts on nothing; load elastic elements"));
             };
-            faces.push(self.face(known.raw, tet, number, at));
+            faces.push(self.face(known.raw, tet, number, word));
         }
         Ok(faces)
     }
@@ -96,23 +95,17 @@ impl FaceTable {
         for (index, (_, faces)) in known.model.surfaces.iter().enumerate() {
             let (mut all, mut rigid) = (Vec::new(), Vec::new());
             for faces in faces {
-                let word = match &faces.target {
-                    Target::Number(number) => number.to_string(),
-                    Target::Name(name) => name.clone(),
-                };
-                let at = (&faces.location, word.as_str());
-                for element in known.sets.elements(known.model, &faces.target, at)? {
+                let word = &faces.word;
+                for element in known.sets.elements(&faces.target, word)? {
                     let Some(tet) = known.raw.tet(element) else {
                         let side = (element, faces.side);
-                        let face = known.bodies.face(known.model, known.sets, side, at)?;
-                        rigid.push(face);
+                        rigid.push(known.bodies.face(known.sets, side, word)?);
                         continue;
                     };
                     let Side::Face(number) = faces.side else {
-                        let wanted = "faces S1 to S4 of solid elements";
-                        return Err(DeckError::at(at.0, at.1, Fault::Expected(wanted)));
+                        return Err(word.expected("faces S1 to S4 of solid elements"));
                     };
-                    let face = self.face(known.raw, tet, number, at);
+                    let face = self.face(known.raw, tet, number, word);
                     let surfaces = &mut self.list[face as usize].surfaces;
                     if surfaces.last() != Some(&(index as u32)) {
                         surfaces.push(index as u32);
@@ -120,8 +113,7 @@ impl FaceTable {
                     }
                 }
                 if !all.is_empty() && !rigid.is_empty() {
-                    let text = "the surface has rigid and elastic faces; make two surfaces of them";
-                    return Err(DeckError::at(at.0, at.1, Fault::Cannot(text.into())));
+                    return Err(word.cannot("the surface has rigid and elastic faces; make two surfaces of them"));
                 }
             }
             out.push(all);
@@ -141,13 +133,10 @@ impl FaceTable {
             }
         }
         match self.list.iter().zip(owners).find(|(_, owners)| *owners > 1) {
-            Some((face, _)) => {
-                let inside = Fault::FaceInside {
-                    element: raw.element_labels()[face.tet as usize],
-                    face: face.number,
-                };
-                Err(DeckError::at(&face.location, &face.word, inside))
-            }
+            Some((face, _)) => Err(face.word.fault(Fault::FaceInside {
+                element: raw.element_labels[face.tet as usize],
+                face: face.number,
+            })),
             None => Ok(()),
         }
     }
@@ -158,9 +147,8 @@ impl FaceTable {
         let mut nodes: Vec<u32> = on.flat_map(|face| face.nodes).collect();
         nodes.sort_unstable();
         nodes.dedup();
-        let labels = raw.node_labels();
-        let location = |n: u32| (labels[n as usize], raw.points[n as usize]);
-        nodes.into_iter().map(location).collect()
+        let place = |n: u32| (raw.node_labels[n as usize], raw.points[n as usize]);
+        nodes.into_iter().map(place).collect()
     }
 
     /// The tag of each face, from 1 in the order of the faces.

@@ -10,15 +10,8 @@ use std::collections::BTreeMap;
 use signorini_fem_mesh::History;
 
 use super::timeline::{Span, Timeline};
-use crate::error::{DeckError, Fault, Location};
-use crate::model::{Amplitude, Model};
-
-/// A value of the deck and the position of its amplitude.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Given {
-    pub(super) value: f64,
-    pub(super) amplitude: Option<usize>,
-}
+use crate::error::{DeckError, Fault, Word};
+use crate::model::{Amplitude, Given};
 
 /// What the steps say about one condition: by step, a value or its removal.
 #[derive(Debug, Clone)]
@@ -26,23 +19,17 @@ pub(super) struct Track {
     events: Vec<(usize, Option<Given>)>,
     /// Its place among all conditions of the deck.
     pub(super) order: usize,
-    location: Location,
-    word: String,
+    /// Where it appears first.
+    pub(super) word: Word,
 }
 
 impl Track {
-    pub(super) fn new(order: usize, (location, word): (&Location, &str)) -> Self {
+    pub(super) fn new(order: usize, word: &Word) -> Self {
         Self {
             events: Vec::new(),
             order,
-            location: location.clone(),
-            word: word.to_owned(),
+            word: word.clone(),
         }
-    }
-
-    /// Where it appears first, and the word there.
-    pub(super) fn at(&self) -> (&Location, &str) {
-        (&self.location, &self.word)
     }
 
     /// The value that this step gives, if it does.
@@ -85,14 +72,15 @@ impl Track {
     }
 
     /// The points of the factor, times strictly ascending.
-    fn points(&self, model: &Model, spans: &[Span], reference: f64) -> Vec<(f64, f64)> {
+    fn points(&self, timeline: &Timeline, reference: f64) -> Vec<(f64, f64)> {
+        let spans = &timeline.spans;
         let mut points = Vec::new();
         let (mut value, mut follows) = (0.0, None);
         for (step, span) in spans.iter().enumerate() {
             let law = match self.event(step) {
                 Some(Some(given)) => match given.amplitude {
                     Some(amplitude) => {
-                        let amplitude = model.amplitudes.at(amplitude);
+                        let amplitude = timeline.model.amplitudes.at(amplitude);
                         Law::Amplitude(given.value / reference, amplitude)
                     }
                     None => Law::to(value, given.value / reference, span.ramp),
@@ -203,29 +191,23 @@ pub(super) struct Histories {
 
 impl Histories {
     /// The value of a condition and the position of its history; `None` if it is zero at all times.
-    pub(super) fn add(
-        &mut self,
-        model: &Model,
-        timeline: &Timeline,
-        track: &Track,
-    ) -> Result<Option<(f64, usize)>, DeckError> {
+    pub(super) fn add(&mut self, timeline: &Timeline, track: &Track) -> Result<Option<(f64, usize)>, DeckError> {
         let Some(reference) = track.reference() else {
             return Ok(None);
         };
-        let points = track.points(model, &timeline.spans, reference);
+        let points = track.points(timeline, reference);
         if points.iter().all(|p| p.1 == 0.0) {
             return Ok(None);
         }
         let key = points.iter().map(|p| (p.0.to_bits(), p.1.to_bits()));
         let next = self.list.len();
-        let location = *self.places.entry(key.collect()).or_insert(next);
-        if location == next {
+        let position = *self.places.entry(key.collect()).or_insert(next);
+        if position == next {
             // numbers are finite but for quotients that overflow
             let table = History::table(points);
-            let fault = |e| DeckError::at(&track.location, &track.word, Fault::History(e));
-            self.list.push(table.map_err(fault)?);
+            self.list.push(table.map_err(|e| track.word.fault(Fault::History(e)))?);
         }
-        Ok(Some((reference, location)))
+        Ok(Some((reference, position)))
     }
 
     pub(super) fn at(&self, position: usize) -> History {

@@ -6,10 +6,10 @@ use signorini_contact::Load;
 use signorini_fem_mesh::{FacetTag, LoadDensity};
 
 use super::faces::{FaceTable, Known};
-use super::history::{Given, Histories, Track};
-use super::timeline::Timeline;
-use crate::error::{DeckError, Fault, Location};
-use crate::model::{Conditions, Distributed, DistributedKind, Force, Target};
+use super::history::{Histories, Track};
+use super::materials::sections;
+use crate::error::{DeckError, Word};
+use crate::model::{Component, Condition, Conditions, DistributedKind, Given, Target};
 
 /// Most different pressures that get tags of their own. More become forces at nodes, which are the same for
 /// linear elements.
@@ -31,13 +31,6 @@ pub(super) struct Loads {
     bodies: Vec<(usize, usize, [f64; 3])>,
 }
 
-/// What is known of the model, and the axis of time.
-#[derive(Clone, Copy)]
-struct Context<'a> {
-    known: Known<'a>,
-    timeline: &'a Timeline,
-}
-
 /// A condition by what it acts on.
 struct Tracks<K>(BTreeMap<K, Track>);
 
@@ -52,18 +45,17 @@ impl<K: Ord> Tracks<K> {
         key: K,
         (step, order, adds): (usize, usize, bool),
         mut given: Given,
-        at: (&Location, &str),
+        word: &Word,
     ) -> Result<(), DeckError> {
-        let track = self.0.entry(key).or_insert_with(|| Track::new(order, at));
+        let track = self.0.entry(key).or_insert_with(|| Track::new(order, word));
         if let Some(before) = track.given_in(step) {
             if !adds || before.amplitude != given.amplitude {
-                let text = if adds {
+                return Err(word.cannot(if adds {
                     "a force along this component is given in this step already, with another amplitude; \
                     put them on different nodes, or give one amplitude"
                 } else {
                     "such a load is given there in this step already; add the values and give their sum once"
-                };
-                return Err(DeckError::at(at.0, at.1, Fault::Cannot(text.into())));
+                }));
             }
             given.value += before.value;
         }
@@ -74,20 +66,13 @@ impl<K: Ord> Tracks<K> {
 
 impl Loads {
     /// The loads of all steps; `surfaces` are the faces of each surface.
-    pub(super) fn new(
-        known: Known,
-        timeline: &Timeline,
-        surfaces: &[Vec<u32>],
-        faces: &mut FaceTable,
-    ) -> Result<Self, DeckError> {
-        let context = Context { known, timeline };
-        let model = known.model;
+    pub(super) fn new(known: Known, surfaces: &[Vec<u32>], faces: &mut FaceTable) -> Result<Self, DeckError> {
         let mut forces = Tracks(BTreeMap::new());
         let mut pressures = Tracks(BTreeMap::new());
         let mut bodies = Tracks(BTreeMap::new());
         let mut order = 0;
-        for (step, given) in model.steps.iter().enumerate() {
-            context.forces(&mut forces, step, &given.forces, &mut order)?;
+        for (step, given) in known.model.steps.iter().enumerate() {
+            known.forces(&mut forces, step, &given.forces, &mut order)?;
             if given.distributed.removes() {
                 pressures.remove(step);
                 bodies.remove(step);
@@ -95,31 +80,28 @@ impl Loads {
             for line in &given.distributed.lines {
                 order += 1;
                 let to = (&mut pressures, &mut bodies);
-                context.distributed(to, (step, order), line, surfaces, faces)?;
+                known.distributed(to, (step, order), line, surfaces, faces)?;
             }
         }
         let mut loads = Self::default();
-        for ((node, component), track) in &forces.0 {
-            if let Some((value, history)) = loads.histories.add(model, timeline, track)? {
-                let (first, list) = loads
-                    .forces
-                    .entry(history)
-                    .or_insert_with(|| (track.order, BTreeMap::new()));
-                *first = track.order.min(*first);
-                list.entry(*node).or_insert([0.0; 3])[*component] = value;
+        for (&(node, component), track) in &forces.0 {
+            if let Some((value, history)) = loads.histories.add(known.timeline, track)? {
+                let mut force = [0.0; 3];
+                force[component] = value;
+                loads.force(history, track.order, node, force);
             }
         }
-        loads.pressures(context, &pressures, faces)?;
-        loads.bodies(context, &bodies)?;
+        loads.pressures(known, &pressures, faces)?;
+        loads.bodies(known, &bodies)?;
         Ok(loads)
     }
 
     /// Groups pressures by value and history and notes the group of each face; forces at nodes if there are too many.
-    fn pressures(&mut self, context: Context, tracks: &Tracks<u32>, faces: &mut FaceTable) -> Result<(), DeckError> {
+    fn pressures(&mut self, known: Known, tracks: &Tracks<u32>, faces: &mut FaceTable) -> Result<(), DeckError> {
         let mut of_face = Vec::with_capacity(tracks.0.len());
         let mut groups: BTreeMap<(u64, usize), usize> = BTreeMap::new();
         for (&face, track) in &tracks.0 {
-            let found = self.histories.add(context.known.model, context.timeline, track)?;
+            let found = self.histories.add(known.timeline, track)?;
             let Some((value, history)) = found else {
                 continue;
             };
@@ -131,8 +113,8 @@ impl Loads {
         if groups.len() > PRESSURES {
             for (face, value, history, order) in of_face {
                 let face = &faces.list[face as usize];
-                let area = face.area_vector(context.known.raw);
-                for node in face.loaded(context.known.raw) {
+                let area = face.area_vector(known.raw);
+                for node in face.loaded(known.raw) {
                     self.force(history, order, node, area.map(|a| -value * a / 3.0));
                 }
             }
@@ -152,11 +134,11 @@ impl Loads {
     }
 
     /// Gravity and forces per volume: one density where all elements have the same, else forces at nodes.
-    fn bodies(&mut self, context: Context, tracks: &Tracks<BodyKey>) -> Result<(), DeckError> {
+    fn bodies(&mut self, known: Known, tracks: &Tracks<BodyKey>) -> Result<(), DeckError> {
         type Group = (Target, bool, usize);
         let mut groups: BTreeMap<Group, (usize, [f64; 3], &Track)> = BTreeMap::new();
         for ((target, gravity, component), track) in &tracks.0 {
-            let found = self.histories.add(context.known.model, context.timeline, track)?;
+            let found = self.histories.add(known.timeline, track)?;
             if let Some((value, history)) = found {
                 let key = (target.clone(), *gravity, history);
                 let group = groups.entry(key).or_insert((track.order, [0.0; 3], track));
@@ -164,15 +146,15 @@ impl Loads {
             }
         }
         for ((target, gravity, history), (order, value, track)) in groups {
-            let Known { model, sets, raw, .. } = context.known;
-            let elements = sets.elements(model, &target, track.at())?;
+            let Known { sets, raw, .. } = known;
+            let elements = sets.elements(&target, &track.word)?;
             // rigid ones are held, whatever pulls them
             let elements: Vec<u32> = elements.into_iter().filter_map(|e| raw.tet(e)).collect();
             if elements.is_empty() {
                 continue;
             }
             let densities = match gravity {
-                true => context.densities(&elements, track)?,
+                true => known.densities(&elements, track)?,
                 false => vec![1.0; elements.len()],
             };
             let same = densities.iter().all(|d| *d == densities[0]);
@@ -226,12 +208,12 @@ impl Loads {
     }
 }
 
-impl Context<'_> {
+impl Known<'_> {
     fn forces(
         self,
         tracks: &mut Tracks<(u32, usize)>,
         step: usize,
-        given: &Conditions<Force>,
+        given: &Conditions<Component>,
         order: &mut usize,
     ) -> Result<(), DeckError> {
         if given.removes() {
@@ -239,21 +221,14 @@ impl Context<'_> {
         }
         for line in &given.lines {
             *order += 1;
-            let at = (&line.location, line.word.as_str());
-            let value = Given {
-                value: line.value,
-                amplitude: line.amplitude,
-            };
-            for node in self.known.sets.nodes(self.known.model, &line.target, at)? {
-                let Some(node) = self.known.raw.in_mesh(node) else {
-                    let text = format!(
-                        "no elastic element uses node {}, so that a force there acts on nothing; load nodes \
-                        of the body",
-                        self.known.model.nodes[node as usize].label
-                    );
-                    return Err(DeckError::at(at.0, at.1, Fault::Cannot(text)));
+            for node in self.sets.nodes(&line.target, &line.word)? {
+                let Some(node) = self.raw.in_mesh(node) else {
+                    return Err(line.word.cannot(format!(
+                        "no elastic element uses node {}, so that a force there acts on nothing; load nodes of the body",
+                        self.model.nodes[node as usize].label
+                    )));
                 };
-                tracks.set((node, line.component), (step, *order, true), value, at)?;
+                tracks.set((node, line.kind), (step, *order, true), line.given, &line.word)?;
             }
         }
         Ok(())
@@ -263,73 +238,66 @@ impl Context<'_> {
         self,
         (pressures, bodies): (&mut Tracks<u32>, &mut Tracks<BodyKey>),
         (step, order): (usize, usize),
-        line: &Distributed,
+        line: &Condition<DistributedKind>,
         surfaces: &[Vec<u32>],
         table: &mut FaceTable,
     ) -> Result<(), DeckError> {
-        let at = (&line.location, line.word.as_str());
+        let word = &line.word;
         let when = (step, order, false);
-        let given = |value: f64| Given {
-            value,
-            amplitude: line.amplitude,
-        };
+        let given = line.given;
         let faces = match &line.kind {
             DistributedKind::Face(number) => {
                 let target = (&line.target, *number);
-                table.of_target(self.known, target, at)?
+                table.of_target(self, target, word)?
             }
             DistributedKind::Surface => {
                 let Target::Name(name) = &line.target else {
                     return Ok(());
                 };
-                let found = self.known.model.surfaces.find("surface", name, at)?;
+                let found = self.model.surfaces.find("surface", name, word)?;
                 if surfaces[found].is_empty() {
-                    let text = "a pressure on a rigid surface acts on nothing; load an elastic one";
-                    return Err(DeckError::at(at.0, at.1, Fault::Cannot(text.into())));
+                    return Err(word.cannot("a pressure on a rigid surface acts on nothing; load an elastic one"));
                 }
                 surfaces[found].clone()
             }
             DistributedKind::Gravity(direction) => {
                 // so that an unknown set is refused here
-                self.known.sets.elements(self.known.model, &line.target, at)?;
+                self.sets.elements(&line.target, word)?;
                 let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
                 for (c, d) in direction.iter().enumerate() {
                     let key = (line.target.clone(), true, c);
-                    bodies.set(key, when, given(line.value * (d / length)), at)?;
+                    let value = given.value * (d / length);
+                    bodies.set(key, when, Given { value, ..given }, word)?;
                 }
                 return Ok(());
             }
             DistributedKind::Body(component) => {
-                self.known.sets.elements(self.known.model, &line.target, at)?;
+                self.sets.elements(&line.target, word)?;
                 let key = (line.target.clone(), false, *component);
-                return bodies.set(key, when, given(line.value), at);
+                return bodies.set(key, when, given, word);
             }
         };
         for face in faces {
-            pressures.set(face, when, given(line.value), at)?;
+            pressures.set(face, when, given, word)?;
         }
         Ok(())
     }
 
     /// Densities of elements, that of the material of their section.
     fn densities(self, elements: &[u32], track: &Track) -> Result<Vec<f64>, DeckError> {
-        let fault = |text: String| {
-            let (location, word) = track.at();
-            DeckError::at(location, word, Fault::Cannot(text))
-        };
-        let Known { model, raw, sets, .. } = self.known;
-        let sections = super::materials::sections(model, raw, sets)?;
-        let sections = sections.ok_or_else(|| fault("gravity needs materials; give *SOLID SECTION".into()))?;
+        let Known { model, raw, sets, .. } = self;
+        let sections = sections(raw, sets)?;
+        let sections = sections.ok_or_else(|| track.word.cannot("gravity needs materials; give *SOLID SECTION"))?;
         let mut of_section = Vec::with_capacity(model.sections.len());
         for section in &model.sections {
-            let (name, word) = &section.material;
-            let at = (&section.location, word.as_str());
-            let found = model.materials.find("material", name, at)?;
-            of_section.push((model.materials.at(found).density, name));
+            of_section.push((model.material(section)?.density, &section.material.name));
         }
         let density = |&element: &u32| {
             let (density, name) = of_section[sections[element as usize] as usize];
-            density.ok_or_else(|| fault(format!("gravity needs a density; give material {name} *DENSITY")))
+            density.ok_or_else(|| {
+                let why = format!("gravity needs a density; give material {name} *DENSITY");
+                track.word.cannot(why)
+            })
         };
         elements.iter().map(density).collect()
     }

@@ -4,75 +4,58 @@ use signorini_fem_mesh::Materials;
 
 use super::mesh::Raw;
 use super::numbers::Sets;
-use crate::error::{DeckError, Fault};
-use crate::model::{Model, Target};
+use crate::error::{DeckError, Word};
 
 const NONE: u32 = u32::MAX;
 
 /// The region of each tetrahedron, which is the number of its section from 0, and the materials; none for a
 /// deck without sections.
-pub(super) fn materials(model: &Model, raw: &Raw, sets: &Sets) -> Result<(Vec<u32>, Option<Materials>), DeckError> {
-    let sections = sections(model, raw, sets)?;
-    let Some(sections) = sections else {
+pub(super) fn materials(raw: &Raw, sets: &Sets) -> Result<(Vec<u32>, Option<Materials>), DeckError> {
+    let Some(sections) = sections(raw, sets)? else {
         return Ok((vec![0; raw.tets.len()], None));
     };
     let mut laws = Vec::new();
-    for section in &model.sections {
-        let (name, word) = &section.material;
-        let at = (&section.location, word.as_str());
-        let material = model.materials.at(model.materials.find("material", name, at)?);
+    for section in &sets.model.sections {
+        let material = sets.model.material(section)?;
         let Some((_, law)) = &material.elastic else {
-            let why = "the material has no *ELASTIC; put it behind *MATERIAL";
-            return Err(DeckError::at(&material.location, name, Fault::Empty(why)));
+            let word = Word::new(&material.location, &section.material.name);
+            return Err(word.cannot("the material has no *ELASTIC; put it behind *MATERIAL"));
         };
         laws.push(*law);
     }
     let materials = match laws[..] {
-        [law] => Materials::uniform(law),
-        _ => {
-            let table = (0..).zip(laws).collect();
-            match Materials::new(table) {
-                Ok(materials) => materials,
-                // the numbers 0, 1, ... do not repeat
-                Err(_) => return Ok((sections, None)),
-            }
-        }
+        [law] => Some(Materials::uniform(law)),
+        // the numbers 0, 1, ... do not repeat
+        _ => Materials::new((0..).zip(laws).collect()).ok(),
     };
-    Ok((sections, Some(materials)))
+    Ok((sections, materials))
 }
 
 /// The section of each element, by position; `None` for a deck without sections.
-pub(super) fn sections(model: &Model, raw: &Raw, sets: &Sets) -> Result<Option<Vec<u32>>, DeckError> {
+pub(super) fn sections(raw: &Raw, sets: &Sets) -> Result<Option<Vec<u32>>, DeckError> {
+    let model = sets.model;
     if model.sections.is_empty() {
         return Ok(None);
     }
     let mut of_element = vec![NONE; raw.tets.len()];
     for (index, section) in model.sections.iter().enumerate() {
-        let (name, word) = &section.elset;
-        let target = Target::Name(name.clone());
-        let elements = sets.elements(model, &target, (&section.location, word))?;
+        let word = &section.elset.word;
+        let elements = sets.elements_of(&section.elset)?;
         // rigid ones need no material
         for tet in elements.into_iter().filter_map(|e| raw.tet(e)) {
             let before = std::mem::replace(&mut of_element[tet as usize], index as u32);
             if before != NONE {
-                let text = format!(
+                return Err(word.cannot(format!(
                     "element {} is in the section of line {} already; an element has one section",
-                    raw.element_labels()[tet as usize],
-                    model.sections[before as usize].location.line
-                );
-                return Err(DeckError::at(&section.location, word, Fault::Cannot(text)));
+                    raw.element_labels[tet as usize], model.sections[before as usize].elset.word.location.line
+                )));
             }
         }
     }
     match of_element.iter().position(|s| *s == NONE) {
         Some(tet) => {
-            let element = &model.elements[raw.elements()[tet] as usize];
-            let why = "the element has no *SOLID SECTION; give one to all elements";
-            Err(DeckError::at(
-                &element.location,
-                &element.label.to_string(),
-                Fault::Empty(why),
-            ))
+            let word = model.elements[raw.elements[tet] as usize].word();
+            Err(word.cannot("the element has no *SOLID SECTION; give one to all elements"))
         }
         None => Ok(Some(of_element)),
     }

@@ -9,7 +9,7 @@ use signorini_fem_mesh::{Facet, TetMesh};
 use super::numbers::{Numbers, Sets};
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Fault};
-use crate::model::{Kind, Model, Names};
+use crate::model::{Kind, Names};
 
 /// The mesh before its facets are known: elastic tetrahedra, without nodes that none of them uses.
 #[derive(Debug)]
@@ -21,37 +21,36 @@ pub(super) struct Raw {
     /// Number in the mesh of each node and element of the deck, by position.
     of_node: Vec<Option<u32>>,
     of_element: Vec<Option<u32>>,
-    node_labels: Vec<u32>,
-    /// Positions of the elements of the deck.
-    elements: Vec<u32>,
-    element_labels: Vec<u32>,
+    /// Numbers in the deck of the nodes of the mesh.
+    pub(super) node_labels: Vec<u32>,
+    /// Positions and numbers in the deck of the tetrahedra.
+    pub(super) elements: Vec<u32>,
+    pub(super) element_labels: Vec<u32>,
 }
 
 impl Raw {
-    pub(super) fn new(path: &Path, model: &Model, sets: &Sets, bodies: &RigidBodies) -> Result<Self, DeckError> {
+    pub(super) fn new(path: &Path, sets: &Sets, bodies: &RigidBodies) -> Result<Self, DeckError> {
+        let model = sets.model;
         let (mut tets, mut mids, mut elements) = (Vec::new(), Vec::new(), Vec::new());
         let mut of_element = vec![None; model.elements.len()];
         let mut used = vec![false; model.nodes.len()];
         for (position, element) in model.elements.iter().enumerate() {
-            let nodes = bodies.nodes(sets, element)?;
+            let nodes = sets.corners(element)?;
             if bodies.of_element(position as u32).is_some() {
                 continue;
             }
             if element.kind != Kind::Solid {
                 let why = "the facet is in no rigid body; put it into the ELSET of a *RIGID BODY";
-                let word = element.label.to_string();
-                return Err(DeckError::at(&element.location, &word, Fault::Empty(why)));
+                return Err(element.word().cannot(why));
             }
             let volume = tet_volume(&nodes.map(|n| model.nodes[n as usize].point));
             if !(volume > 0.0 && volume.is_finite()) {
-                let word = element.label.to_string();
-                return Err(DeckError::at(&element.location, &word, Fault::Volume));
+                return Err(element.word().fault(Fault::Volume));
             }
-            let own = bodies.mids(sets, element)?;
+            let own = sets.mids(element)?;
             if !tets.is_empty() && own.is_some() == mids.is_empty() {
-                let text = "the deck has elastic elements of first and of second order; mesh all in one order";
-                let word = element.label.to_string();
-                return Err(DeckError::at(&element.location, &word, Fault::Cannot(text.into())));
+                let why = "the deck has elastic elements of first and of second order; mesh all in one order";
+                return Err(element.word().cannot(why));
             }
             nodes
                 .iter()
@@ -66,7 +65,7 @@ impl Raw {
             let path = path.to_owned();
             return Err(DeckError::NoElements { path });
         }
-        bodies.check_apart(model, sets, &used)?;
+        bodies.check_apart(sets, &used)?;
         let (mut points, mut node_labels) = (Vec::new(), Vec::new());
         let mut of_node = vec![None; used.len()];
         for ((node, used), number) in model.nodes.iter().zip(used).zip(&mut of_node) {
@@ -95,33 +94,18 @@ impl Raw {
         self.of_element[element as usize]
     }
 
-    /// The position in the deck of each tetrahedron.
-    pub(super) fn elements(&self) -> &[u32] {
-        &self.elements
-    }
-
     /// The number in the mesh of a node of the deck, by its position; `None` if no elastic element uses it.
     pub(super) fn in_mesh(&self, node: u32) -> Option<u32> {
         self.of_node[node as usize]
     }
 
-    /// The number in the deck of each node of the mesh.
-    pub(super) fn node_labels(&self) -> &[u32] {
-        &self.node_labels
-    }
-
-    /// The number in the deck of each tetrahedron.
-    pub(super) fn element_labels(&self) -> &[u32] {
-        &self.element_labels
-    }
-
     /// The sets of nodes and of elements by name, in the numbers of the mesh.
-    pub(super) fn names(&self, model: &Model, sets: Sets) -> (Names<Vec<u32>>, Names<Vec<u32>>) {
+    pub(super) fn names(&self, sets: Sets) -> (Names<Vec<u32>>, Names<Vec<u32>>) {
         let [mut nodes, mut elements] = [Names::default(), Names::default()];
-        for (name, set) in model.nsets.names().into_iter().zip(sets.nodes) {
+        for (name, set) in sets.model.nsets.names().into_iter().zip(sets.nodes) {
             nodes.add(name, set.into_iter().filter_map(|n| self.in_mesh(n)).collect());
         }
-        for (name, set) in model.elsets.names().into_iter().zip(sets.elements) {
+        for (name, set) in sets.model.elsets.names().into_iter().zip(sets.elements) {
             elements.add(name, set.into_iter().filter_map(|e| self.tet(e)).collect());
         }
         (nodes, elements)

@@ -46,25 +46,26 @@ pub(crate) struct Translated {
 /// The mesh and the scene of a model.
 pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckError> {
     let sets = numbers::Sets::new(model)?;
-    let bodies = rigid::RigidBodies::new(model, &sets)?;
-    let raw = mesh::Raw::new(path, model, &sets, &bodies)?;
+    let bodies = rigid::RigidBodies::new(&sets)?;
+    let raw = mesh::Raw::new(path, &sets, &bodies)?;
     let timeline = timeline::Timeline::new(model)?;
     let known = faces::Known {
         model,
         sets: &sets,
         bodies: &bodies,
         raw: &raw,
+        timeline: &timeline,
     };
     let mut faces = faces::FaceTable::default();
     let surfaces = faces.surfaces(known)?;
-    let loads = loads::Loads::new(known, &timeline, &surfaces, &mut faces)?;
+    let loads = loads::Loads::new(known, &surfaces, &mut faces)?;
     faces.check_outside(&raw)?;
     let tags = faces.tags();
-    let (regions, materials) = materials::materials(model, &raw, &sets)?;
+    let (regions, materials) = materials::materials(&raw, &sets)?;
     let mesh = raw.mesh(path, faces.facets(&tags), regions)?;
     let surfaces = faces.tags_of(&tags, model);
 
-    let supports = supports::supports(known, &timeline)?;
+    let supports = supports::supports(known)?;
     let contacts = contacts::contacts(known, &faces, &surfaces, &supports.motions)?;
     let loads = loads.lower(&faces, &tags);
     let scene = materials.map(|materials| {
@@ -73,13 +74,13 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         let scene = loads.into_iter().fold(scene, Scene::with_load);
         contacts.into_iter().fold(scene, Scene::with_contact)
     });
-    let (node_sets, element_sets) = raw.names(model, sets);
+    let (node_sets, element_sets) = raw.names(sets);
     Ok(Translated {
         mesh,
         scene,
         nodes: raw.mesh_numbers(),
-        node_labels: raw.node_labels().to_vec(),
-        element_labels: raw.element_labels().to_vec(),
+        node_labels: raw.node_labels,
+        element_labels: raw.element_labels,
         surfaces,
         node_sets,
         element_sets,

@@ -2,8 +2,9 @@
 
 use std::collections::HashSet;
 
-use crate::error::{DeckError, Fault, Location};
-use crate::model::{Member, Model, Names, Set, Target};
+use crate::error::{DeckError, Fault, Location, Word};
+use crate::lexer::Named;
+use crate::model::{Element, Member, Model, Names, Set, Target};
 
 /// Most members of all sets together.
 const MEMBERS: u64 = 200_000_000;
@@ -38,15 +39,16 @@ impl Numbers {
 
 /// All numbers and sets, as positions in the tables of nodes and elements of the deck.
 #[derive(Debug)]
-pub(super) struct Sets {
-    pub(super) node_numbers: Numbers,
+pub(super) struct Sets<'a> {
+    pub(super) model: &'a Model,
+    node_numbers: Numbers,
     element_numbers: Numbers,
     pub(super) nodes: Vec<Vec<u32>>,
     pub(super) elements: Vec<Vec<u32>>,
 }
 
-impl Sets {
-    pub(super) fn new(model: &Model) -> Result<Self, DeckError> {
+impl<'a> Sets<'a> {
+    pub(super) fn new(model: &'a Model) -> Result<Self, DeckError> {
         let at = |n: usize| (model.nodes[n].label, &model.nodes[n].location);
         let remedy = "give each node a number of its own";
         let node_numbers = numbers(model.nodes.len(), at, remedy)?;
@@ -58,6 +60,7 @@ impl Sets {
         let count = model.elements.len();
         let elements = resolve("element", &model.elsets, &element_numbers, count, &mut room)?;
         Ok(Self {
+            model,
             node_numbers,
             element_numbers,
             nodes,
@@ -66,20 +69,47 @@ impl Sets {
     }
 
     /// Positions of the nodes of a target.
-    pub(super) fn nodes(&self, model: &Model, target: &Target, at: (&Location, &str)) -> Result<Vec<u32>, DeckError> {
+    pub(super) fn nodes(&self, target: &Target, word: &Word) -> Result<Vec<u32>, DeckError> {
         let what = ("node", "node set");
-        find(what, target, &self.node_numbers, &model.nsets, &self.nodes, at)
+        find(what, target, &self.node_numbers, &self.model.nsets, &self.nodes, word)
     }
 
     /// Positions of the elements of a target.
-    pub(super) fn elements(
-        &self,
-        model: &Model,
-        target: &Target,
-        at: (&Location, &str),
-    ) -> Result<Vec<u32>, DeckError> {
+    pub(super) fn elements(&self, target: &Target, word: &Word) -> Result<Vec<u32>, DeckError> {
         let what = ("element", "element set");
-        find(what, target, &self.element_numbers, &model.elsets, &self.elements, at)
+        find(
+            what,
+            target,
+            &self.element_numbers,
+            &self.model.elsets,
+            &self.elements,
+            word,
+        )
+    }
+
+    /// Positions of the corners of an element.
+    pub(super) fn corners(&self, element: &Element) -> Result<[u32; 4], DeckError> {
+        self.positions(element, element.nodes)
+    }
+
+    /// Positions of the nodes on the edges of an element C3D10; `None` for others.
+    pub(super) fn mids(&self, element: &Element) -> Result<Option<[u32; 6]>, DeckError> {
+        let quadratic = element.mids != [0; 6];
+        quadratic.then(|| self.positions(element, element.mids)).transpose()
+    }
+
+    fn positions<const N: usize>(&self, element: &Element, labels: [u32; N]) -> Result<[u32; N], DeckError> {
+        let mut nodes = [0; N];
+        for (position, label) in nodes.iter_mut().zip(labels) {
+            let unknown = || Word::new(&element.location, label.to_string()).fault(Fault::UnknownNumber("node"));
+            *position = self.node_numbers.get(label).ok_or_else(unknown)?;
+        }
+        Ok(nodes)
+    }
+
+    /// Positions of the elements of a set.
+    pub(super) fn elements_of(&self, set: &Named) -> Result<Vec<u32>, DeckError> {
+        self.elements(&Target::Name(set.name.clone()), &set.word)
     }
 }
 
@@ -93,8 +123,7 @@ fn numbers<'a>(
     Numbers::new(pairs.collect()).map_err(|[first, second]| {
         let (label, location) = at(second as usize);
         let first = at(first as usize).1.line;
-        let fault = Fault::Repeated { first, remedy };
-        DeckError::at(location, &label.to_string(), fault)
+        Word::new(location, label.to_string()).fault(Fault::Repeated { first, remedy })
     })
 }
 
@@ -104,22 +133,18 @@ fn find(
     numbers: &Numbers,
     names: &Names<Set>,
     sets: &[Vec<u32>],
-    (location, word): (&Location, &str),
+    word: &Word,
 ) -> Result<Vec<u32>, DeckError> {
-    let name = match target {
+    match target {
         Target::Number(number) => {
             let found = numbers.get(*number);
-            let found = found.ok_or_else(|| DeckError::at(location, word, Fault::UnknownNumber(what)))?;
-            return Ok(vec![found]);
+            Ok(vec![found.ok_or_else(|| word.fault(Fault::UnknownNumber(what)))?])
         }
-        Target::Name(name) => name,
-    };
-    let set = &sets[names.find(what_set, name, (location, word))?];
-    if set.is_empty() {
-        let fault = Fault::Empty("the set is empty; fill it, or remove this line");
-        return Err(DeckError::at(location, word, fault));
+        Target::Name(name) => match &sets[names.find(what_set, name, word)?][..] {
+            [] => Err(word.cannot("the set is empty; fill it, or remove this line")),
+            set => Ok(set.to_vec()),
+        },
     }
-    Ok(set.clone())
 }
 
 /// The members of each set, ascending.
@@ -131,6 +156,7 @@ fn resolve(
     room: &mut u64,
 ) -> Result<Vec<Vec<u32>>, DeckError> {
     const NOT_YET: u32 = u32::MAX;
+    let unknown = |location: &Location, word: String| Word::new(location, word).fault(Fault::UnknownNumber(what));
     let mut sets: Vec<Vec<u32>> = Vec::new();
     let mut last = vec![NOT_YET; count];
     for (index, (_, set)) in names.iter().enumerate() {
@@ -145,24 +171,21 @@ fn resolve(
             match member {
                 Member::One(number) => match numbers.get(*number) {
                     Some(position) => add(position),
-                    None => {
-                        let fault = Fault::UnknownNumber(what);
-                        return Err(DeckError::at(location, &number.to_string(), fault));
-                    }
+                    None => return Err(unknown(location, number.to_string())),
                 },
                 Member::Range { from, to, step } => {
                     let mut inside = numbers.range(*from, *to, *step).peekable();
                     if inside.peek().is_none() {
-                        let fault = Fault::UnknownNumber(what);
-                        return Err(DeckError::at(location, &format!("{from}, {to}, {step}"), fault));
+                        return Err(unknown(location, format!("{from}, {to}, {step}")));
                     }
                     inside.for_each(&mut add);
                 }
                 Member::Set(name) => {
-                    let other = names.find("set", name, (location, name))?;
+                    let word = Word::new(location, name);
+                    let other = names.find("set", name, &word)?;
                     if other >= index {
                         let why = "a set may name only sets that are defined before it; move the other one up";
-                        return Err(DeckError::at(location, name, Fault::Misplaced(why)));
+                        return Err(word.cannot(why));
                     }
                     if taken.insert(other) {
                         sets[other].iter().copied().for_each(&mut add);
@@ -174,13 +197,12 @@ fn resolve(
         match room.checked_sub(members.len() as u64) {
             Some(left) => *room = left,
             None => {
-                let fault = Fault::TooMany {
+                let (member, location) = &set[0];
+                return Err(Word::new(location, format!("{member:?}")).fault(Fault::TooMany {
                     what: "members of sets",
                     most: MEMBERS,
                     remedy: "remove sets that are not needed",
-                };
-                let (member, location) = &set[0];
-                return Err(DeckError::at(location, &format!("{member:?}"), fault));
+                }));
             }
         }
         sets.push(members);

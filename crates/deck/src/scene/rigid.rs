@@ -13,8 +13,8 @@ use signorini_fem_mesh::{FacetTag, History};
 use super::history::{Histories, Track};
 use super::numbers::Sets;
 use super::timeline::Timeline;
-use crate::error::{DeckError, Fault, Location};
-use crate::model::{Element, FACES, Kind, Model, Side, Target};
+use crate::error::{DeckError, Word};
+use crate::model::{FACES, Kind, Side, Target};
 
 /// Deviation from a plane, and of a node from the rim of a surface, over its size, that is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -44,25 +44,22 @@ pub(super) struct RigidFace {
 pub(super) type Motion = Option<([f64; 3], History)>;
 
 impl RigidBodies {
-    pub(super) fn new(model: &Model, sets: &Sets) -> Result<Self, DeckError> {
+    pub(super) fn new(sets: &Sets) -> Result<Self, DeckError> {
+        let model = sets.model;
         let mut of_element = vec![None; model.elements.len()];
         let mut list = Vec::with_capacity(model.rigid.len());
         for (index, body) in model.rigid.iter().enumerate() {
-            let (name, word) = &body.elset;
-            let at = (&body.location, word.as_str());
-            for element in sets.elements(model, &Target::Name(name.clone()), at)? {
+            let word = &body.elset.word;
+            for element in sets.elements_of(&body.elset)? {
                 if of_element[element as usize].replace(index as u32).is_some() {
                     let label = model.elements[element as usize].label;
-                    let text = format!("element {label} is in another rigid body; keep one of them");
-                    return Err(DeckError::at(at.0, at.1, Fault::Cannot(text)));
+                    let why = format!("element {label} is in another rigid body; keep one of them");
+                    return Err(word.cannot(why));
                 }
             }
-            let node = |(target, word): &(Target, String)| {
-                let at = (&body.location, word.as_str());
-                match sets.nodes(model, target, at)?[..] {
-                    [node] => Ok(node),
-                    _ => Err(DeckError::at(at.0, at.1, Fault::Expected("one node"))),
-                }
+            let node = |(target, word): &(Target, Word)| match sets.nodes(target, word)?[..] {
+                [node] => Ok(node),
+                _ => Err(word.expected("one node")),
             };
             list.push(Body {
                 reference: node(&body.reference)?,
@@ -85,63 +82,45 @@ impl RigidBodies {
 
     /// Refuses bodies that share nodes with elastic elements, which would be bonded to them; `elastic` are the nodes
     /// that such elements use.
-    pub(super) fn check_apart(&self, model: &Model, sets: &Sets, elastic: &[bool]) -> Result<(), DeckError> {
-        let fault = |location: &Location, word: &str, node: u32| {
-            let text = format!(
-                "node {} is of a rigid body and of elastic elements, and rigid parts of elastic bodies are not \
-                here; hold or move the nodes with *BOUNDARY, or give the rigid body nodes of its own",
+    pub(super) fn check_apart(&self, sets: &Sets, elastic: &[bool]) -> Result<(), DeckError> {
+        let model = sets.model;
+        let fault = |word: &Word, node: u32| {
+            Err(word.cannot(format!(
+                "node {} is of a rigid body and of elastic elements, and rigid parts of elastic bodies are not here; \
+                hold or move the nodes with *BOUNDARY, or give the rigid body nodes of its own",
                 model.nodes[node as usize].label
-            );
-            Err(DeckError::at(location, word, Fault::Cannot(text)))
+            )))
         };
         for (body, said) in self.list.iter().zip(&model.rigid) {
             let own = [Some(body.reference), body.rotation].into_iter().flatten();
             if let Some(node) = own.into_iter().find(|n| elastic[*n as usize]) {
-                return fault(&said.location, &said.reference.1, node);
+                return fault(&said.reference.1, node);
             }
         }
         let all = model.elements.iter().zip(&self.of_element);
         for (element, _) in all.filter(|(_, body)| body.is_some()) {
-            let nodes = self.nodes(sets, element)?;
+            let nodes = sets.corners(element)?;
             if let Some(node) = nodes.into_iter().find(|n| elastic[*n as usize]) {
-                return fault(&element.location, &element.label.to_string(), node);
+                return fault(&element.word(), node);
             }
         }
         Ok(())
     }
 
-    /// The nodes of an element, by position.
-    pub(super) fn nodes(&self, sets: &Sets, element: &Element) -> Result<[u32; 4], DeckError> {
-        positions(sets, element, element.nodes)
-    }
-
-    /// The nodes on the edges of an element C3D10, by position; `None` for others.
-    pub(super) fn mids(&self, sets: &Sets, element: &Element) -> Result<Option<[u32; 6]>, DeckError> {
-        let quadratic = element.mids != [0; 6];
-        quadratic.then(|| positions(sets, element, element.mids)).transpose()
-    }
-
     /// A side of a rigid element, by its position.
-    pub(super) fn face(
-        &self,
-        model: &Model,
-        sets: &Sets,
-        (element, side): (u32, Side),
-        at: (&Location, &str),
-    ) -> Result<RigidFace, DeckError> {
-        let wanted = |wanted| DeckError::at(at.0, at.1, Fault::Expected(wanted));
+    pub(super) fn face(&self, sets: &Sets, (element, side): (u32, Side), word: &Word) -> Result<RigidFace, DeckError> {
         let body = self.of_element(element).unwrap_or(0);
-        let element = &model.elements[element as usize];
-        let nodes = self.nodes(sets, element)?;
-        let p = nodes.map(|n| model.nodes[n as usize].point);
+        let element = &sets.model.elements[element as usize];
+        let nodes = sets.corners(element)?;
+        let p = nodes.map(|n| sets.model.nodes[n as usize].point);
         let mut corners = match (element.kind, side) {
             (Kind::Solid, Side::Face(number)) => {
                 let [a, b, c] = FACES[usize::from(number) - 1];
                 // these faces are numbered counter-clockwise seen from inside
                 vec![p[a], p[c], p[b]]
             }
-            (Kind::Solid, _) => return Err(wanted("faces S1 to S4 of solid elements")),
-            (_, Side::Face(_)) => return Err(wanted("SPOS or SNEG of rigid facets")),
+            (Kind::Solid, _) => return Err(word.expected("faces S1 to S4 of solid elements")),
+            (_, Side::Face(_)) => return Err(word.expected("SPOS or SNEG of rigid facets")),
             (Kind::Triangle, _) => p[..3].to_vec(),
             (Kind::Quadrilateral, _) => p.to_vec(),
         };
@@ -154,16 +133,12 @@ impl RigidBodies {
     /// How each body moves; `held` are the components 0 to 5 of its nodes that supports hold.
     pub(super) fn motions(
         &self,
-        model: &Model,
         timeline: &Timeline,
         held: &BTreeMap<(u32, usize), Track>,
     ) -> Result<Vec<Motion>, DeckError> {
         let mut out = Vec::with_capacity(self.list.len());
-        for (body, said) in self.list.iter().zip(&model.rigid) {
-            let fault = |text: String| {
-                let word = &said.reference.1;
-                DeckError::at(&said.location, word, Fault::Cannot(text))
-            };
+        for (body, said) in self.list.iter().zip(&timeline.model.rigid) {
+            let word = &said.reference.1;
             let mut histories = Histories::default();
             let mut value = [0.0; 3];
             for component in 0..6 {
@@ -171,24 +146,22 @@ impl RigidBodies {
                 let other = body.rotation.filter(|_| component >= 3);
                 let turned = other.and_then(|n| held.get(&(n, component - 3)));
                 let Some(track) = own.or(turned) else {
-                    return Err(fault(format!(
+                    return Err(word.cannot(format!(
                         "the rigid body is not held along component {} (of 6, rotations are 4 to 6); give \
                         its node *BOUNDARY, since only a held or moved obstacle can be said",
                         component + 1
                     )));
                 };
-                let Some((size, history)) = histories.add(model, timeline, track)? else {
+                let Some((size, history)) = histories.add(timeline, track)? else {
                     continue;
                 };
                 if component >= 3 {
-                    return Err(fault(
-                        "a rigid body that turns cannot be said; hold its rotations".into(),
-                    ));
+                    return Err(word.cannot("a rigid body that turns cannot be said; hold its rotations"));
                 }
                 if history > 0 {
-                    let text = "the components of a rigid body's motion have different histories, and an \
-                    obstacle has one; give them one amplitude";
-                    return Err(fault(text.into()));
+                    let why = "the components of a rigid body's motion have different histories, and an obstacle has \
+                    one; give them one amplitude";
+                    return Err(word.cannot(why));
                 }
                 value[component] = size;
             }
@@ -268,16 +241,4 @@ fn contains(triangle: &[[f64; 3]; 3], normal: [f64; 3], x: [f64; 3]) -> bool {
         let edge = norm(sub(b, a));
         inside >= -ROUNDING * edge * (edge + norm(sub(x, a)))
     })
-}
-
-/// The positions of nodes of an element by their labels.
-fn positions<const N: usize>(sets: &Sets, element: &Element, labels: [u32; N]) -> Result<[u32; N], DeckError> {
-    let mut nodes = [0; N];
-    for (position, label) in nodes.iter_mut().zip(labels) {
-        *position = sets.node_numbers.get(label).ok_or_else(|| {
-            let fault = Fault::UnknownNumber("node");
-            DeckError::at(&element.location, &label.to_string(), fault)
-        })?;
-    }
-    Ok(nodes)
 }

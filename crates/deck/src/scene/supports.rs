@@ -5,11 +5,11 @@ use std::collections::BTreeMap;
 use signorini_contact::{Directions, Support};
 
 use super::faces::Known;
-use super::history::{Given, Histories, Track};
+use super::history::{Histories, Track};
 use super::rigid::Motion;
 use super::timeline::Timeline;
-use crate::error::{DeckError, Fault};
-use crate::model::{Boundary, COMPONENT, Ignored, Model, Target};
+use crate::error::DeckError;
+use crate::model::{COMPONENT, Components, Condition, Given, Ignored, Target};
 
 /// Name of what is given on nodes by their numbers.
 const SINGLE: &str = "nodes";
@@ -41,7 +41,7 @@ pub(super) struct Supports {
 }
 
 /// One support for each target and its moving or fixed components.
-pub(super) fn supports(known: Known, timeline: &Timeline) -> Result<Supports, DeckError> {
+pub(super) fn supports(known: Known) -> Result<Supports, DeckError> {
     let mut table = Table::default();
     for line in &known.model.supports {
         table.add(known, None, line)?;
@@ -57,29 +57,24 @@ pub(super) fn supports(known: Known, timeline: &Timeline) -> Result<Supports, De
         for line in &given.boundary.lines {
             table.add(known, Some(step), line)?;
         }
-        let elastic = table.held.iter().map(|(key, held)| {
-            let label = known.raw.node_labels()[key.0 as usize];
-            (label, key.1, held)
-        });
-        let rigid = table.rigid.iter().map(|(key, held)| {
-            let label = known.model.nodes[key.0 as usize].label;
-            (label, key.1, held)
-        });
+        let elastic = table.held.iter();
+        let elastic = elastic.map(|(key, held)| (known.raw.node_labels[key.0 as usize], key.1, held));
+        let rigid = table.rigid.iter();
+        let rigid = rigid.map(|(key, held)| (known.model.nodes[key.0 as usize].label, key.1, held));
         let released = elastic.chain(rigid).find(|r| r.2.track.is_removed_in(step));
-        if let (Some((label, component, _)), Some((location, word, _))) = (released, &given.boundary.first) {
-            let text = format!(
-                "this releases component {} of node {label}; what is held in the first step is held to the \
-                end, so give it again here",
+        if let (Some((label, component, _)), Some((word, _))) = (released, &given.boundary.first) {
+            return Err(word.cannot(format!(
+                "this releases component {} of node {label}; what is held in the first step is held to the end, so \
+                give it again here",
                 component + 1,
-            );
-            return Err(DeckError::at(location, word, Fault::Cannot(text)));
+            )));
         }
     }
     let rigid = std::mem::take(&mut table.rigid);
     let rigid = rigid.into_iter().map(|(key, held)| (key, held.track)).collect();
-    let motions = known.bodies.motions(known.model, timeline, &rigid)?;
+    let motions = known.bodies.motions(known.timeline, &rigid)?;
     let ignored = std::mem::take(&mut table.ignored);
-    let (list, names) = table.lower(known.model, timeline)?;
+    let (list, names) = table.lower(known.timeline)?;
     Ok(Supports {
         list,
         names,
@@ -123,62 +118,54 @@ impl Table {
     }
 
     /// Notes a line of a step, or of the part before the first.
-    fn add(&mut self, known: Known, step: Option<usize>, line: &Boundary) -> Result<(), DeckError> {
-        let at = (&line.location, line.word.as_str());
-        let fault = |text: String| DeckError::at(at.0, at.1, Fault::Cannot(text));
+    fn add(&mut self, known: Known, step: Option<usize>, line: &Condition<Components>) -> Result<(), DeckError> {
         let owner = self.owner(&line.target);
-        let given = Given {
-            value: line.value,
-            amplitude: line.amplitude,
-        };
         let (mut found, mut turned) = (false, None);
-        for node in known.sets.nodes(known.model, &line.target, at)? {
+        for node in known.sets.nodes(&line.target, &line.word)? {
             let (map, key, components) = match known.raw.in_mesh(node) {
                 _ if known.bodies.has(node) => (&mut self.rigid, node, 6),
                 Some(inside) => (&mut self.held, inside, 3),
                 None => continue,
             };
             found = true;
-            if let (3, Some(word)) = (components, &line.rotation) {
-                if line.value != 0.0 {
-                    return Err(DeckError::at(at.0, word, Fault::Expected(COMPONENT)));
+            if let (3, Some(word)) = (components, &line.kind.rotation) {
+                if line.given.value != 0.0 {
+                    return Err(word.expected(COMPONENT));
                 }
                 turned = Some(word);
             }
-            for component in (0..components).filter(|&c| line.components[c]) {
+            for component in (0..components).filter(|&c| line.kind.on[c]) {
                 let label = known.model.nodes[node as usize].label;
                 let what = format!("component {} of node {label}", component + 1);
                 let next = map.len();
                 let new = !map.contains_key(&(key, component));
                 if new && step.is_some_and(|step| step > 0) {
-                    return Err(fault(format!(
+                    return Err(line.word.cannot(format!(
                         "{what} is free in the steps before; what is held in one step has to be held from \
                         the first one on"
                     )));
                 }
                 let held = map.entry((key, component)).or_insert_with(|| Held {
                     owner,
-                    track: Track::new(next, at),
+                    track: Track::new(next, &line.word),
                     before: step.is_none(),
                 });
-                held.give(step, given, &what).map_err(fault)?;
+                held.give(step, line.given, &what)
+                    .map_err(|why| line.word.cannot(why))?;
             }
         }
         if let Some(word) = turned {
-            self.ignored.push(Ignored::new(
-                &line.location,
-                word,
-                "nodes of solid elements have no rotations to be held",
-            ));
+            let why = "nodes of solid elements have no rotations to be held";
+            self.ignored.push(Ignored::new(word, why));
         }
         if !found {
-            let text = "no elastic element uses these nodes; hold nodes of the body";
-            return Err(fault(text.into()));
+            let why = "no elastic element uses these nodes; hold nodes of the body";
+            return Err(line.word.cannot(why));
         }
         Ok(())
     }
 
-    fn lower(self, model: &Model, timeline: &Timeline) -> Result<(Vec<Support>, Vec<String>), DeckError> {
+    fn lower(self, timeline: &Timeline) -> Result<(Vec<Support>, Vec<String>), DeckError> {
         let mut histories = Histories::default();
         // by target, first component, history and components: nodes and their displacements
         type Key = (usize, usize, Option<usize>, [bool; 3]);
@@ -193,7 +180,7 @@ impl Table {
             }
             let mut moves = Vec::with_capacity(3);
             for (component, held) in of_node {
-                let motion = histories.add(model, timeline, &held.track)?;
+                let motion = histories.add(timeline, &held.track)?;
                 moves.push((component, held.owner, motion));
             }
             let all: Vec<usize> = moves.iter().filter_map(|m| Some(m.2?.1)).collect();

@@ -17,34 +17,33 @@ pub(super) struct Span {
 }
 
 #[derive(Debug)]
-pub(super) struct Timeline {
+pub(super) struct Timeline<'a> {
+    pub(super) model: &'a Model,
     pub(super) spans: Vec<Span>,
     times: Vec<f64>,
 }
 
-impl Timeline {
-    pub(super) fn new(model: &Model) -> Result<Self, DeckError> {
+impl<'a> Timeline<'a> {
+    pub(super) fn new(model: &'a Model) -> Result<Self, DeckError> {
         let (mut spans, mut times) = (Vec::new(), Vec::new());
         let mut start = 0.0;
         for step in &model.steps {
-            let Some((location, increments)) = &step.time else {
+            let Some((word, increments)) = &step.time else {
                 continue;
             };
             if (times.len() + increments.count) as f64 > INCREMENTS {
-                let fault = Fault::TooMany {
+                return Err(word.fault(Fault::TooMany {
                     what: "increments in all steps",
                     most: INCREMENTS as u64,
                     remedy: "make the increments larger",
-                };
-                return Err(DeckError::at(location, "*STATIC", fault));
+                }));
             }
             for i in 1..=increments.count {
                 let time = start + increments.time(i);
                 if !(time.is_finite() && times.last().is_none_or(|before| time > *before)) {
-                    let text = format!(
+                    return Err(word.cannot(format!(
                         "increment {i} does not end later than the one before, by rounding; its step starts at {start}"
-                    );
-                    return Err(DeckError::at(location, "*STATIC", Fault::Cannot(text)));
+                    )));
                 }
                 times.push(time);
             }
@@ -57,7 +56,7 @@ impl Timeline {
             });
             start = end;
         }
-        Ok(Self { spans, times })
+        Ok(Self { model, spans, times })
     }
 
     /// Backward Euler over all increments; a single one is static.

@@ -163,7 +163,7 @@ fn pressures() {
         loads => panic!("{loads:?}"),
     };
     assert_eq!(one(&by_faces), one(&by_surface));
-    assert!(one(&by_surface).contains("Pressure { tag: FacetTag(6), value: 2.0 }"));
+    assert!(one(&by_surface).contains("Pressure(FacetTag(6), 2.0)"));
 }
 
 /// Many different pressures become forces at nodes with the same resultant.
@@ -281,7 +281,7 @@ fn pressure_on_a_part_of_a_contact_surface() {
     let scene = scene(&text);
     assert_eq!(scene.contacts()[0].tags().len(), 2);
     assert_eq!(scene.mesh().tags().len(), 7);
-    let LoadDensity::Pressure { tag, value } = scene.loads()[0].density() else {
+    let LoadDensity::Pressure(tag, value) = scene.loads()[0].density() else {
         panic!("{:?}", scene.loads());
     };
     assert_eq!((scene.mesh().nodes_on(*tag).len(), *value), (3, 2.0));

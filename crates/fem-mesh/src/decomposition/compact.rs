@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use crate::mesh::{TetMesh, connected_sets};
-use crate::tables::{buckets, range};
+use crate::tables::Lists;
 use crate::tolerances::{SETTLED, SWEEPS};
 use crate::vec3::{self, Vec3};
 
@@ -101,13 +101,12 @@ fn sweep(mesh: &TetMesh, groups: &[u32], centres: &[Vec3], parts: &[u32]) -> Vec
 
 /// The parts of the same group that share a node with each part, ascending.
 fn touching(mesh: &TetMesh, parts: &[u32], count: usize, group: &[u32]) -> Vec<Vec<u32>> {
-    let (starts, corners) = buckets(mesh.points().len(), mesh.tets().as_flattened());
+    let corners = Lists::by_key(mesh.points().len(), mesh.tets().as_flattened());
     let mut out = vec![Vec::new(); count];
     let mut here: Vec<u32> = Vec::new();
     for node in 0..mesh.points().len() {
         here.clear();
-        let around = corners[range(&starts, node)].iter();
-        here.extend(around.map(|&corner| parts[corner as usize / 4]));
+        here.extend(corners.of(node).iter().map(|&corner| parts[corner as usize / 4]));
         here.sort_unstable();
         here.dedup();
         for &a in &here {
@@ -126,12 +125,12 @@ fn touching(mesh: &TetMesh, parts: &[u32], count: usize, group: &[u32]) -> Vec<V
 pub(crate) fn join_pieces(mesh: &TetMesh, groups: &[u32], parts: &mut [u32]) {
     let pieces = split_by(mesh, parts);
     let count = pieces.iter().max().map_or(0, |&p| p as usize + 1);
-    let (starts, tets) = buckets(count, &pieces);
-    let size = |piece: usize| range(&starts, piece).len();
+    let tets = Lists::by_key(count, &pieces);
+    let size = |piece: usize| tets.of(piece).len();
     let parts_before = parts.iter().max().map_or(0, |&p| p as usize + 1);
     let mut largest = vec![usize::MAX; parts_before];
     for piece in 0..count {
-        let part = parts[tets[range(&starts, piece)][0] as usize] as usize;
+        let part = parts[tets.of(piece)[0] as usize] as usize;
         if largest[part] == usize::MAX || size(piece) > size(largest[part]) {
             largest[part] = piece;
         }
@@ -147,9 +146,9 @@ pub(crate) fn join_pieces(mesh: &TetMesh, groups: &[u32], parts: &mut [u32]) {
         let found: Vec<Option<u32>> = waiting
             .iter()
             .map(|&piece| {
-                let own = tets[range(&starts, piece)].iter();
-                let around = own.flat_map(|&tet| mesh.neighbours(tet as usize));
-                let same = |tet: &usize| groups[*tet] == groups[tets[starts[piece] as usize] as usize];
+                let own = tets.of(piece);
+                let around = own.iter().flat_map(|&tet| mesh.neighbours(tet as usize));
+                let same = |tet: &usize| groups[*tet] == groups[own[0] as usize];
                 let mut fixed: Vec<u32> = around
                     .flatten()
                     .filter(same)
@@ -165,8 +164,7 @@ pub(crate) fn join_pieces(mesh: &TetMesh, groups: &[u32], parts: &mut [u32]) {
         let before = waiting.len();
         for (&piece, part) in waiting.iter().zip(&found) {
             if let Some(part) = part {
-                let own = tets[range(&starts, piece)].iter();
-                own.for_each(|&tet| parts[tet as usize] = *part);
+                tets.of(piece).iter().for_each(|&tet| parts[tet as usize] = *part);
                 loose[piece] = false;
             }
         }

@@ -3,8 +3,8 @@
 use super::compact::{compact, join_pieces};
 use super::parts::{expect_parts, renumbered};
 use super::subdomains::DecompositionError;
-use crate::mesh::{TetMesh, connected_sets};
-use crate::tables::{buckets, range};
+use crate::mesh::{TetMesh, connected_sets, extent};
+use crate::tables::Lists;
 use crate::tolerances::{BOX, FILLED, GRADED, LARGER, PLANE, REACH, SNAP, STRONGLY};
 use crate::vec3::{self, Vec3};
 
@@ -39,26 +39,27 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
         return Err(DecompositionError::NoParts);
     }
     let groups = connected_sets(mesh.neighbour_table(), |a, b| groups[a] == groups[b]);
-    let (starts, members) = buckets(groups.iter().max().map_or(0, |&g| g as usize + 1), &groups);
+    let members = Lists::by_key(groups.iter().max().map_or(0, |&g| g as usize + 1), &groups);
     let centres: Vec<Vec3> = (0..tets).map(|tet| vec3::centroid(&mesh.tet_points(tet))).collect();
     let cutter = |shares| Cutter {
         mesh,
         centres: &centres,
         shares,
     };
-    let own = |group: usize| &members[range(&starts, group)];
     let plain = cutter([const { None }; 3]);
     // elsewhere long cells along an axis are not layers
-    let boxes: Vec<bool> = (0..starts.len() - 1).map(|group| plain.is_box(own(group))).collect();
+    let boxes: Vec<bool> = (0..members.count())
+        .map(|group| plain.is_box(members.of(group)))
+        .collect();
     let (grading, shares) = match boxes.contains(&true) {
         true => shares(mesh),
         false => ([1.0; 3], [const { None }; 3]),
     };
     let graded = Some(cutter(shares)).filter(|cutter| cutter.shares.iter().any(Option::is_some));
     let (mut slabs, mut next) = (vec![0; tets], 0);
-    let mut whole = vec![false; starts.len() - 1];
-    for group in 0..starts.len() - 1 {
-        let own = own(group);
+    let mut whole = vec![false; members.count()];
+    for group in 0..members.count() {
+        let own = members.of(group);
         let share = (own.len() as f64 / tets as f64 * number as f64).round() as usize;
         let share = share.clamp(1, own.len());
         let layered = graded.as_ref().filter(|_| boxes[group]);
@@ -90,7 +91,6 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
 
 /// Whether cells are graded so strongly along all axes that many are flat.
 #[doc(hidden)]
-#[must_use]
 pub fn is_strongly_graded(mesh: &TetMesh) -> bool {
     shares(mesh).0.iter().all(|ratio| *ratio > STRONGLY)
 }
@@ -98,7 +98,10 @@ pub fn is_strongly_graded(mesh: &TetMesh) -> bool {
 /// How strongly cells are graded along each axis, and what each tetrahedron counts in a cut across it; none where all
 /// count alike.
 fn shares(mesh: &TetMesh) -> ([f64; 3], [Option<Vec<f64>>; 3]) {
-    let lengths = |tet: usize| [0, 1, 2].map(|d| reach(mesh, tet, d)).map(|[low, high]| high - low);
+    let lengths = |tet: usize| {
+        let (low, high) = extent(mesh.tet_points(tet));
+        vec3::sub(high, low)
+    };
     let all: Vec<Vec3> = (0..mesh.tets().len()).map(lengths).collect();
     let mut grading = [1.0; 3];
     let shares = [0, 1, 2].map(|d| {
@@ -113,15 +116,6 @@ fn shares(mesh: &TetMesh) -> ([f64; 3], [Option<Vec<f64>>; 3]) {
         (grading[d] > GRADED).then(|| lengths.into_iter().map(share).collect())
     });
     (grading, shares)
-}
-
-/// Where a tetrahedron begins and ends along an axis.
-fn reach(mesh: &TetMesh, tet: usize, axis: usize) -> [f64; 2] {
-    let places = mesh.tet_points(tet).map(|p| p[axis]);
-    [
-        places.into_iter().fold(f64::MAX, f64::min),
-        places.into_iter().fold(f64::MIN, f64::max),
-    ]
 }
 
 struct Cutter<'a> {
@@ -211,7 +205,10 @@ impl Cutter<'_> {
     fn plane(&self, tets: &[u32], axis: usize, middle: usize, least: usize, most: usize) -> Option<usize> {
         let far = (PLANE * middle.min(tets.len() - middle) as f64) as usize;
         let places = middle.saturating_sub(far).max(least)..=(middle + far).min(most);
-        let ends = |k: usize| reach(self.mesh, tets[k] as usize, axis);
+        let ends = |k: usize| {
+            let (low, high) = extent(self.mesh.tet_points(tets[k] as usize));
+            [low[axis], high[axis]]
+        };
         let mut next = vec![f64::MAX; tets.len() + 1];
         (0..tets.len())
             .rev()
@@ -232,19 +229,9 @@ impl Cutter<'_> {
 
     /// Edges of the box around these tetrahedra, and their volume.
     fn size(&self, tets: &[u32]) -> (Vec3, f64) {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        let mut volume = 0.0;
-        for &tet in tets {
-            volume += self.mesh.volume(tet as usize);
-            for point in self.mesh.tet_points(tet as usize) {
-                for d in 0..3 {
-                    low[d] = low[d].min(point[d]);
-                    high[d] = high[d].max(point[d]);
-                }
-            }
-        }
-        (std::array::from_fn(|d| high[d] - low[d]), volume)
+        let volume = tets.iter().map(|&tet| self.mesh.volume(tet as usize)).sum();
+        let (low, high) = extent(tets.iter().flat_map(|&tet| self.mesh.tet_points(tet as usize)));
+        (vec3::sub(high, low), volume)
     }
 
     fn box_surface(&self, tets: &[u32]) -> f64 {

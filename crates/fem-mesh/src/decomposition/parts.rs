@@ -13,29 +13,21 @@ impl Decomposition {
     /// a part is not connected (see [`split_disconnected`]).
     pub fn from_parts(mesh: &TetMesh, parts: &[u32]) -> Result<Self, DecompositionError> {
         expect_parts(mesh, parts)?;
-        let tets = parts.len();
         let count = parts.iter().max().map_or(0, |&p| p as usize + 1);
-        if count > tets {
-            let part = first_gap(parts, tets);
+        // of more parts than tetrahedra one of the first is empty
+        let part = first_gap(parts, count.min(parts.len()));
+        if part < count {
             return Err(DecompositionError::EmptyPart { part, parts: count });
         }
-        Self::checked(mesh, parts.to_vec(), count)
-    }
-
-    fn checked(mesh: &TetMesh, part_of: Vec<u32>, parts: usize) -> Result<Self, DecompositionError> {
-        let part = first_gap(&part_of, parts);
-        if part < parts {
-            return Err(DecompositionError::EmptyPart { part, parts });
-        }
-        let pieces = split_by(mesh, &part_of);
+        let pieces = split_by(mesh, parts);
         // The piece in which each part starts; a second piece is an error.
-        let mut start = vec![(NONE, 0); parts];
-        for (tet, (&part, &piece)) in part_of.iter().zip(&pieces).enumerate() {
+        let mut start = vec![(NONE, 0); count];
+        for (tet, (&part, &piece)) in parts.iter().zip(&pieces).enumerate() {
             let (begun, first) = start[part as usize];
             if begun == NONE {
                 start[part as usize] = (piece, tet);
             } else if begun != piece {
-                let of_part = pieces.iter().zip(&part_of).filter(|(_, p)| **p == part);
+                let of_part = pieces.iter().zip(parts).filter(|(_, p)| **p == part);
                 let mut distinct: Vec<u32> = of_part.map(|(piece, _)| *piece).collect();
                 distinct.sort_unstable();
                 distinct.dedup();
@@ -47,7 +39,7 @@ impl Decomposition {
                 });
             }
         }
-        Ok(Self::build(mesh, part_of))
+        Ok(Self::build(mesh, parts.to_vec()))
     }
 }
 

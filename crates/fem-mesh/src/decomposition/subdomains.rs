@@ -1,7 +1,7 @@
 //! Decomposition into subdomains that are torn apart at their common nodes.
 
 use crate::mesh::{TetMesh, quadratic_tets};
-use crate::tables::{buckets, range};
+use crate::tables::Lists;
 
 /// A part of the mesh with its own numbering of nodes and tetrahedra.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,28 +20,21 @@ pub struct Subdomain {
 
 impl Subdomain {
     /// Number of displacement unknowns, three for each local node.
-    #[must_use]
     pub fn dofs(&self) -> usize {
         3 * self.nodes.len()
     }
 
     /// The ten nodes of each tetrahedron in local numbers; empty in a mesh of order 1.
-    #[must_use]
     pub fn quadratic_tets(&self) -> Vec<[u32; 10]> {
         quadratic_tets(&self.tets, &self.mids)
     }
 
     /// Local number of a global node, if it is here.
-    #[must_use]
     pub fn local(&self, node: u32) -> Option<usize> {
         self.nodes.binary_search(&node).ok()
     }
 
     /// Coordinates of the local nodes.
-    ///
-    /// # Panics
-    /// If the subdomain belongs to another, larger mesh.
-    #[must_use]
     pub fn points(&self, mesh: &TetMesh) -> Vec<[f64; 3]> {
         self.nodes.iter().map(|&n| mesh.points()[n as usize]).collect()
     }
@@ -80,14 +73,12 @@ errors! {
 pub struct Decomposition {
     subdomains: Vec<Subdomain>,
     part_of: Vec<u32>,
-    /// Copies of node n: `copies[copy_start[n]..copy_start[n + 1]]`, by ascending subdomain.
-    copy_start: Vec<u32>,
-    copies: Vec<NodeCopy>,
+    /// Copies of each node, by ascending subdomain.
+    copies: Lists<NodeCopy>,
 }
 
 impl Decomposition {
     /// No decomposition: each body of the mesh is one subdomain.
-    #[must_use]
     pub fn whole(mesh: &TetMesh) -> Self {
         Self::build(mesh, mesh.components())
     }
@@ -95,12 +86,12 @@ impl Decomposition {
     /// Expects part numbers without gaps.
     pub(super) fn build(mesh: &TetMesh, part_of: Vec<u32>) -> Self {
         let parts = part_of.iter().max().map_or(0, |&p| p as usize + 1);
-        let (starts, tets) = buckets(parts, &part_of);
+        let tets = Lists::by_key(parts, &part_of);
         let nodes = mesh.points().len();
         let mut local = vec![0u32; nodes];
         let subdomains: Vec<_> = (0..parts)
             .map(|part| {
-                let elements = tets[range(&starts, part)].to_vec();
+                let elements = tets.of(part).to_vec();
                 let global = |&tet: &u32| mesh.tets()[tet as usize];
                 let own_mids = || elements.iter().filter_map(|&tet| mesh.mids().get(tet as usize));
                 let mut nodes: Vec<u32> = elements.iter().flat_map(global).collect();
@@ -121,68 +112,42 @@ impl Decomposition {
                 }
             })
             .collect();
-        let (copy_start, copies) = collect_copies(nodes, &subdomains);
+        let (mut torn, mut node_of) = (Vec::new(), Vec::new());
+        for (subdomain, own) in (0..).zip(&subdomains) {
+            let copies = (0..own.nodes.len() as u32).map(|local| NodeCopy { subdomain, local });
+            torn.extend(copies);
+            node_of.extend_from_slice(&own.nodes);
+        }
+        let copies = Lists::by_key(nodes, &node_of).map(|k| torn[k as usize]);
         Self {
             subdomains,
             part_of,
-            copy_start,
             copies,
         }
     }
 
     /// The subdomains, by part number.
-    #[must_use]
     pub fn subdomains(&self) -> &[Subdomain] {
         &self.subdomains
     }
 
     /// The copies of a global node, by ascending subdomain.
-    ///
-    /// # Panics
-    /// If there is no such node.
-    #[must_use]
     pub fn copies(&self, node: usize) -> &[NodeCopy] {
-        &self.copies[range(&self.copy_start, node)]
-    }
-
-    /// The subdomain that owns a tetrahedron.
-    ///
-    /// # Panics
-    /// If there is no such tetrahedron.
-    #[must_use]
-    pub fn part_of(&self, tet: usize) -> u32 {
-        self.part_of[tet]
+        self.copies.of(node)
     }
 
     /// The subdomain of every tetrahedron.
-    #[must_use]
     pub fn parts(&self) -> &[u32] {
         &self.part_of
     }
 
     /// Number of global nodes.
-    #[must_use]
     pub fn nodes(&self) -> usize {
-        self.copy_start.len() - 1
+        self.copies.count()
     }
 
     /// Number of displacement unknowns of all subdomains together, the paper's n_p.
-    #[must_use]
     pub fn torn_dofs(&self) -> usize {
-        3 * self.copies.len()
+        3 * self.copies.items().len()
     }
-}
-
-fn collect_copies(nodes: usize, subdomains: &[Subdomain]) -> (Vec<u32>, Vec<NodeCopy>) {
-    let (mut torn, mut node_of) = (Vec::new(), Vec::new());
-    for (number, subdomain) in subdomains.iter().enumerate() {
-        torn.extend((0..subdomain.nodes.len()).map(|local| NodeCopy {
-            subdomain: number as u32,
-            local: local as u32,
-        }));
-        node_of.extend_from_slice(&subdomain.nodes);
-    }
-    let (start, positions) = buckets(nodes, &node_of);
-    let copies = positions.iter().map(|&k| torn[k as usize]).collect();
-    (start, copies)
 }

@@ -5,13 +5,14 @@ use crate::material::Hooke;
 use super::p1::{Block, Element, nodal_stress, stiffness_block};
 use super::p2::QuadraticElement;
 
-/// An element given by the numbers of its nodes.
-pub trait Columns {
+/// Node numbers of a tetrahedron: four of a linear one, ten of a quadratic one.
+pub trait TetNodes: Copy + Sync {
     /// Hands out the blocks in the column of mesh node `node` that are in the rows of nodes not before it.
+    #[doc(hidden)]
     fn lower_column(&self, points: &[[f64; 3]], law: &Hooke, node: usize, add: impl FnMut(usize, &[[f64; 3]; 3]));
 }
 
-impl Columns for [u32; 4] {
+impl TetNodes for [u32; 4] {
     fn lower_column(&self, points: &[[f64; 3]], law: &Hooke, node: usize, mut add: impl FnMut(usize, &Block)) {
         let tet = self.map(|n| n as usize);
         let element = Element::new(&tet.map(|n| points[n]));
@@ -24,7 +25,7 @@ impl Columns for [u32; 4] {
     }
 }
 
-impl Columns for [u32; 10] {
+impl TetNodes for [u32; 10] {
     fn lower_column(&self, points: &[[f64; 3]], law: &Hooke, node: usize, mut add: impl FnMut(usize, &Block)) {
         let tet = self.map(|n| n as usize);
         let element = QuadraticElement::new(&tet.map(|n| points[n]), law);

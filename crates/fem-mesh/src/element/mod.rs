@@ -12,8 +12,8 @@ mod p1;
 mod p2;
 mod piece;
 
+pub use columns::TetNodes;
 pub use p1::Element;
 
-pub(crate) use columns::Columns;
-pub(crate) use p1::{Block, strain_of};
+pub(crate) use p1::Block;
 pub(crate) use piece::{Piece, integral, over_quadratic};

@@ -14,7 +14,6 @@ pub struct Element {
 impl Element {
     /// Volume and gradients from the four nodes. Flat tetrahedra, which a
     /// [`TetMesh`](crate::TetMesh) does not contain, give infinite or undefined gradients.
-    #[must_use]
     pub fn new(points: &[[f64; 3]; 4]) -> Self {
         let [a, b, c] = [1, 2, 3].map(|i| sub(points[i], points[0]));
         let (bc, ca, ab) = (cross(b, c), cross(c, a), cross(a, b));
@@ -26,12 +25,12 @@ impl Element {
             gradients: [g0, ga, gb, gc],
         }
     }
+}
 
-    /// Gradient of the displacement, `h[i][j]` = d u_i / d x_j, from the nodal displacements.
-    pub(crate) fn displacement_gradient(&self, u: &[[f64; 3]; 4]) -> [[f64; 3]; 3] {
-        let entry = |i: usize, j: usize| (0..4).map(|a| u[a][i] * self.gradients[a][j]).sum();
-        std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
-    }
+/// Gradient of a displacement, `h[i][j]` = d u_i / d x_j, from those of the shape functions and its nodal values.
+pub(crate) fn displacement_gradient<const N: usize>(gradients: &[[f64; 3]; N], u: &[[f64; 3]; N]) -> [[f64; 3]; 3] {
+    let entry = |i: usize, j: usize| (0..N).map(|a| u[a][i] * gradients[a][j]).sum();
+    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
 }
 
 /// Strain of a displacement gradient `h[i][j]` = d u_i / d x_j, in Voigt order xx, yy, zz, yz, xz, xy with engineering

@@ -18,12 +18,6 @@ pub(crate) fn gradients(points: &[Vec3; 10], l: &[f64; 4]) -> (f64, [Vec3; 10]) 
     )
 }
 
-/// Gradient of a displacement, `h[i][j]` = d u_i / d x_j, from the gradients of the shape functions.
-pub(crate) fn displacement_gradient(gradients: &[Vec3; 10], u: &[Vec3; 10]) -> [[f64; 3]; 3] {
-    let entry = |i: usize, j: usize| (0..10).map(|a| u[a][i] * gradients[a][j]).sum();
-    std::array::from_fn(|i| std::array::from_fn(|j| entry(i, j)))
-}
-
 /// Gradients at the four points that the stiffness is summed over, with a quarter of the volume there: exact where
 /// edges are straight, and of the order of the element where they are curved.
 pub(crate) struct QuadraticElement {

@@ -7,7 +7,7 @@ use crate::mesh::{TetMesh, shape, tangents};
 use crate::quadrature::{self, FOUR_POINTS};
 use crate::vec3::{Vec3, tet_volume};
 
-use super::p1::{Element, strain_of};
+use super::p1::{Element, displacement_gradient, strain_of};
 use super::p2;
 
 /// A displacement in a tetrahedron, as a function of barycentric coordinates.
@@ -33,7 +33,7 @@ impl Piece {
         let corners = mesh.tets()[tet].map(|n| u[n as usize]);
         let Some(mids) = mesh.mids().get(tet) else {
             let points = mesh.tet_points(tet);
-            let gradient = Element::new(&points).displacement_gradient(&corners);
+            let gradient = displacement_gradient(&Element::new(&points).gradients, &corners);
             return Self::Linear {
                 points,
                 values: corners,
@@ -59,7 +59,7 @@ impl Piece {
             let (mut sum, mut total) = (0.0, 0.0);
             for l in FOUR_POINTS {
                 let (volume, gradients) = p2::gradients(points, &l);
-                let gradient = p2::displacement_gradient(&gradients, values);
+                let gradient = displacement_gradient(&gradients, values);
                 sum += volume * (gradient[0][0] + gradient[1][1] + gradient[2][2]);
                 total += volume;
             }
@@ -86,7 +86,7 @@ impl Piece {
     pub(crate) fn gradient(&self, l: &[f64; 4]) -> [[f64; 3]; 3] {
         match self {
             Self::Linear { gradient, .. } => *gradient,
-            Self::Quadratic { points, values, .. } => p2::displacement_gradient(&p2::gradients(points, l).1, values),
+            Self::Quadratic { points, values, .. } => displacement_gradient(&p2::gradients(points, l).1, values),
         }
     }
 

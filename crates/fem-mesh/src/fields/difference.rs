@@ -1,28 +1,15 @@
-//! Finds the tetrahedron at a point, and compares displacements of two meshes of the same body.
+//! Compares displacements of two meshes of the same body.
 
 use crate::element::{Piece, integral};
 use crate::material::Materials;
-use crate::mesh::TetMesh;
+use crate::mesh::{TetMesh, extent};
 use crate::tolerances::OUTSIDE;
 use crate::vec3::{sub, tet_volume};
 
 use super::strain::{FieldError, nodal_vectors};
 
 /// Tetrahedra sorted into a grid of boxes, to find the one at a point.
-///
-/// ```
-/// use signorini_fem_mesh::Brick;
-/// use signorini_fem_mesh::fields::Locator;
-///
-/// let mesh = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
-/// let locator = Locator::new(&mesh);
-/// let (tet, weights) = locator.locate([1.3, 0.2, 0.7]).ok_or("outside")?;
-/// assert!(tet < mesh.tets().len() && weights.iter().all(|w| *w >= -1e-9));
-/// assert!(locator.locate([2.5, 0.0, 0.0]).is_none());
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-#[derive(Debug)]
-pub struct Locator<'m> {
+struct Locator<'m> {
     mesh: &'m TetMesh,
     low: [f64; 3],
     width: [f64; 3],
@@ -32,8 +19,7 @@ pub struct Locator<'m> {
 
 impl<'m> Locator<'m> {
     /// Sorts the tetrahedra of a mesh; about one box a tetrahedron.
-    #[must_use]
-    pub fn new(mesh: &'m TetMesh) -> Self {
+    fn new(mesh: &'m TetMesh) -> Self {
         let (low, high) = mesh.extent();
         let lengths = sub(high, low);
         let volume: f64 = lengths.iter().product();
@@ -48,12 +34,8 @@ impl<'m> Locator<'m> {
             tets: vec![Vec::new(); boxes.iter().product()],
         };
         for tet in 0..mesh.tets().len() {
-            let points = mesh.tet_points(tet);
-            let corner = |pick: fn(f64, f64) -> f64, start: f64| {
-                let value = |d: usize| points.iter().map(|p| p[d]).fold(start, pick);
-                locator.grid_box(std::array::from_fn(value))
-            };
-            let (from, to) = (corner(f64::min, f64::INFINITY), corner(f64::max, f64::NEG_INFINITY));
+            let (low, high) = extent(mesh.tet_points(tet));
+            let (from, to) = (locator.grid_box(low), locator.grid_box(high));
             for i in from[0]..=to[0] {
                 for j in from[1]..=to[1] {
                     for k in from[2]..=to[2] {
@@ -80,8 +62,7 @@ impl<'m> Locator<'m> {
 
     /// The tetrahedron at a point with the point's barycentric coordinates; `None` outside of the
     /// mesh. On faces the tetrahedron with the smallest number. Tetrahedra count as straight.
-    #[must_use]
-    pub fn locate(&self, point: [f64; 3]) -> Option<(usize, [f64; 4])> {
+    fn locate(&self, point: [f64; 3]) -> Option<(usize, [f64; 4])> {
         let candidates = &self.tets[self.place(self.grid_box(point))];
         candidates.iter().find_map(|&tet| {
             let weights = barycentric(&self.mesh.tet_points(tet as usize), point);

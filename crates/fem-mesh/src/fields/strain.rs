@@ -19,7 +19,6 @@ errors! {
     }
 }
 
-/// Barycentric coordinates of the centroid.
 const CENTROID: [f64; 4] = [0.25; 4];
 
 /// Checks the length of a table.
@@ -88,7 +87,6 @@ pub fn strain_energy(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result
 }
 
 /// The von Mises stress sqrt(3/2 s : s), with s the stress deviator.
-#[must_use]
 pub fn von_mises(stress: &[f64; 6]) -> f64 {
     let [xx, yy, zz, yz, xz, xy] = *stress;
     let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);

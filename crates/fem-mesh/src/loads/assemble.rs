@@ -33,14 +33,12 @@ pub fn assemble_load(
     match load {
         LoadDensity::Body(value) => body(mesh, decomposition, Density::Constant(*value)),
         LoadDensity::BodyField(value) => body(mesh, decomposition, Density::Varying(&|x, _| value(x))),
-        LoadDensity::Traction { tag, value } => traction(mesh, decomposition, *tag, |_| Density::Constant(*value)),
-        LoadDensity::TractionField { tag, value } => {
-            traction(mesh, decomposition, *tag, |_| Density::Varying(&**value))
-        }
-        LoadDensity::Pressure { tag, value } => {
+        LoadDensity::Traction(tag, value) => traction(mesh, decomposition, *tag, |_| Density::Constant(*value)),
+        LoadDensity::TractionField(tag, value) => traction(mesh, decomposition, *tag, |_| Density::Varying(&**value)),
+        LoadDensity::Pressure(tag, value) => {
             traction(mesh, decomposition, *tag, |n| Density::Constant(scale(-value, n)))
         }
-        LoadDensity::Force { tag, value } => {
+        LoadDensity::Force(tag, value) => {
             let share = scale(1.0 / tagged_area(mesh, *tag), *value);
             traction(mesh, decomposition, *tag, |_| Density::Constant(share))
         }
@@ -48,7 +46,6 @@ pub fn assemble_load(
     }
 }
 
-/// Area of all facets of a tag.
 fn tagged_area(mesh: &TetMesh, tag: FacetTag) -> f64 {
     let tagged = mesh.facets().iter().enumerate().filter(|(_, f)| f.tag == tag);
     if mesh.order() == 2 {
@@ -166,7 +163,7 @@ fn traction<'a>(
 ) -> Result<Vec<Vec<f64>>, LoadError> {
     let mut facets = vec![Vec::new(); decomposition.subdomains().len()];
     for (facet, _) in mesh.facets().iter().enumerate().filter(|(_, f)| f.tag == tag) {
-        facets[decomposition.part_of(mesh.facet_owner(facet)) as usize].push(facet);
+        facets[decomposition.parts()[mesh.facet_owner(facet)] as usize].push(facet);
     }
     if facets.iter().all(Vec::is_empty) {
         return Err(LoadError::UnknownTag {

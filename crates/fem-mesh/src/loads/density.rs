@@ -21,84 +21,54 @@ pub enum LoadDensity {
     /// Force per volume that depends on the point.
     BodyField(PointField),
     /// The same force per area on all facets of a tag (P of the paper).
-    Traction {
-        /// Loaded part of the boundary.
-        tag: FacetTag,
-        /// Force per area.
-        value: [f64; 3],
-    },
-    /// Force per area that depends on the point and the outward normal.
-    TractionField {
-        /// Loaded part of the boundary.
-        tag: FacetTag,
-        /// Force per area at (point, outward unit normal).
-        value: SurfaceField,
-    },
+    Traction(FacetTag, [f64; 3]),
+    /// Force per area at a point with its outward unit normal, on all facets of a tag.
+    TractionField(FacetTag, SurfaceField),
     /// Pressure on all facets of a tag: the force per area is -value times the outward normal, so
     /// a positive pressure pushes into the body.
-    Pressure {
-        /// Loaded part of the boundary.
-        tag: FacetTag,
-        /// Pressure, positive into the body.
-        value: f64,
-    },
-    /// A force, spread evenly over all facets of a tag: the same force per area, of which the facets, as they are, have
-    /// this sum. Facets inside a curved surface have less area than it, so that a force per area would lose a part.
-    Force {
-        /// Loaded part of the boundary.
-        tag: FacetTag,
-        /// Sum of the load, N.
-        value: [f64; 3],
-    },
+    Pressure(FacetTag, f64),
+    /// A force, N, spread evenly over all facets of a tag: the same force per area, of which the facets, as they are,
+    /// have this sum. Facets inside a curved surface have less area than it, so that a force per area would lose a part.
+    Force(FacetTag, [f64; 3]),
     /// Forces at single nodes (global numbers); forces at the same node add up.
     NodalForces(Vec<(u32, [f64; 3])>),
 }
 
 impl LoadDensity {
     /// The same force per volume everywhere.
-    #[must_use]
     pub fn body(value: [f64; 3]) -> Self {
         Self::Body(value)
     }
 
     /// Force per volume that depends on the point.
-    #[must_use]
     pub fn body_field(value: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static) -> Self {
         Self::BodyField(Function(Arc::new(value)))
     }
 
     /// The same force per area on all facets of a tag.
-    #[must_use]
     pub fn traction(tag: FacetTag, value: [f64; 3]) -> Self {
-        Self::Traction { tag, value }
+        Self::Traction(tag, value)
     }
 
     /// Force per area that depends on the point and the outward unit normal.
-    #[must_use]
     pub fn traction_field(
         tag: FacetTag,
         value: impl Fn([f64; 3], [f64; 3]) -> [f64; 3] + Send + Sync + 'static,
     ) -> Self {
-        Self::TractionField {
-            tag,
-            value: Function(Arc::new(value)),
-        }
+        Self::TractionField(tag, Function(Arc::new(value)))
     }
 
     /// Pressure, positive into the body.
-    #[must_use]
     pub fn pressure(tag: FacetTag, value: f64) -> Self {
-        Self::Pressure { tag, value }
+        Self::Pressure(tag, value)
     }
 
     /// A force, spread evenly over all facets of a tag.
-    #[must_use]
     pub fn force(tag: FacetTag, value: [f64; 3]) -> Self {
-        Self::Force { tag, value }
+        Self::Force(tag, value)
     }
 
     /// Forces at single nodes.
-    #[must_use]
     pub fn nodal_forces(forces: Vec<(u32, [f64; 3])>) -> Self {
         Self::NodalForces(forces)
     }

@@ -36,7 +36,6 @@ enum Kind {
 
 impl History {
     /// The same value at all times.
-    #[must_use]
     pub fn constant(value: f64) -> Self {
         Self(Kind::Table(vec![(0.0, value)]))
     }
@@ -71,13 +70,11 @@ impl History {
     }
 
     /// Any function of time. Whoever evaluates it must reject values that are not finite.
-    #[must_use]
     pub fn function(value: impl Fn(f64) -> f64 + Send + Sync + 'static) -> Self {
         Self(Kind::Function(Function(Arc::new(value))))
     }
 
     /// The value at a time. At the points of a table it is exactly the value given.
-    #[must_use]
     pub fn value(&self, time: f64) -> f64 {
         match &self.0 {
             Kind::Table(points) => interpolate(points, time),
@@ -88,7 +85,6 @@ impl History {
 
 /// Straight lines through points of ascending first numbers, constant before the first and after the last; NaN
 /// without any. At the points it is exactly the value given.
-#[must_use]
 pub fn interpolate(points: &[(f64, f64)], x: f64) -> f64 {
     let after = points.partition_point(|p| p.0 <= x);
     let before = after.checked_sub(1).and_then(|i| points.get(i));

@@ -62,18 +62,13 @@ impl Hooke {
     }
 
     /// Poisson's ratio of an isotropic law, however it was given; `None` of another one.
-    #[must_use]
     pub fn poisson(&self) -> Option<f64> {
         let (lambda, shear) = (self.voigt[0][1], self.voigt[3][3]);
         let expected = |i: usize, j: usize| match (i < 3 && j < 3, i == j) {
-            (true, same) => lambda + if same { 2.0 * shear } else { 0.0 },
-            (false, same) => {
-                if same {
-                    shear
-                } else {
-                    0.0
-                }
-            }
+            (true, true) => lambda + 2.0 * shear,
+            (true, false) => lambda,
+            (false, true) => shear,
+            (false, false) => 0.0,
         };
         let near = |(i, j): (usize, usize)| (self.voigt[i][j] - expected(i, j)).abs() <= ASYMMETRY * self.largest;
         let isotropic = (0..36).map(|k| (k / 6, k % 6)).all(near);
@@ -82,7 +77,6 @@ impl Hooke {
 
     /// Whether Poisson's ratio is above 0.4: quadratic elements then take the mean of the volume strain of each
     /// element.
-    #[must_use]
     pub fn is_nearly_incompressible(&self) -> bool {
         self.incompressible().is_some()
     }
@@ -94,7 +88,6 @@ impl Hooke {
 
     /// The law with a Poisson's ratio of 0.4 and the same Young's modulus, of one that is nearly incompressible: for
     /// preconditioners.
-    #[must_use]
     pub fn compressible(&self) -> Option<Self> {
         let poisson = self.incompressible()?;
         let young = 2.0 * self.voigt[3][3] * (1.0 + poisson);
@@ -141,19 +134,16 @@ impl Hooke {
     }
 
     /// The 6 x 6 matrix in Voigt order xx, yy, zz, yz, xz, xy with engineering shear.
-    #[must_use]
     pub fn voigt(&self) -> &[[f64; 6]; 6] {
         &self.voigt
     }
 
     /// The smallest bound of c_ijkl x_ij x_kl / (x_ij x_ij). A scale of the stiffness of the material.
-    #[must_use]
     pub fn bound(&self) -> f64 {
         self.largest
     }
 
     /// Stress of a strain, both in Voigt order, the strain with engineering shear.
-    #[must_use]
     pub fn stress(&self, strain: &[f64; 6]) -> [f64; 6] {
         // column by column: symmetric, and all six sums side by side
         let mut stress = [0.0; 6];
@@ -164,7 +154,6 @@ impl Hooke {
     }
 
     /// Elastic energy per volume, half of stress times strain.
-    #[must_use]
     pub fn energy_density(&self, strain: &[f64; 6]) -> f64 {
         let stress = self.stress(strain);
         0.5 * (0..6).map(|i| stress[i] * strain[i]).sum::<f64>()

@@ -25,7 +25,6 @@ enum Kind {
 
 impl Materials {
     /// The same law in all regions.
-    #[must_use]
     pub fn uniform(hooke: Hooke) -> Self {
         Self(Kind::Uniform(Box::new(hooke)))
     }
@@ -43,7 +42,6 @@ impl Materials {
     }
 
     /// The regions that a law is listed for, ascending; none where one law fills all regions.
-    #[must_use]
     pub fn listed(&self) -> Vec<u32> {
         match &self.0 {
             Kind::Uniform(_) => Vec::new(),

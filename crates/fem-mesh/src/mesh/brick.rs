@@ -83,7 +83,6 @@ const ODD_CELL: [[usize; 4]; 5] = [[0, 1, 2, 4], [3, 2, 1, 7], [5, 4, 7, 1], [6,
 
 impl Brick {
     /// A brick with its corner of smallest coordinates at the origin.
-    #[must_use]
     pub fn new(lengths: [f64; 3], cells: [usize; 3]) -> Self {
         Self {
             origin: [0.0; 3],
@@ -119,7 +118,6 @@ impl Brick {
     }
 
     /// Number of the node at a grid point, counted from 0 to `cells` along each axis.
-    #[must_use]
     pub fn node(&self, [i, j, k]: [usize; 3]) -> usize {
         i + (self.cells[0] + 1) * (j + (self.cells[1] + 1) * k)
     }
@@ -198,38 +196,28 @@ impl Brick {
     fn nodes(&self) -> Vec<[f64; 3]> {
         let planes = [self.planes(0), self.planes(1), self.planes(2)];
         let mut nodes = Vec::with_capacity(planes.iter().map(Vec::len).product());
-        for k in 0..planes[2].len() {
-            for j in 0..planes[1].len() {
-                for i in 0..planes[0].len() {
-                    let grid = [i, j, k];
-                    let mut p = [planes[0][i], planes[1][j], planes[2][k]];
-                    let inner = (0..3).all(|d| 0 < grid[d] && grid[d] < self.cells[d]);
-                    if inner && self.perturbation > 0.0 {
-                        for d in 0..3 {
-                            let at = &planes[d][grid[d] - 1..=grid[d] + 1];
-                            let size = (at[1] - at[0]).min(at[2] - at[1]);
-                            let random = noise(self.seed, 3 * nodes.len() as u64 + d as u64);
-                            p[d] += self.perturbation * size * random;
-                        }
-                    }
-                    nodes.push(p);
+        for place in grid(self.cells.map(|n| n + 1)) {
+            let mut p = [0, 1, 2].map(|d| planes[d][place[d]]);
+            let inner = (0..3).all(|d| 0 < place[d] && place[d] < self.cells[d]);
+            if inner && self.perturbation > 0.0 {
+                for d in 0..3 {
+                    let at = &planes[d][place[d] - 1..=place[d] + 1];
+                    let size = (at[1] - at[0]).min(at[2] - at[1]);
+                    let random = noise(self.seed, 3 * nodes.len() as u64 + d as u64);
+                    p[d] += self.perturbation * size * random;
                 }
             }
+            nodes.push(p);
         }
         nodes
     }
 
     fn tets(&self) -> Vec<[u32; 4]> {
-        let [nx, ny, nz] = self.cells;
-        let mut tets = Vec::with_capacity(5 * nx * ny * nz);
-        for k in 0..nz {
-            for j in 0..ny {
-                for i in 0..nx {
-                    let vertex = |v: usize| self.node([i + (v & 1), j + (v >> 1 & 1), k + (v >> 2)]) as u32;
-                    let cut = if (i + j + k) % 2 == 0 { &EVEN_CELL } else { &ODD_CELL };
-                    tets.extend(cut.iter().map(|tet| tet.map(vertex)));
-                }
-            }
+        let mut tets = Vec::with_capacity(5 * self.cells.iter().product::<usize>());
+        for [i, j, k] in grid(self.cells) {
+            let vertex = |v: usize| self.node([i + (v & 1), j + (v >> 1 & 1), k + (v >> 2)]) as u32;
+            let cut = if (i + j + k) % 2 == 0 { &EVEN_CELL } else { &ODD_CELL };
+            tets.extend(cut.iter().map(|tet| tet.map(vertex)));
         }
         tets
     }
@@ -264,6 +252,11 @@ impl Brick {
         }
         facets
     }
+}
+
+/// All places of a grid with so many along each axis, x fastest.
+fn grid([nx, ny, nz]: [usize; 3]) -> impl Iterator<Item = [usize; 3]> {
+    (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
 }
 
 /// A number from -1 to 1 that depends only on its arguments (the SplitMix64 generator).

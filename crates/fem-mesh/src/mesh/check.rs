@@ -128,7 +128,7 @@ pub(super) fn no_coincident(points: &[Vec3], tets: &[[u32; 4]], mids: &[[u32; 6]
 
 /// Pairs of nodes that are no farther apart than `distance`, or that coincide, through a hash of grid cells.
 pub(super) fn close_pairs(points: &[Vec3], distance: f64) -> Vec<(usize, usize)> {
-    let (low, high) = extent(points);
+    let (low, high) = extent(points.iter().copied());
     let tolerance = distance.max(COINCIDENT * vec3::norm(vec3::sub(high, low)));
     let cell = 4.0 * tolerance;
     if cell <= 0.0 || !cell.is_finite() {
@@ -162,8 +162,8 @@ pub(super) fn close_pairs(points: &[Vec3], distance: f64) -> Vec<(usize, usize)>
     pairs
 }
 
-/// Smallest box around the points.
-pub(super) fn extent(points: &[Vec3]) -> (Vec3, Vec3) {
+/// Smallest box around some points.
+pub(crate) fn extent(points: impl IntoIterator<Item = Vec3>) -> (Vec3, Vec3) {
     let mut low = [f64::INFINITY; 3];
     let mut high = [f64::NEG_INFINITY; 3];
     for p in points {

@@ -68,7 +68,6 @@ pub(crate) fn curved_facet(points: &[Vec3; 6], l: &[f64; 3]) -> (Vec3, Vec3) {
     (quadrature::at(points, &facet_shape(l)), scale(0.5, cross(u, v)))
 }
 
-/// Volume of a quadratic tetrahedron.
 pub(super) fn volume(points: &[Vec3; 10]) -> f64 {
     let rule = quadrature::tetrahedron();
     rule.iter()

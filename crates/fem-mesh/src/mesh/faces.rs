@@ -1,6 +1,6 @@
 //! Which tetrahedra meet at which face, in linear time.
 
-use crate::tables::{buckets, range};
+use crate::tables::Lists;
 
 use super::error::MeshError;
 
@@ -37,26 +37,15 @@ struct Entry {
     odd: bool,
 }
 
-/// All faces, in buckets by their smallest node, sorted inside.
-pub(crate) struct FaceTable {
-    start: Vec<u32>,
-    entries: Vec<Entry>,
-}
-
-/// The tetrahedra at a face, as (tetrahedron, face) pairs.
-pub(crate) enum Sides {
-    Nobody,
-    One(usize, usize),
-    Two(usize, usize),
-}
+/// All faces, in lists by their smallest node, sorted inside.
+pub(crate) struct FaceTable(Lists<Entry>);
 
 impl FaceTable {
     /// Expects node numbers below `nodes`.
     pub(crate) fn new(nodes: usize, tets: &[[u32; 4]]) -> Self {
         let faces = tets.iter().flat_map(|tet| (0..4).map(|face| face_nodes(tet, face)));
         let smallest: Vec<u32> = faces.map(|[a, b, c]| a.min(b).min(c)).collect();
-        let (start, slots) = buckets(nodes, &smallest);
-        let entry = |&slot: &u32| {
+        let entry = |slot: u32| {
             let nodes = face_nodes(&tets[slot as usize / 4], slot as usize % 4);
             let ([_, middle, largest], odd) = sorted(nodes);
             Entry {
@@ -66,19 +55,17 @@ impl FaceTable {
                 odd,
             }
         };
-        let mut entries: Vec<Entry> = slots.iter().map(entry).collect();
-        for i in 0..nodes {
-            entries[range(&start, i)].sort_unstable();
-        }
-        Self { start, entries }
+        let mut entries = Lists::by_key(nodes, &smallest).map(entry);
+        (0..nodes).for_each(|node| entries.of_mut(node).sort_unstable());
+        Self(entries)
     }
 
     /// The neighbour of each tetrahedron across each face, [`NONE`] at the boundary.
     pub(crate) fn neighbours(&self, tets: usize) -> Result<Vec<[u32; 4]>, MeshError> {
         let mut neighbours = vec![[NONE; 4]; tets];
-        for smallest in 0..self.start.len() - 1 {
-            let bucket = &self.entries[range(&self.start, smallest)];
-            for group in bucket.chunk_by(|a, b| (a.middle, a.largest) == (b.middle, b.largest)) {
+        for smallest in 0..self.0.count() {
+            let faces = self.0.of(smallest);
+            for group in faces.chunk_by(|a, b| (a.middle, a.largest) == (b.middle, b.largest)) {
                 let face = [smallest as u32, group[0].middle, group[0].largest];
                 match group {
                     [_] => {}
@@ -107,21 +94,14 @@ impl FaceTable {
         Ok(neighbours)
     }
 
-    /// The tetrahedra that have the three nodes as a face. Expects valid node numbers.
-    pub(crate) fn sides(&self, nodes: [u32; 3]) -> Sides {
+    /// The tetrahedra that have the three nodes as a face, and the number of this. Expects valid node numbers.
+    pub(crate) fn sides(&self, nodes: [u32; 3]) -> impl Iterator<Item = (usize, usize)> {
         let ([smallest, middle, largest], _) = sorted(nodes);
-        let bucket = &self.entries[range(&self.start, smallest as usize)];
+        let faces = self.0.of(smallest as usize);
         let key = (middle, largest);
-        let begin = bucket.partition_point(|e| (e.middle, e.largest) < key);
-        let mut found = bucket[begin..]
-            .iter()
-            .take_while(|e| (e.middle, e.largest) == key)
-            .map(|e| ((e.slot / 4) as usize, (e.slot % 4) as usize));
-        match (found.next(), found.next()) {
-            (None, _) => Sides::Nobody,
-            (Some((tet, face)), None) => Sides::One(tet, face),
-            (Some((first, _)), Some((second, _))) => Sides::Two(first, second),
-        }
+        let begin = faces.partition_point(|e| (e.middle, e.largest) < key);
+        let found = faces[begin..].iter().take_while(move |e| (e.middle, e.largest) == key);
+        found.map(|e| ((e.slot / 4) as usize, (e.slot % 4) as usize))
     }
 }
 

@@ -21,6 +21,7 @@ pub use error::MeshError;
 pub use surface::{Surface, SurfaceError, SurfaceFrame};
 pub use tet_mesh::{BoundaryFacet, Facet, FacetTag, TetMesh};
 
+pub(crate) use check::extent;
 #[doc(hidden)]
 pub use curved::{EDGES, facet_shape};
 pub(crate) use curved::{NODES, curved_facet, shape, tangents};

@@ -55,28 +55,21 @@ impl TetMesh {
     }
 
     /// Order of the displacements: 1 (linear tetrahedra) or 2 (quadratic ones).
-    #[must_use]
     pub fn order(&self) -> usize {
         if self.mids.is_empty() { 1 } else { 2 }
     }
 
     /// Mid-nodes of the edges 01, 12, 02, 03, 13, 23 of each tetrahedron; empty in a mesh of order 1.
-    #[must_use]
     pub fn mids(&self) -> &[[u32; 6]] {
         &self.mids
     }
 
     /// The ten nodes of each tetrahedron; empty in a mesh of order 1.
-    #[must_use]
     pub fn quadratic_tets(&self) -> Vec<[u32; 10]> {
         quadratic_tets(&self.tets, &self.mids)
     }
 
     /// Mid-nodes of the edges 01, 12, 20 of a tagged facet of a mesh of order 2.
-    ///
-    /// # Panics
-    /// If there is no such facet, or the mesh is of order 1.
-    #[must_use]
     pub fn facet_mids(&self, facet: usize) -> [u32; 3] {
         self.mids_of(self.facet_owner(facet), self.facets[facet].nodes)
     }

@@ -23,7 +23,6 @@ pub struct SurfaceFrame {
 
 impl SurfaceFrame {
     /// The frame of a normal of any length; `None` if it is zero or not finite.
-    #[must_use]
     pub fn from_normal(normal: [f64; 3]) -> Option<Self> {
         let normal = unit(normal)?;
         let axis = if normal[1].hypot(normal[2]) > NEARLY_PARALLEL {
@@ -40,19 +39,16 @@ impl SurfaceFrame {
     }
 
     /// Normal component of a vector.
-    #[must_use]
     pub fn normal_part(&self, v: [f64; 3]) -> f64 {
         dot(self.normal, v)
     }
 
     /// Components along T1 and T2.
-    #[must_use]
     pub fn tangential_part(&self, v: [f64; 3]) -> [f64; 2] {
         self.tangents.map(|t| dot(t, v))
     }
 
     /// The vector with the given components.
-    #[must_use]
     pub fn vector(&self, normal: f64, tangential: [f64; 2]) -> [f64; 3] {
         let [t1, t2] = self.tangents;
         add(
@@ -206,38 +202,32 @@ impl Surface {
     }
 
     /// Global numbers of the nodes, ascending.
-    #[must_use]
     pub fn nodes(&self) -> &[u32] {
         &self.nodes
     }
 
     /// Place of a global node in [`Surface::nodes`], if it is there.
-    #[must_use]
     pub fn local(&self, node: u32) -> Option<usize> {
         self.nodes.binary_search(&node).ok()
     }
 
     /// Area of each node, a third of the triangles around it.
-    #[must_use]
     pub fn areas(&self) -> &[f64] {
         &self.areas
     }
 
     /// Frame of each node.
-    #[must_use]
     pub fn frames(&self) -> &[SurfaceFrame] {
         &self.frames
     }
 
     /// Numbers of the facets in the mesh, ascending.
-    #[must_use]
     pub fn facets(&self) -> &[u32] {
         &self.facets
     }
 
     /// The triangles by places in [`Surface::nodes`], outward, in the order of
     /// [`Surface::facets`].
-    #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
     }
@@ -247,10 +237,6 @@ impl Surface {
     /// order 2 the displacement is weighted by half the sum of the linear hat function `l` of the node and the linear
     /// function of each triangle that is dual to the hat functions, `4 l - 1` where edges are straight. The node comes
     /// first, the others ascend.
-    ///
-    /// # Panics
-    /// If there is no such node or triangle.
-    #[must_use]
     pub fn mean(&self, local: usize, triangles: impl Iterator<Item = usize>) -> Vec<(u32, f64)> {
         let own = self.nodes[local];
         let mut entries: Vec<(u32, f64)> = Vec::new();
@@ -277,10 +263,6 @@ impl Surface {
 
     /// Area of the hat function of a corner of a triangle, a third of a straight one's, and the normal integrated with
     /// it.
-    ///
-    /// # Panics
-    /// If there is no such triangle or corner.
-    #[must_use]
     pub fn corner_area(&self, mesh: &TetMesh, triangle: usize, corner: usize) -> (f64, [f64; 3]) {
         match self.integrals.get(triangle) {
             Some(facet) => (facet.areas[corner], facet.normals[corner]),
@@ -292,7 +274,6 @@ impl Surface {
     }
 
     /// Area of the whole surface.
-    #[must_use]
     pub fn total_area(&self) -> f64 {
         self.areas.iter().sum()
     }

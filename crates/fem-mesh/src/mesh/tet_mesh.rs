@@ -5,7 +5,7 @@ use crate::vec3::{self, Vec3};
 use super::check;
 use super::curved;
 use super::error::MeshError;
-use super::faces::{FaceTable, NONE, Sides, connected_sets, face_nodes};
+use super::faces::{FaceTable, NONE, connected_sets, face_nodes};
 
 /// Name of a part of the boundary.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -122,40 +122,31 @@ impl TetMesh {
     }
 
     /// Coordinates of the nodes.
-    #[must_use]
     pub fn points(&self) -> &[[f64; 3]] {
         &self.points
     }
 
     /// Corners of each tetrahedron: all its nodes in a mesh of order 1.
-    #[must_use]
     pub fn tets(&self) -> &[[u32; 4]] {
         &self.tets
     }
 
     /// Tagged boundary facets, oriented outward, in the order given.
-    #[must_use]
     pub fn facets(&self) -> &[Facet] {
         &self.facets
     }
 
     /// Material region of each tetrahedron.
-    #[must_use]
     pub fn regions(&self) -> &[u32] {
         &self.regions
     }
 
     /// The tetrahedron that the tagged facet number `facet` bounds.
-    ///
-    /// # Panics
-    /// If there is no such facet.
-    #[must_use]
     pub fn facet_owner(&self, facet: usize) -> usize {
         self.owners[facet] as usize
     }
 
     /// The tags in use, ascending.
-    #[must_use]
     pub fn tags(&self) -> Vec<FacetTag> {
         let mut tags: Vec<_> = self.facets.iter().map(|f| f.tag).collect();
         tags.sort_unstable();
@@ -164,7 +155,6 @@ impl TetMesh {
     }
 
     /// Nodes on the facets of a tag, mid-nodes too, ascending; empty if the tag is absent.
-    #[must_use]
     pub fn nodes_on(&self, tag: FacetTag) -> Vec<u32> {
         let on_tag = self.facets.iter().filter(|f| f.tag == tag);
         let mut nodes: Vec<_> = on_tag.flat_map(|f| f.nodes).collect();
@@ -178,28 +168,16 @@ impl TetMesh {
     }
 
     /// Coordinates of the four corners of a tetrahedron.
-    ///
-    /// # Panics
-    /// If there is no such tetrahedron.
-    #[must_use]
     pub fn tet_points(&self, tet: usize) -> [[f64; 3]; 4] {
         self.tets[tet].map(|n| self.points[n as usize])
     }
 
     /// Coordinates of the three corners of a tagged facet.
-    ///
-    /// # Panics
-    /// If there is no such facet.
-    #[must_use]
     pub fn facet_points(&self, facet: usize) -> [[f64; 3]; 3] {
         self.facets[facet].nodes.map(|n| self.points[n as usize])
     }
 
     /// Volume of a tetrahedron, positive.
-    ///
-    /// # Panics
-    /// If there is no such tetrahedron.
-    #[must_use]
     pub fn volume(&self, tet: usize) -> f64 {
         match self.mids.get(tet) {
             None => vec3::tet_volume(&self.tet_points(tet)),
@@ -208,23 +186,17 @@ impl TetMesh {
     }
 
     /// Volume of the whole mesh.
-    #[must_use]
     pub fn total_volume(&self) -> f64 {
         (0..self.tets.len()).map(|t| self.volume(t)).sum()
     }
 
     /// Smallest axis-parallel box around the mesh: its lowest and highest corner.
-    #[must_use]
     pub fn extent(&self) -> ([f64; 3], [f64; 3]) {
-        check::extent(&self.points)
+        check::extent(self.points.iter().copied())
     }
 
     /// The tetrahedra across the four faces of a tetrahedron, `None` at the boundary. Face number
     /// i is opposite to node i.
-    ///
-    /// # Panics
-    /// If there is no such tetrahedron.
-    #[must_use]
     pub fn neighbours(&self, tet: usize) -> [Option<usize>; 4] {
         self.neighbours[tet].map(|n| (n != NONE).then_some(n as usize))
     }
@@ -236,13 +208,11 @@ impl TetMesh {
     /// The body of each tetrahedron: 0, 1, ... in the order of the first tetrahedron of each.
     /// Tetrahedra belong to the same body if a path through common faces joins them; a common
     /// edge or node alone is a hinge and does not join.
-    #[must_use]
     pub fn components(&self) -> Vec<u32> {
         connected_sets(&self.neighbours, |_, _| true)
     }
 
     /// All triangles of the boundary, tagged or not, by ascending tetrahedron and face.
-    #[must_use]
     pub fn boundary_facets(&self) -> Vec<BoundaryFacet> {
         let mut facets = Vec::new();
         for (t, (tet, neighbours)) in self.tets.iter().zip(&self.neighbours).enumerate() {
@@ -273,35 +243,27 @@ fn place_facets(
                 nodes,
             });
         }
-        match table.sides(given) {
-            Sides::Nobody => {
-                return Err(MeshError::FacetUnknown {
-                    facet: number,
-                    nodes: given,
-                });
-            }
-            Sides::Two(first, second) => {
-                let facet = number;
-                return Err(MeshError::FacetInside {
-                    facet,
-                    nodes: given,
-                    first,
-                    second,
-                });
-            }
-            Sides::One(tet, face) => {
-                if let Some(first) = taken.insert((tet, face), number) {
-                    let second = number;
-                    return Err(MeshError::FacetRepeated {
-                        first,
-                        second,
-                        nodes: given,
-                    });
-                }
-                facet.nodes = outward(given, face_nodes(&tets[tet], face));
-                owners.push(tet as u32);
-            }
+        let nodes = given;
+        let mut sides = table.sides(given);
+        let Some((tet, face)) = sides.next() else {
+            let facet = number;
+            return Err(MeshError::FacetUnknown { facet, nodes });
+        };
+        if let Some((second, _)) = sides.next() {
+            let (facet, first) = (number, tet);
+            return Err(MeshError::FacetInside {
+                facet,
+                nodes,
+                first,
+                second,
+            });
         }
+        if let Some(first) = taken.insert((tet, face), number) {
+            let second = number;
+            return Err(MeshError::FacetRepeated { first, second, nodes });
+        }
+        facet.nodes = outward(given, face_nodes(&tets[tet], face));
+        owners.push(tet as u32);
     }
     Ok((facets, owners))
 }

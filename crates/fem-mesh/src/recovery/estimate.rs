@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use crate::fields::{FieldError, expect_entries, nodal_vectors, strains};
-use crate::material::Materials;
+use crate::material::{Hooke, Materials};
 use crate::mesh::TetMesh;
 
 use super::patches::StrainRecovery;
@@ -29,7 +29,6 @@ impl DiscretisationError {
     /// Error relative to the displacement, both in the energy norm; 0 without elastic energy. Of a body that is at
     /// rest but for rounding it is noise over noise, about one: compare `energy` with a scale of your
     /// own.
-    #[must_use]
     pub fn relative(&self) -> f64 {
         if self.elastic_energy > 0.0 {
             (self.energy / self.elastic_energy).sqrt()
@@ -61,16 +60,19 @@ impl StrainRecovery {
     pub fn error(&self, mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<DiscretisationError, FieldError> {
         expect_entries("table of tetrahedra", self.corners.len(), mesh.tets().len())?;
         let laws = materials.of_tets(mesh.regions())?;
-        if mesh.order() == 2 {
-            let all = energies(mesh, &laws, &nodal_vectors(mesh, u)?, &self.fits, &self.corners);
-            let energies: Vec<f64> = all.iter().map(|e| e[0]).collect();
-            return Ok(DiscretisationError {
-                energy: energies.iter().sum(),
-                energies,
-                elastic_energy: all.iter().map(|e| e[1]).sum(),
-            });
-        }
-        let strains = strains(mesh, u)?;
+        let both = match mesh.order() {
+            1 => self.linear(mesh, &laws, &strains(mesh, u)?),
+            _ => energies(mesh, &laws, &nodal_vectors(mesh, u)?, &self.fits, &self.corners),
+        };
+        Ok(DiscretisationError {
+            energy: both.iter().map(|e| e[0]).sum(),
+            elastic_energy: both.iter().map(|e| e[1]).sum(),
+            energies: both.iter().map(|e| e[0]).collect(),
+        })
+    }
+
+    /// Error energy and elastic energy of each tetrahedron in a mesh of order 1.
+    fn linear(&self, mesh: &TetMesh, laws: &[&Hooke], strains: &[[f64; 6]]) -> Vec<[f64; 2]> {
         let at = |k: usize| {
             let mut sum = [0.0; 6];
             for place in self.pointers[k]..self.pointers[k + 1] {
@@ -81,7 +83,7 @@ impl StrainRecovery {
         };
         let patches = self.pointers.len() - 1;
         let nodal: Vec<[f64; 6]> = (0..patches).into_par_iter().map(at).collect();
-        let energy = |tet: usize| {
+        let of_tet = |tet: usize| {
             let corners = self.corners[tet].map(|k| {
                 let recovered = &nodal[k as usize];
                 std::array::from_fn(|i| recovered[i] - strains[tet][i])
@@ -89,17 +91,11 @@ impl StrainRecovery {
             // integral of l_a l_b over a tetrahedron: V (1 + delta_ab) / 20
             let sum: [f64; 6] = std::array::from_fn(|i| corners.iter().map(|c| c[i]).sum());
             let squares: f64 = corners.iter().map(|c| laws[tet].energy_density(c)).sum();
-            self.volumes[tet] * (squares + laws[tet].energy_density(&sum)) / 20.0
+            let volume = mesh.volume(tet);
+            let error = volume * (squares + laws[tet].energy_density(&sum)) / 20.0;
+            [error, volume * laws[tet].energy_density(&strains[tet])]
         };
-        let energies: Vec<f64> = (0..strains.len()).into_par_iter().map(energy).collect();
-        let elastic_energy = (0..strains.len())
-            .map(|tet| self.volumes[tet] * laws[tet].energy_density(&strains[tet]))
-            .sum();
-        Ok(DiscretisationError {
-            energy: energies.iter().sum(),
-            energies,
-            elastic_energy,
-        })
+        (0..strains.len()).into_par_iter().map(of_tet).collect()
     }
 }
 

@@ -7,7 +7,7 @@ use nalgebra::{Matrix4, Vector4};
 use rayon::prelude::*;
 
 use crate::mesh::TetMesh;
-use crate::tables::buckets;
+use crate::tables::Lists;
 use crate::tolerances::{PIVOT, SMALL_PATCH};
 use crate::vec3::{centroid, sub};
 
@@ -23,8 +23,6 @@ pub struct StrainRecovery {
     pub(super) weights: Vec<f64>,
     /// Patches of the corners of each tetrahedron.
     pub(super) corners: Vec<[u32; 4]>,
-    /// Of each tetrahedron.
-    pub(super) volumes: Vec<f64>,
     /// The patches in a mesh of order 2, instead of their weights.
     pub(super) fits: Vec<Fit>,
 }
@@ -37,7 +35,7 @@ struct Cell {
 
 /// The tetrahedra around each node, those of each region apart.
 struct Around {
-    tets: Vec<u32>,
+    tets: Lists<u32>,
     /// Start of each patch in `tets`, and the end of the last.
     starts: Vec<u32>,
     /// Node and region of each patch, ascending.
@@ -50,19 +48,18 @@ struct Around {
 impl Around {
     fn new(mesh: &TetMesh) -> Self {
         let corners = mesh.tets().as_flattened();
-        let (by_node, positions) = buckets(mesh.points().len(), corners);
         let mut out = Self {
-            tets: positions.iter().map(|p| p / 4).collect(),
+            tets: Lists::by_key(mesh.points().len(), corners).map(|p| p / 4),
             starts: Vec::new(),
             nodes: Vec::new(),
             regions: Vec::new(),
             first: vec![0],
         };
         let region = |tet: u32| mesh.regions()[tet as usize];
-        for (node, range) in by_node.windows(2).enumerate() {
-            let own = &mut out.tets[range[0] as usize..range[1] as usize];
+        let mut start = 0;
+        for node in 0..out.tets.count() {
+            let own = out.tets.of_mut(node);
             own.sort_by_key(|&tet| region(tet));
-            let mut start = range[0];
             for patch in own.chunk_by(|&a, &b| region(a) == region(b)) {
                 out.starts.push(start);
                 out.nodes.push(node as u32);
@@ -71,12 +68,12 @@ impl Around {
             }
             out.first.push(out.nodes.len() as u32);
         }
-        out.starts.push(out.tets.len() as u32);
+        out.starts.push(start);
         out
     }
 
     fn patch(&self, k: usize) -> &[u32] {
-        &self.tets[self.starts[k] as usize..self.starts[k + 1] as usize]
+        &self.tets.items()[self.starts[k] as usize..self.starts[k + 1] as usize]
     }
 
     /// A patch and those of its neighbours, ascending.
@@ -110,7 +107,6 @@ impl Around {
 
 impl StrainRecovery {
     /// Fits all patches of a mesh.
-    #[must_use]
     pub fn new(mesh: &TetMesh) -> Self {
         let around = Around::new(mesh);
         if mesh.order() == 2 {
@@ -150,7 +146,6 @@ impl StrainRecovery {
             tets,
             weights,
             corners: around.corners(mesh),
-            volumes: cells.iter().map(|c| c.volume).collect(),
             fits: Vec::new(),
         }
     }
@@ -167,7 +162,6 @@ impl StrainRecovery {
             tets: Vec::new(),
             weights: Vec::new(),
             corners: around.corners(mesh),
-            volumes: (0..mesh.tets().len()).map(|tet| mesh.volume(tet)).collect(),
             fits: (0..around.nodes.len()).into_par_iter().map(patch).collect(),
         }
     }

@@ -37,7 +37,7 @@ fn copies_lead_back_to_their_node() {
     }
     for (number, subdomain) in parts.subdomains().iter().enumerate() {
         for (local, &element) in subdomain.tets.iter().zip(&subdomain.elements) {
-            assert_eq!(parts.part_of(element as usize) as usize, number);
+            assert_eq!(parts.parts()[element as usize] as usize, number);
             assert_eq!(
                 local.map(|n| subdomain.nodes[n as usize]),
                 mesh.tets()[element as usize]

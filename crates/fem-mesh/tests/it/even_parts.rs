@@ -30,7 +30,7 @@ fn a_brick_falls_into_its_boxes() {
         let grid = Decomposition::boxes(&mesh, boxes).expect("boxes");
         let same = (0..parts.len()).all(|a| {
             let b = (a + 1) % parts.len();
-            (parts[a] == parts[b]) == (grid.part_of(a) == grid.part_of(b))
+            (parts[a] == parts[b]) == (grid.parts()[a] == grid.parts()[b])
         });
         assert!(same, "{boxes:?}: {:?}", sizes(&parts));
     }

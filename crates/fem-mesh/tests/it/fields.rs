@@ -1,7 +1,7 @@
 //! Stresses, recovery and error norms.
 
+use crate::norms::{h1_seminorm_error, l2_error};
 use approx::assert_abs_diff_eq;
-use signorini_fem_mesh::fields::{h1_seminorm_error, l2_error};
 use signorini_fem_mesh::fields::{nodal_average, strains, von_mises};
 use signorini_fem_mesh::{Brick, TetMesh};
 

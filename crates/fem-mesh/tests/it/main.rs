@@ -11,6 +11,7 @@ mod gmsh_quadratic;
 mod loads;
 mod merge;
 mod mesh;
+mod norms;
 #[cfg(feature = "vtu")]
 mod output;
 #[cfg(feature = "vtu")]

@@ -1,7 +1,8 @@
 //! Meshes of order 2: tables, elements, loads, means, checks.
 
+use crate::norms::{energy_of_error, l2_error};
 use signorini_fem_mesh::brick::{Brick, SIDES, X_MIN, Z_MAX, Z_MIN};
-use signorini_fem_mesh::fields::{energy_of_error, l2_error, nodal_stresses, strain_energy, strains, stresses};
+use signorini_fem_mesh::fields::{nodal_stresses, strain_energy, strains, stresses};
 use signorini_fem_mesh::mesh::{drop_unused_nodes, merge_nodes, orient_tets};
 use signorini_fem_mesh::{
     Decomposition, FacetTag, Hooke, LoadDensity, Materials, MeshError, Surface, TetMesh, assemble_load,

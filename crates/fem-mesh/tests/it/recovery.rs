@@ -1,7 +1,8 @@
 //! Effectivity of the estimated discretisation error: estimated over true error in the energy norm.
 
+use crate::norms::energy_of_error;
 use approx::assert_abs_diff_eq;
-use signorini_fem_mesh::fields::{energy_of_difference, energy_of_error};
+use signorini_fem_mesh::fields::energy_of_difference;
 use signorini_fem_mesh::recovery::discretisation_error;
 use signorini_fem_mesh::{Brick, Hooke, LoadDensity, Materials, TetMesh};
 

@@ -1,7 +1,8 @@
 //! Products with a matrix of 6x6 blocks, of which those with the same numbers are stored once.
 
-use crate::coarse::matrix::{Block, CoarseMatrix, transposed};
+use crate::coarse::matrix::CoarseMatrix;
 use crate::linalg::tiles::LANES;
+use crate::subdomain::kernel::{Block, transposed};
 use crate::tolerances::BLOCKS;
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;

@@ -1,9 +1,9 @@
 //! Clusters of about eight subdomains that move as one: a small model of `G W G^T`.
 
-use crate::coarse::matrix::{Block, CoarseMatrix};
+use crate::coarse::matrix::CoarseMatrix;
 use crate::coarse::mobility::Mobility;
 use crate::linalg::entry;
-use crate::subdomain::kernel::{Kernel, displacement, mean};
+use crate::subdomain::kernel::{Block, Kernel, displacement, mean, product, transposed};
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::{CLUSTER, LAYER, TRANSLATE};
 use signorini_fem_mesh::vec3::sub;
@@ -21,7 +21,7 @@ pub(crate) struct Clusters {
 impl Clusters {
     /// Clusters of these subdomains, each within one rigid part; in a `grid` they are alike.
     pub(crate) fn new(mobility: &Mobility, subdomains: &Subdomains, grid: Option<&[[u32; 3]]>) -> Self {
-        let (at, parts) = (mobility.centres(), mobility.part_of());
+        let (at, parts) = (mobility.centres(), &mobility.part_of);
         let members = members(parts, at, grid);
         let mut of = vec![0; at.len()];
         for (k, list) in members.iter().enumerate() {
@@ -92,7 +92,10 @@ impl Clusters {
 
     /// The matrix of the clusters for these `values` of that of the subdomains.
     pub(crate) fn matrix(&self, fine: &CoarseMatrix, values: &[f64]) -> (CoarseMatrix, Vec<f64>) {
-        let block = |a: u32, b: u32, block: &Block| times(&self.maps[a as usize], block, &self.maps[b as usize]);
+        let block = |a: u32, b: u32, block: &Block| {
+            let right = product(block, &self.maps[b as usize]);
+            product(&transposed(&self.maps[a as usize]), &right)
+        };
         fine.joined(values, self.count(), |s| Some(self.of[s as usize]), block)
     }
 }
@@ -162,10 +165,4 @@ fn add_restricted(map: &Block, y: &[f64; 6], sum: &mut [f64; 6]) {
     for (row, y) in map.iter().zip(y) {
         (0..6).for_each(|j| sum[j] += row[j] * y);
     }
-}
-
-/// `a^T b c`.
-fn times(a: &Block, b: &Block, c: &Block) -> Block {
-    let right: Block = std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| b[i][k] * c[k][j]).sum()));
-    std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| a[k][i] * right[k][j]).sum()))
 }

@@ -3,7 +3,7 @@
 //! Two subdomains that share three nodes not on one line move as one body. Those that share less are bodies of their
 //! own, held together by the interface rows of the nodes that they share: a hinge or a ball joint.
 
-use crate::rows::gluing::{CopyEntry, Gluing};
+use crate::rows::gluing::{BlockEntry, CopyEntry, Gluing};
 use crate::tolerances::ANGLE;
 use signorini_fem_mesh::vec3::{cross, norm, sub};
 use std::collections::HashMap;
@@ -33,30 +33,18 @@ impl Shared {
     }
 }
 
-/// Copies `(subdomain, local)` of the node that a block and the other runs of its glob belong to.
-fn copies(gluing: &Gluing, first_block: usize, nodes: usize, runs: usize) -> Vec<(u32, u32)> {
-    let mut out: Vec<(u32, u32)> = (0..runs)
-        .flat_map(|run| gluing.block(first_block + run * nodes))
-        .map(|e| (e.subdomain, e.local))
-        .collect();
-    out.sort_unstable();
-    out.dedup();
-    out
-}
-
 /// Pairs of subdomains that the interface joins rigidly, ascending.
 pub(crate) fn rigid_pairs(gluing: &Gluing, position: impl Fn(usize, usize) -> [f64; 3]) -> Vec<(u32, u32)> {
     let mut pairs: HashMap<(u32, u32), Shared> = HashMap::new();
-    for glob in gluing.globs() {
-        let (nodes, runs) = (glob.nodes as usize, glob.runs as usize);
-        for node in 0..nodes {
-            let copies = copies(gluing, glob.block(0, node), nodes, runs);
+    for glob in &gluing.globs {
+        for node in 0..glob.nodes as usize {
+            let copies = gluing.copies(glob, node);
             let mut open = false;
-            for (k, &(a, local)) in copies.iter().enumerate() {
-                for &(b, _) in &copies[k + 1..] {
-                    let place = || position(a as usize, local as usize);
+            for (k, a) in copies.iter().enumerate() {
+                for b in &copies[k + 1..] {
+                    let place = || position(a.subdomain as usize, a.local as usize);
                     let shared = pairs
-                        .entry((a, b))
+                        .entry((a.subdomain, b.subdomain))
                         .and_modify(|s| {
                             if !matches!(s, Shared::Rigid) {
                                 *s = s.add(place());
@@ -87,7 +75,7 @@ pub(crate) fn joint_rows(gluing: &Gluing, body_of: &[u32]) -> Vec<Vec<CopyEntry>
         bodies.any(|b| Some(b) != first)
     };
     let row = |block: usize, c: usize| {
-        let entry = |e: &crate::rows::gluing::BlockEntry| CopyEntry {
+        let entry = |e: &BlockEntry| CopyEntry {
             subdomain: e.subdomain,
             local: e.local,
             vector: std::array::from_fn(|k| if k == c { e.coefficient } else { 0.0 }),

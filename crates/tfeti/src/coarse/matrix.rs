@@ -3,11 +3,11 @@
 use crate::coarse::weights::RowWeights;
 use crate::linalg::entry;
 use crate::linalg::sparse::Columns;
-use crate::rows::gluing::Gluing;
-use crate::subdomain::kernel::Kernel;
+use crate::rows::gluing::{BlockEntry, Gluing};
+use crate::subdomain::kernel::{Block, Kernel, transposed};
 use crate::subdomain::matrices::{ClassBase, Subdomains};
 use rayon::prelude::*;
-use signorini_fem_mesh::internal::buckets;
+use signorini_fem_mesh::internal::Lists;
 
 /// Pattern of the coarse matrix and the part that the interface rows contribute with weight one.
 #[derive(Debug)]
@@ -19,13 +19,6 @@ pub(crate) struct CoarseMatrix {
 }
 
 type Modes = [[f64; 6]; 3];
-
-/// Six rows of six.
-pub(crate) type Block = [[f64; 6]; 6];
-
-pub(crate) fn transposed(a: &Block) -> Block {
-    std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
-}
 
 /// Rows of `R` at all nodes of each class.
 pub(crate) struct ModeTable<'a> {
@@ -63,49 +56,19 @@ impl<'a> ModeTable<'a> {
     }
 }
 
-/// Rows of each subdomain, by their buckets.
-struct Touching {
-    starts: Vec<u32>,
-    rows: Vec<u32>,
-}
-
-impl Touching {
-    /// From pairs of a subdomain and a row, in the order of the rows.
-    fn new(subdomains: usize, pairs: impl Iterator<Item = (u32, u32)>) -> Self {
-        let (keys, numbers): (Vec<u32>, Vec<u32>) = pairs.unzip();
-        let (starts, positions) = buckets(subdomains, &keys);
-        let rows = positions.into_iter().map(|k| numbers[k as usize]).collect();
-        Self { starts, rows }
-    }
-
-    fn blocks(gluing: &Gluing, subdomains: usize) -> Self {
-        let pairs = (0..gluing.blocks()).flat_map(|b| {
-            let entries = gluing.block(b).iter();
-            entries.map(move |e| (e.subdomain, b as u32))
-        });
-        Self::new(subdomains, pairs)
-    }
-
-    fn nodal(gluing: &Gluing, subdomains: usize) -> Self {
-        let pairs = (0..gluing.nodal_rows()).flat_map(|k| {
-            let entries = gluing.nodal(k).iter();
-            entries.map(move |e| (e.subdomain, k as u32))
-        });
-        Self::new(subdomains, pairs)
-    }
-
-    fn of(&self, subdomain: usize) -> &[u32] {
-        &self.rows[self.starts[subdomain] as usize..self.starts[subdomain + 1] as usize]
-    }
+/// Rows of each subdomain, from the subdomains of each row.
+fn touching<R: Iterator<Item = u32>>(subdomains: usize, rows: impl Iterator<Item = R>) -> Lists<u32> {
+    let pairs = (0..).zip(rows).flat_map(|(row, own)| own.map(move |s| (s, row)));
+    let (keys, numbers): (Vec<u32>, Vec<u32>) = pairs.unzip();
+    Lists::by_key(subdomains, &keys).map(|k| numbers[k as usize])
 }
 
 impl CoarseMatrix {
     pub(crate) fn new(gluing: &Gluing, modes: &ModeTable<'_>) -> Self {
         let subdomains = modes.subdomains.count();
-        let touching = [
-            Touching::blocks(gluing, subdomains),
-            Touching::nodal(gluing, subdomains),
-        ];
+        let blocks = (0..gluing.blocks()).map(|b| gluing.block(b).iter().map(|e| e.subdomain));
+        let nodal = (0..gluing.nodal_rows()).map(|k| gluing.nodal(k).iter().map(|e| e.subdomain));
+        let touching = [touching(subdomains, blocks), touching(subdomains, nodal)];
         let columns: Vec<(Vec<u32>, Vec<f64>)> = (0..subdomains)
             .into_par_iter()
             .map(|s| block_column(gluing, modes, &touching, s))
@@ -168,7 +131,7 @@ impl CoarseMatrix {
     }
 
     /// Hands each stored block of a matrix with these values to `each(row, column, block)`.
-    pub(crate) fn for_blocks(&self, values: &[f64], mut each: impl FnMut(u32, u32, &[[f64; 6]; 6])) {
+    pub(crate) fn for_blocks(&self, values: &[f64], mut each: impl FnMut(u32, u32, &Block)) {
         for (j, pair) in self.pointers.windows(2).enumerate() {
             let list = &self.neighbours[pair[0]..pair[1]];
             for (k, &i) in list.iter().enumerate() {
@@ -218,7 +181,7 @@ impl CoarseMatrix {
     }
 
     /// Adds a block with rows of `i` and columns of `j`, or its transpose where that is stored.
-    pub(crate) fn add_block(&self, i: u32, j: u32, block: &[[f64; 6]; 6], values: &mut [f64]) {
+    pub(crate) fn add_block(&self, i: u32, j: u32, block: &Block, values: &mut [f64]) {
         let (start, stride) = self.place(i.max(j), i.min(j));
         for r in 0..6 {
             for c in 0..6 {
@@ -253,7 +216,13 @@ impl CoarseMatrix {
                 if triple == [1.0; 3] {
                     continue;
                 }
-                self.add_block_components(gluing, block, triple, modes, values);
+                // corrects weights other than one, row by row
+                for (c, weight) in triple.iter().enumerate() {
+                    let part = |e: &BlockEntry| modes.at(e.subdomain, e.local)[c].map(|v| v * e.coefficient);
+                    let entries = gluing.block(block).iter();
+                    let row: Vec<(u32, [f64; 6])> = entries.map(|e| (e.subdomain, part(e))).collect();
+                    self.add_row(&row, weight - 1.0, values);
+                }
             }
         }
         let mut row = Vec::new();
@@ -275,30 +244,6 @@ impl CoarseMatrix {
             self.add_row(&row, line.weight, values);
         }
         matrix
-    }
-
-    /// Corrects one interface block for weights other than one.
-    fn add_block_components(
-        &self,
-        gluing: &Gluing,
-        block: usize,
-        weights: &[f64],
-        modes: &ModeTable<'_>,
-        values: &mut [f64],
-    ) {
-        for (c, weight) in weights.iter().enumerate() {
-            let row: Vec<(u32, [f64; 6])> = gluing
-                .block(block)
-                .iter()
-                .map(|e| {
-                    (
-                        e.subdomain,
-                        modes.at(e.subdomain, e.local)[c].map(|v| v * e.coefficient),
-                    )
-                })
-                .collect();
-            self.add_row(&row, weight - 1.0, values);
-        }
     }
 }
 
@@ -351,7 +296,7 @@ impl Moments {
 fn block_column(
     gluing: &Gluing,
     modes: &ModeTable<'_>,
-    [blocks, nodal]: &[Touching; 2],
+    [blocks, nodal]: &[Lists<u32>; 2],
     subdomain: usize,
 ) -> (Vec<u32>, Vec<f64>) {
     let own = subdomain as u32;

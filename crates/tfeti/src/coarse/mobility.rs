@@ -62,9 +62,9 @@ impl fmt::Display for FreeMotion {
 #[derive(Debug)]
 pub(crate) struct Mobility {
     /// Rigid part of each subdomain.
-    part_of: Vec<u32>,
+    pub(crate) part_of: Vec<u32>,
     /// Body of each subdomain: parts that hinges join are of one.
-    body_of: Vec<u32>,
+    pub(crate) body_of: Vec<u32>,
     bodies: Vec<Body>,
     centres: Vec<[f64; 3]>,
     subdomains: Arc<Subdomains>,
@@ -147,18 +147,8 @@ impl Mobility {
         &self.centres
     }
 
-    /// Rigid part of each subdomain.
-    pub(crate) fn part_of(&self) -> &[u32] {
-        &self.part_of
-    }
-
     pub(crate) fn bodies(&self) -> usize {
         self.body_of.iter().max().map_or(0, |b| *b as usize + 1)
-    }
-
-    /// Body of each subdomain.
-    pub(crate) fn body_of(&self) -> &[u32] {
-        &self.body_of
     }
 
     fn kernel(&self, subdomain: usize) -> &Kernel {

@@ -131,7 +131,7 @@ impl Coarse {
 
     /// The body of each subdomain; bodies are numbered by their first subdomains.
     pub fn body_of(&self) -> &[u32] {
-        self.0.mobility.body_of()
+        &self.0.mobility.body_of
     }
 
     /// Numbers stored for a factor of `G W G^T`.

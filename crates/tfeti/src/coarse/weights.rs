@@ -1,7 +1,7 @@
 //! Weights of the rows of `B` in the coarse matrix.
 
 use crate::error::TfetiError;
-use crate::rows::kinds::RowRanges;
+use crate::rows::ranges::RowRanges;
 use crate::tolerances::UNIT;
 use signorini_qp::internal::LineWeight;
 use std::ops::Range;
@@ -24,7 +24,6 @@ pub(crate) fn along(line: &LineWeight, pair: [f64; 2]) -> [f64; 2] {
 
 impl RowWeights {
     /// A diagonal only.
-    #[must_use]
     pub fn diagonal(diagonal: Vec<f64>) -> Self {
         let lines = Vec::new();
         Self { diagonal, lines }

@@ -78,7 +78,7 @@ pub(crate) struct BoundaryMap {
 
 /// Work memory of products by panels: a boundary vector, and what each lane needs.
 #[derive(Debug)]
-pub(crate) struct PanelScratch {
+pub struct PanelScratch {
     boundary: Vec<f64>,
     /// To and from other ranks; empty without.
     message: Vec<f64>,

@@ -6,7 +6,7 @@ use super::part::RowPart;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::class::{Class, Classes};
 use crate::subdomain::ownership::Ownership;
-use signorini_fem_mesh::internal::buckets;
+use signorini_fem_mesh::internal::Lists;
 use std::ops::Range;
 
 /// For each class: place of each node on the boundary, first panel, and first member of each panel.
@@ -188,17 +188,14 @@ impl BoundaryMap {
             let rank = self.parts.partition_point(|part| part.end <= 3 * copy as usize);
             (rank, copy, place)
         };
-        let mut nodal = |nodal: usize| {
+        for nodal in 0..gluing.nodal_rows() {
             let copies = gluing.nodal(nodal).iter().map(|e| copy(e.subdomain, e.local));
             let row = gluing.nodal_row(nodal);
             cut.enter(row..row + 1, &copies.collect::<Vec<_>>());
-        };
-        let interface = &gluing.ranges().interface;
-        (0..interface.start).for_each(&mut nodal);
-        (interface.start..gluing.nodal_rows()).for_each(nodal);
+        }
         for block in 0..gluing.blocks() {
             let copies = gluing.block(block).iter().map(|e| copy(e.subdomain, e.local));
-            let row = interface.start + 3 * block;
+            let row = gluing.ranges().interface.start + 3 * block;
             cut.enter(row..row + 3, &copies.collect::<Vec<_>>());
         }
         // of the rows here
@@ -207,19 +204,15 @@ impl BoundaryMap {
 
     /// Fills the tables by copy: the transposes of the tables by row.
     fn fill_spread(&mut self, gluing: &Gluing, copies: &[Vec<u32>; 2]) {
-        let (pointers, order) = transpose(&self.block_pointers, &copies[0], self.copies);
-        self.spread_pointers = pointers;
-        self.spread_blocks = order.iter().map(|&(block, _)| block).collect();
-        let weights = order.iter().map(|&(_, entry)| self.block_weights[entry as usize]);
+        let order = transpose(&self.block_pointers, &copies[0], self.copies);
+        self.spread_pointers = order.starts().to_vec();
+        self.spread_blocks = order.items().iter().map(|&(block, _)| block).collect();
+        let weights = order.items().iter().map(|e| self.block_weights[e.1 as usize]);
         self.spread_weights = weights.collect();
-        let (pointers, order) = transpose(&self.row_pointers, &copies[1], self.copies);
-        for copy in 0..self.copies {
-            let range = pointers[copy] as usize..pointers[copy + 1] as usize;
-            if range.is_empty() {
-                continue;
-            }
+        let order = transpose(&self.row_pointers, &copies[1], self.copies);
+        for copy in (0..self.copies).filter(|&copy| !order.of(copy).is_empty()) {
             self.nodal_copies.push(copy as u32);
-            for &(nodal, entry) in &order[range] {
+            for &(nodal, entry) in order.of(copy) {
                 self.nodal_rows.push(gluing.nodal_row(nodal as usize) as u32);
                 self.nodal_vectors.push(self.row_vectors[entry as usize]);
             }
@@ -235,12 +228,10 @@ fn boundaries(classes: &Classes, gluing: &Gluing) -> Vec<BoundaryClass> {
     let mut touch = |subdomain: u32, local: u32| {
         touched[classes.place(subdomain as usize).0][local as usize] = true;
     };
-    for block in 0..gluing.blocks() {
-        gluing.block(block).iter().for_each(|e| touch(e.subdomain, e.local));
-    }
-    for nodal in 0..gluing.nodal_rows() {
-        gluing.nodal(nodal).iter().for_each(|e| touch(e.subdomain, e.local));
-    }
+    let blocks = (0..gluing.blocks()).flat_map(|block| gluing.block(block));
+    blocks.for_each(|e| touch(e.subdomain, e.local));
+    let nodal = (0..gluing.nodal_rows()).flat_map(|nodal| gluing.nodal(nodal));
+    nodal.for_each(|e| touch(e.subdomain, e.local));
     let boundary = |(class, touched): (&Class, Vec<bool>)| BoundaryClass {
         nodes: (0..class.nodes as u32).filter(|&n| touched[n as usize]).collect(),
         members: class.members.clone(),
@@ -248,13 +239,11 @@ fn boundaries(classes: &Classes, gluing: &Gluing) -> Vec<BoundaryClass> {
     list.iter().zip(touched).map(boundary).collect()
 }
 
-/// Transposes a table of rows: pointers by column, and for each entry its row and its position.
-fn transpose(pointers: &[u32], columns: &[u32], count: usize) -> (Vec<u32>, Vec<(u32, u32)>) {
+/// Transposes a table of rows: for each column the row and the position of each entry.
+fn transpose(pointers: &[u32], columns: &[u32], count: usize) -> Lists<(u32, u32)> {
     let mut row_of = Vec::with_capacity(columns.len());
     for (row, pair) in pointers.windows(2).enumerate() {
         row_of.extend((pair[0]..pair[1]).map(|_| row as u32));
     }
-    let (starts, entries) = buckets(count, columns);
-    let order = entries.into_iter().map(|e| (row_of[e as usize], e));
-    (starts, order.collect())
+    Lists::by_key(count, columns).map(|e| (row_of[e as usize], e))
 }

@@ -3,7 +3,7 @@
 use crate::dual::boundary::BoundaryMap;
 use crate::error::TfetiError;
 use crate::linalg::sparse::Symbolic;
-use crate::subdomain::cost::{InverseSettings, Size, choose};
+use crate::subdomain::cost::{ClassReport, InverseSettings, Size, choose};
 use crate::subdomain::inverse::{Inverse, regularised};
 use crate::subdomain::matrices::{ClassMatrices, Subdomains};
 use rayon::prelude::*;
@@ -23,16 +23,14 @@ impl ClassInverse {
     }
 }
 
-/// Inverses by class, and which are dense; `None` where another rank holds the class.
-pub(crate) type Inverses = (Vec<Option<ClassInverse>>, Vec<bool>);
-
-/// Chooses the inverses of all classes and computes those that this rank holds; their patterns may be `known`.
+/// Chooses the inverses of all classes and computes those that this rank holds, with a report of each class; their
+/// patterns may be `known`.
 pub(crate) fn invert(
     subdomains: &Subdomains,
     map: &BoundaryMap,
     settings: &InverseSettings,
     known: Option<&[Symbolic]>,
-) -> Result<Inverses, TfetiError> {
+) -> Result<(Vec<Option<ClassInverse>>, Vec<ClassReport>), TfetiError> {
     let (bases, classes) = (&subdomains.bases, subdomains.classes.classes());
     let first = |k: usize| classes[k].members[0] as usize;
     let symbolic = |k: usize| {
@@ -71,6 +69,11 @@ pub(crate) fn invert(
         };
         Ok(Some(ClassInverse { full, boundary }))
     };
-    let inverses = each().map(inverse).collect::<Result<_, TfetiError>>()?;
-    Ok((inverses, dense))
+    let inverses: Vec<Option<ClassInverse>> = each().map(inverse).collect::<Result<_, TfetiError>>()?;
+    let report = |k: usize| ClassReport {
+        bytes: inverses[k].as_ref().map_or(0, ClassInverse::bytes),
+        ..sizes[k].report(dense[k])
+    };
+    let reports = (0..inverses.len()).map(report).collect();
+    Ok((inverses, reports))
 }

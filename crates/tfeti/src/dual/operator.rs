@@ -26,10 +26,6 @@ pub struct DualOperator {
     part: Option<Arc<RowPart>>,
 }
 
-/// Work memory of a product with `F`.
-#[derive(Debug)]
-pub struct DualScratch(PanelScratch);
-
 impl DualOperator {
     pub(crate) fn new(
         map: Arc<BoundaryMap>,
@@ -86,45 +82,36 @@ pub(crate) fn multiply_members(out: &mut [f64], x: &[f64], a: &[f64], members: u
     }
 }
 
-/// Writes the boundary rows of a panel into full columns.
-fn expand(nodes: &[u32], boundary: &[f64], full: &mut [f64], dim: usize) {
-    let width = full.len() / dim;
-    for (&node, values) in nodes.iter().zip(boundary.chunks_exact(3 * width)) {
-        for (k, value) in values.iter().enumerate() {
-            full[(k % width) * dim + 3 * node as usize + k / width] = *value;
-        }
-    }
-}
-
-/// Reads the boundary rows of full columns.
-fn restrict(nodes: &[u32], full: &[f64], boundary: &mut [f64], dim: usize) {
-    let width = full.len() / dim;
-    for (&node, values) in nodes.iter().zip(boundary.chunks_exact_mut(3 * width)) {
-        for (k, value) in values.iter_mut().enumerate() {
-            *value = full[(k % width) * dim + 3 * node as usize + k / width];
+/// Calls `f` for each place on the boundary of a panel of so many members with that in full columns.
+fn for_places(nodes: &[u32], dim: usize, members: usize, mut f: impl FnMut(usize, usize)) {
+    for (k, &node) in nodes.iter().enumerate() {
+        for c in 0..3 {
+            for m in 0..members {
+                f((3 * k + c) * members + m, m * dim + 3 * node as usize + c);
+            }
         }
     }
 }
 
 impl SymmetricOperator for DualOperator {
-    type Scratch = DualScratch;
+    type Scratch = PanelScratch;
 
     fn dim(&self) -> usize {
         self.map.rows()
     }
 
-    fn scratch(&self) -> DualScratch {
-        DualScratch(self.map.scratch(|panel| {
+    fn scratch(&self) -> PanelScratch {
+        self.map.scratch(|panel| {
             let (inverse, columns) = (self.inverses[panel.class].as_ref()?, panel.columns.len());
             let dim = self.subdomains.bases[panel.class].diagonal.len();
             let full = if inverse.full.is_packed() { 0 } else { dim * columns };
             inverse.boundary.is_none().then(|| (full, inverse.full.need(columns)))
-        }))
+        })
     }
 
-    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut DualScratch) {
+    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut PanelScratch) {
         self.map
-            .by_panels(x, y, self.parallel, &mut s.0, &|panel, x, y, full, memory| {
+            .by_panels(x, y, self.parallel, s, &|panel, x, y, full, memory| {
                 let (columns, class) = (panel.columns.len(), panel.class);
                 let Some(inverse) = &self.inverses[class] else {
                     return;
@@ -139,9 +126,9 @@ impl SymmetricOperator for DualOperator {
                     }
                     let full = &mut full[..dim * columns];
                     full.fill(0.0);
-                    expand(nodes, x, full, dim);
+                    for_places(nodes, dim, columns, |own, at| full[at] = x[own]);
                     inverse.full.apply(&base.kernel, full, columns, memory);
-                    restrict(nodes, full, y, dim);
+                    for_places(nodes, dim, columns, |own, at| y[own] = full[at]);
                 }
             });
         self.gluing.add_compliance(x, y);
@@ -165,7 +152,7 @@ impl SymmetricOperator for DualOperator {
         let Some(part) = &self.part else {
             return x.iter().sum();
         };
-        let mut whole = vec![0.0; self.gluing.rows_full_rank()];
+        let mut whole = vec![0.0; self.gluing.ranges().total()];
         part.complete(x, &mut whole);
         whole.iter().sum()
     }

@@ -36,7 +36,6 @@ impl Unit {
         self.rows.start / CHUNK_LENGTH..self.rows.end.div_ceil(CHUNK_LENGTH)
     }
 
-    /// Rows in a chunk.
     fn within(&self, chunk: usize) -> usize {
         let [start, end] = [chunk, chunk + 1].map(|k| (k * CHUNK_LENGTH).clamp(self.rows.start, self.rows.end));
         end - start
@@ -56,10 +55,9 @@ fn units(gluing: &Gluing, ranks: usize, rank_of: &dyn Fn(u32) -> usize) -> Vec<U
         rows: 0..interface.start,
         ranks: (0..ranks).collect(),
     };
-    let globs = gluing.globs().iter().map(|glob: &Glob| {
+    let globs = gluing.globs.iter().map(|glob: &Glob| {
         let [start, end] = [0, glob.runs as usize].map(|run| interface.start + 3 * glob.block(run, 0));
-        // the last run combines all copies
-        let entries = gluing.block(glob.block(glob.runs as usize - 1, 0)).iter();
+        let entries = gluing.copies(glob, 0).iter();
         Unit {
             rows: start..end,
             ranks: touched(&mut entries.map(|e| e.subdomain)),
@@ -109,7 +107,7 @@ impl RowPart {
                 _ => given.push((first, unit.rows.clone())),
             }
         }
-        let globs = gluing.globs().len();
+        let globs = gluing.globs.len();
         let nodal = [&vec![true; contact][..], &marks[1 + globs..]].concat();
         let rows = gluing.part(&marks[1..=globs], &nodal);
         let mut out = Self {

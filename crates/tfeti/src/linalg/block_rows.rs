@@ -53,7 +53,6 @@ impl BlockRows {
         3 * (self.pointers.len() - 1)
     }
 
-    /// Multiplies it by a factor.
     pub(crate) fn scale(&mut self, factor: f64) {
         self.blocks.iter_mut().flatten().for_each(|v| *v *= factor);
     }

@@ -134,11 +134,8 @@ impl Symbolic {
     pub(crate) fn new(pattern: &Columns, block: usize) -> Result<Self, FactorError> {
         debug_assert!(block > 0 && pattern.dim.is_multiple_of(block));
         let (pointers, rows) = quotient(pattern, block);
-        let order: Vec<u32> = minimum_degree(&pointers, &rows)?
-            .into_iter()
-            .map(|b| b as u32)
-            .collect();
-        Self::ordered(pattern, &order, block)
+        let order = minimum_degree(&pointers, &rows)?.into_iter().map(|b| b as u32);
+        Self::ordered(pattern, &order.collect::<Vec<_>>(), block)
     }
 
     /// The same with a given order of the blocks, new to old.
@@ -169,10 +166,12 @@ impl Symbolic {
 
     /// Old number of each unknown.
     pub(crate) fn order(&self) -> Vec<u32> {
-        match self.0.perm() {
-            Some(permutation) => permutation.arrays().0.iter().map(|&k| k as u32).collect(),
-            None => (0..self.0.nrows() as u32).collect(),
-        }
+        self.old().iter().map(|&k| k as u32).collect()
+    }
+
+    /// The same; there is one, for it was given.
+    fn old(&self) -> &[usize] {
+        self.0.perm().map_or(&[], |permutation| permutation.arrays().0)
     }
 }
 
@@ -308,7 +307,6 @@ impl SparseCholesky {
         self.values.len()
     }
 
-    /// Old number of each unknown.
     pub(crate) fn order(&self) -> Vec<u32> {
         self.symbolic.order()
     }
@@ -380,13 +378,9 @@ impl SparseCholesky {
 
     /// `out = L^-1 P x`.
     pub(crate) fn half_solve(&self, x: &[f64], out: &mut [f64], memory: &mut SolveMemory) {
-        match self.symbolic.0.perm() {
-            Some(permutation) => {
-                let old = permutation.arrays().0;
-                out.iter_mut().zip(old).for_each(|(o, &old)| *o = x[old]);
-            }
-            None => out.copy_from_slice(x),
-        }
+        out.iter_mut()
+            .zip(self.symbolic.old())
+            .for_each(|(o, &old)| *o = x[old]);
         let column = MatMut::from_column_major_slice_mut(out, self.dim(), 1);
         let memory = MemStack::new(&mut memory.memory);
         if let Some((factor, _)) = self.supernodes() {
@@ -401,13 +395,7 @@ impl SparseCholesky {
         if let Some((factor, _)) = self.supernodes() {
             factor.l_transpose_solve_with_conj(Conj::No, column, Par::Seq, memory);
         }
-        match self.symbolic.0.perm() {
-            Some(permutation) => {
-                let old = permutation.arrays().0;
-                y.iter().zip(old).for_each(|(&v, &old)| out[old] = v);
-            }
-            None => out.copy_from_slice(y),
-        }
+        y.iter().zip(self.symbolic.old()).for_each(|(&v, &old)| out[old] = v);
     }
 }
 

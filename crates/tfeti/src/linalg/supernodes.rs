@@ -6,14 +6,12 @@
 //! `-L`. Elimination then is one product with all tiles, substitution one with their transposes, and no tile is left
 //! half empty in between.
 
-use crate::linalg::tiles::{
-    LANES, PANEL, Stored, Tile, add_unit, copy, eliminate, eliminate_alike, panel, substitute, substitute_alike, unit,
-};
+use crate::linalg::tiles::{Alike, LANES, PANEL, Stored, Tile, Unknown, add_unit, copy, panel, unit};
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 
 /// Pattern of groups of columns. Rows are counted from the first of these columns on; rows beyond them (*behind*)
-/// belong to others. Rows below a group come in units of `unit` consecutive ones.
+/// belong to others. Rows below a group come in units of `unit` consecutive ones, three or six.
 #[derive(Debug, Clone)]
 pub(crate) struct Supernodes {
     pub(super) unit: usize,
@@ -100,29 +98,32 @@ impl Supernodes {
     }
 
     /// `x = D^-1 L^-1 x` for the columns' unknowns `x`; adds to `behind` what that does to the rows behind.
-    pub(crate) fn forward<T: Stored>(&self, tiles: &[T], x: &mut [f64], behind: &mut [f64], buffer: &mut [f64]) {
-        let (factor, forward) = (self, true);
-        Arch::new().dispatch(Solve {
-            factor,
-            tiles,
-            x,
-            behind,
-            buffer,
-            forward,
-        });
+    pub(crate) fn forward<T: Stored, X: Unknown>(&self, tiles: &[T], x: &mut [X], behind: &mut [X], buffer: &mut [X]) {
+        self.solve(tiles, x, behind, buffer, true);
     }
 
     /// `x = L^-T x` for the columns' unknowns, given those `behind`, which stay.
-    pub(crate) fn backward<T: Stored>(&self, tiles: &[T], x: &mut [f64], behind: &mut [f64], buffer: &mut [f64]) {
-        let (factor, forward) = (self, false);
-        Arch::new().dispatch(Solve {
-            factor,
+    pub(crate) fn backward<T: Stored, X: Unknown>(&self, tiles: &[T], x: &mut [X], behind: &mut [X], buffer: &mut [X]) {
+        self.solve(tiles, x, behind, buffer, false);
+    }
+
+    /// [`forward`](Self::forward) or [`backward`](Self::backward).
+    pub(crate) fn solve<T: Stored, X: Unknown>(
+        &self,
+        tiles: &[T],
+        x: &mut [X],
+        behind: &mut [X],
+        buffer: &mut [X],
+        forward: bool,
+    ) {
+        let work = Work {
+            factor: self,
             tiles,
             x,
             behind,
             buffer,
-            forward,
-        });
+        };
+        Arch::new().dispatch(Solve { work, forward });
     }
 }
 
@@ -185,126 +186,125 @@ impl WithSimd for Pack<'_> {
     }
 }
 
-/// The arguments of [`Supernodes::forward`] and [`Supernodes::backward`].
-struct Solve<'a, T> {
+/// A triangular solve: the factor, the columns' unknowns, those behind, and a buffer.
+struct Work<'a, T, X> {
     factor: &'a Supernodes,
     tiles: &'a [T],
-    x: &'a mut [f64],
-    behind: &'a mut [f64],
-    buffer: &'a mut [f64],
+    x: &'a mut [X],
+    behind: &'a mut [X],
+    buffer: &'a mut [X],
+}
+
+struct Solve<'a, T, X> {
+    work: Work<'a, T, X>,
     forward: bool,
 }
 
-impl<T: Stored> WithSimd for Solve<'_, T> {
+impl<T: Stored, X: Unknown> WithSimd for Solve<'_, T, X> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        match (self.forward, self.factor.unit) {
-            (true, 6) => self.forward::<S, 6>(simd),
-            (true, 3) => self.forward::<S, 3>(simd),
-            (true, _) => self.forward::<S, 1>(simd),
-            (false, 6) => self.backward::<S, 6>(simd),
-            (false, 3) => self.backward::<S, 3>(simd),
-            (false, _) => self.backward::<S, 1>(simd),
+        let work = self.work;
+        match (self.forward, work.factor.unit) {
+            (true, 6) => work.forward::<S, 6>(simd),
+            (true, _) => work.forward::<S, 3>(simd),
+            (false, 6) => work.backward::<S, 6>(simd),
+            (false, _) => work.backward::<S, 3>(simd),
         }
     }
 }
 
-impl<T: Stored> Solve<'_, T> {
+impl<T: Stored, X: Unknown> Work<'_, T, X> {
     #[inline(always)]
-    fn forward<S: Simd, const U: usize>(self, simd: S) {
-        let (factor, x) = (self.factor, self.x);
-        let mut nodes = &factor.nodes[..];
+    fn forward<S: Simd, const U: usize>(mut self, simd: S) {
+        let mut nodes = &self.factor.nodes[..];
         while let Some(node) = nodes.first() {
             let run = nodes.iter().zip(1..);
-            let alike = run.take_while(|(n, k)| n.alike == *k).count();
+            let alike = run.take_while(|(n, k)| X::IN_RUNS && n.alike == *k).count();
             if alike > 0 {
                 let (run, rest) = nodes.split_at(alike);
                 nodes = rest;
-                let last = &run[alike - 1];
-                let (count, start) = (node.columns.len(), node.columns.start);
-                let own = &self.tiles[node.tiles.start..last.tiles.end];
-                let rows = &factor.rows[node.rows.start..last.rows.end];
-                let units = node.rows.len();
-                let t = &mut self.buffer[..];
-                let behind = &mut self.behind[..];
-                panel!(
-                    eliminate_alike,
-                    simd,
-                    count,
-                    U,
-                    (own, rows, units, start, &mut x[..], behind, t)
-                );
-                continue;
-            }
-            nodes = &nodes[1..];
-            let rows = &factor.rows[node.rows.clone()];
-            let (width, height) = (node.columns.len(), node.columns.len() + U * rows.len());
-            let t = &mut self.buffer[..height + LANES];
-            copy::<U>(&x[node.columns.clone()], &mut t[..width]);
-            t[width..].fill(0.0);
-            let mut tiles = &self.tiles[node.tiles.clone()];
-            for start in (0..width).step_by(PANEL) {
-                let count = PANEL.min(width - start);
-                let (own, rest) = tiles.split_at(count * (height - start).div_ceil(LANES));
-                tiles = rest;
-                let t = &mut t[start..];
-                panel!(eliminate, simd, count, U, (own, t));
-            }
-            copy::<U>(&t[..width], &mut x[node.columns.clone()]);
-            for (&row, sum) in rows.iter().zip(t[width..].chunks_exact(U)) {
-                add_unit::<U>(x, self.behind, row, sum);
+                let (count, alike) = (node.columns.len(), self.alike(run));
+                panel!(X::eliminate_alike, simd, count, U, alike);
+            } else {
+                nodes = &nodes[1..];
+                self.eliminate::<S, U>(simd, node);
             }
         }
     }
 
     #[inline(always)]
-    fn backward<S: Simd, const U: usize>(self, simd: S) {
-        let (factor, x) = (self.factor, self.x);
-        let mut nodes = &factor.nodes[..];
+    fn backward<S: Simd, const U: usize>(mut self, simd: S) {
+        let mut nodes = &self.factor.nodes[..];
         while let Some((node, before)) = nodes.split_last() {
-            if node.alike > 0 {
+            if X::IN_RUNS && node.alike > 0 {
                 let (rest, run) = nodes.split_at(nodes.len() - node.alike);
                 nodes = rest;
-                let first = &run[0];
-                let (count, start) = (node.columns.len(), first.columns.start);
-                let own = &self.tiles[first.tiles.start..node.tiles.end];
-                let rows = &factor.rows[first.rows.start..node.rows.end];
-                let units = node.rows.len();
-                let t = &mut self.buffer[..];
-                let behind = &mut self.behind[..];
-                panel!(
-                    substitute_alike,
-                    simd,
-                    count,
-                    U,
-                    (own, rows, units, start, &mut x[..], behind, t)
-                );
-                continue;
+                let (count, alike) = (node.columns.len(), self.alike(run));
+                panel!(X::substitute_alike, simd, count, U, alike);
+            } else {
+                nodes = before;
+                self.substitute::<S, U>(simd, node);
             }
-            nodes = before;
-            let rows = &factor.rows[node.rows.clone()];
-            let (width, height) = (node.columns.len(), node.columns.len() + U * rows.len());
-            let t = &mut self.buffer[..height + LANES];
-            copy::<U>(&x[node.columns.clone()], &mut t[..width]);
-            for (&row, target) in rows.iter().zip(t[width..].chunks_exact_mut(U)) {
-                target.copy_from_slice(unit::<U>(x, self.behind, row));
-            }
-            t[height..].fill(0.0);
-            let mut tiles = &self.tiles[node.tiles.clone()];
-            let mut end = width;
-            while end > 0 {
-                let count = if end.is_multiple_of(PANEL) { PANEL } else { end % PANEL };
-                let start = end - count;
-                let length = count * (height - start).div_ceil(LANES);
-                let (rest, own) = tiles.split_at(tiles.len() - length);
-                (tiles, end) = (rest, start);
-                let t = &mut t[start..];
-                panel!(substitute, simd, count, U, (own, t));
-            }
-            copy::<U>(&t[..width], &mut x[node.columns.clone()]);
         }
+    }
+
+    /// What kernels take of groups of one panel and one shape.
+    #[inline(always)]
+    fn alike(&mut self, run: &[Supernode]) -> Alike<'_, T, X> {
+        let (first, last) = (&run[0], &run[run.len() - 1]);
+        let tiles = &self.tiles[first.tiles.start..last.tiles.end];
+        let rows = &self.factor.rows[first.rows.start..last.rows.end];
+        let (units, start) = (first.rows.len(), first.columns.start);
+        (tiles, rows, units, start, self.x, self.behind, self.buffer)
+    }
+
+    /// Forward elimination of one group.
+    #[inline(always)]
+    fn eliminate<S: Simd, const U: usize>(&mut self, simd: S, node: &Supernode) {
+        let rows = &self.factor.rows[node.rows.clone()];
+        let (width, height) = (node.columns.len(), node.columns.len() + U * rows.len());
+        let t = &mut self.buffer[..height + LANES];
+        copy::<X, U>(&self.x[node.columns.clone()], &mut t[..width]);
+        t[width..].fill(X::ZERO);
+        let mut tiles = &self.tiles[node.tiles.clone()];
+        for start in (0..width).step_by(PANEL) {
+            let count = PANEL.min(width - start);
+            let (own, rest) = tiles.split_at(count * (height - start).div_ceil(LANES));
+            tiles = rest;
+            let t = &mut t[start..];
+            panel!(X::eliminate, simd, count, U, (own, t));
+        }
+        copy::<X, U>(&t[..width], &mut self.x[node.columns.clone()]);
+        for (&row, sum) in rows.iter().zip(t[width..].chunks_exact(U)) {
+            add_unit::<X, U>(self.x, self.behind, row, sum);
+        }
+    }
+
+    /// Back substitution of one group.
+    #[inline(always)]
+    fn substitute<S: Simd, const U: usize>(&mut self, simd: S, node: &Supernode) {
+        let rows = &self.factor.rows[node.rows.clone()];
+        let (width, height) = (node.columns.len(), node.columns.len() + U * rows.len());
+        let t = &mut self.buffer[..height + LANES];
+        copy::<X, U>(&self.x[node.columns.clone()], &mut t[..width]);
+        for (&row, target) in rows.iter().zip(t[width..].chunks_exact_mut(U)) {
+            target.copy_from_slice(unit::<X, U>(self.x, self.behind, row));
+        }
+        t[height..].fill(X::ZERO);
+        let mut tiles = &self.tiles[node.tiles.clone()];
+        let mut end = width;
+        while end > 0 {
+            let count = if end.is_multiple_of(PANEL) { PANEL } else { end % PANEL };
+            let start = end - count;
+            let length = count * (height - start).div_ceil(LANES);
+            let (rest, own) = tiles.split_at(tiles.len() - length);
+            (tiles, end) = (rest, start);
+            let t = &mut t[start..];
+            panel!(X::substitute, simd, count, U, (own, t));
+        }
+        copy::<X, U>(&t[..width], &mut self.x[node.columns.clone()]);
     }
 }
 
@@ -315,7 +315,7 @@ mod tests {
     /// A factor in two groups whose rows below lie within and behind.
     #[test]
     fn both_directions_solve_with_the_product_of_the_factor() {
-        for unit in [1, 3, 6] {
+        for unit in [3, 6] {
             let (widths, units) = ([4 * unit, 2 * unit], [vec![4, 6, 8], vec![6, 8]]);
             let (own, all) = (6 * unit, 9 * unit);
             let mut supernodes = Supernodes::new(unit);

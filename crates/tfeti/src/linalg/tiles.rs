@@ -58,22 +58,22 @@ impl Stored for ShortTile {
 
 /// Calls `$name` for the number of columns of a panel and the number of vectors in a tile.
 macro_rules! panel {
-    ($name:ident, $simd:ident, $count:ident, $unit:ident, $work:expr) => {
+    ($($name:ident)::+, $simd:ident, $count:ident, $unit:ident, $work:expr) => {
         match $count {
-            1 => panel!(@ $name, $simd, 1, $unit, $work),
-            2 => panel!(@ $name, $simd, 2, $unit, $work),
-            3 => panel!(@ $name, $simd, 3, $unit, $work),
-            4 => panel!(@ $name, $simd, 4, $unit, $work),
-            5 => panel!(@ $name, $simd, 5, $unit, $work),
-            _ => panel!(@ $name, $simd, PANEL, $unit, $work),
+            1 => panel!(@ $($name)::+, $simd, 1, $unit, $work),
+            2 => panel!(@ $($name)::+, $simd, 2, $unit, $work),
+            3 => panel!(@ $($name)::+, $simd, 3, $unit, $work),
+            4 => panel!(@ $($name)::+, $simd, 4, $unit, $work),
+            5 => panel!(@ $($name)::+, $simd, 5, $unit, $work),
+            _ => panel!(@ $($name)::+, $simd, PANEL, $unit, $work),
         }
     };
-    (@ $name:ident, $simd:ident, $count:expr, $unit:ident, $work:expr) => {
+    (@ $($name:ident)::+, $simd:ident, $count:expr, $unit:ident, $work:expr) => {
         match S::F64_LANES {
-            8 => $name::<S, _, { $count }, 1, $unit>($simd, $work),
-            4 => $name::<S, _, { $count }, 2, $unit>($simd, $work),
-            2 => $name::<S, _, { $count }, 4, $unit>($simd, $work),
-            _ => $name::<S, _, { $count }, 8, $unit>($simd, $work),
+            8 => $($name)::+::<S, _, { $count }, 1, $unit>($simd, $work),
+            4 => $($name)::+::<S, _, { $count }, 2, $unit>($simd, $work),
+            2 => $($name)::+::<S, _, { $count }, 4, $unit>($simd, $work),
+            _ => $($name)::+::<S, _, { $count }, 8, $unit>($simd, $work),
         }
     };
 }
@@ -81,7 +81,7 @@ pub(crate) use panel;
 
 /// Copies a few units; a call to the library would take longer.
 #[inline(always)]
-pub(crate) fn copy<const U: usize>(from: &[f64], to: &mut [f64]) {
+pub(crate) fn copy<X: Copy, const U: usize>(from: &[X], to: &mut [X]) {
     for (to, from) in to.chunks_exact_mut(U).zip(from.chunks_exact(U)) {
         to.copy_from_slice(from);
     }
@@ -89,7 +89,7 @@ pub(crate) fn copy<const U: usize>(from: &[f64], to: &mut [f64]) {
 
 /// The unit of rows `row` among the unknowns `x`, of which there are `first`, and those behind them.
 #[inline(always)]
-pub(crate) fn unit<'a, const U: usize>(x: &'a [f64], behind: &'a [f64], row: u32) -> &'a [f64] {
+pub(crate) fn unit<'a, X, const U: usize>(x: &'a [X], behind: &'a [X], row: u32) -> &'a [X] {
     let (row, first) = (row as usize, x.len() / U);
     if row < first {
         &x[U * row..][..U]
@@ -100,7 +100,7 @@ pub(crate) fn unit<'a, const U: usize>(x: &'a [f64], behind: &'a [f64], row: u32
 
 /// Adds to the unit of rows `row`.
 #[inline(always)]
-pub(crate) fn add_unit<const U: usize>(x: &mut [f64], behind: &mut [f64], row: u32, sum: &[f64]) {
+pub(crate) fn add_unit<X: Unknown, const U: usize>(x: &mut [X], behind: &mut [X], row: u32, sum: &[X]) {
     let (row, first) = (row as usize, x.len() / U);
     let target = if row < first {
         &mut x[U * row..][..U]
@@ -108,7 +108,7 @@ pub(crate) fn add_unit<const U: usize>(x: &mut [f64], behind: &mut [f64], row: u
         &mut behind[U * (row - first)..][..U]
     };
     for k in 0..U {
-        target[k] += sum[k];
+        target[k].add(&sum[k]);
     }
 }
 
@@ -159,81 +159,114 @@ fn transposed<S: Simd, T: Stored, const N: usize, const V: usize>(simd: S, tiles
     })
 }
 
-/// Forward elimination of one panel; `t` holds its unknowns and the rows below.
-#[inline(always)]
-pub(crate) fn eliminate<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
-    simd: S,
-    (tiles, t): (&[T], &mut [f64]),
-) {
-    let z: [S::f64s; N] = std::array::from_fn(|k| simd.splat_f64s(t[k]));
-    t[..N].fill(0.0);
-    product::<S, T, N, V, true>(simd, tiles, &z, t);
-}
-
-/// Back substitution of one panel; `t` holds its unknowns and those of the rows below.
-#[inline(always)]
-pub(crate) fn substitute<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
-    simd: S,
-    (tiles, t): (&[T], &mut [f64]),
-) {
-    let own: [f64; N] = std::array::from_fn(|k| t[k]);
-    t[..N].fill(0.0);
-    let sums = transposed::<S, T, N, V>(simd, tiles, t);
-    for k in 0..N {
-        t[k] = own[k] + sums[k];
-    }
-}
-
 /// Tiles, rows, number of units of rows in each group, first column, unknowns, those behind, and a buffer.
-pub(crate) type Alike<'a, T> = (
-    &'a [T],
-    &'a [u32],
-    usize,
-    usize,
-    &'a mut [f64],
-    &'a mut [f64],
-    &'a mut [f64],
-);
+pub(crate) type Alike<'a, T, X> = (&'a [T], &'a [u32], usize, usize, &'a mut [X], &'a mut [X], &'a mut [X]);
 
-/// Forward elimination of groups of one panel and one shape.
-#[inline(always)]
-pub(crate) fn eliminate_alike<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
-    simd: S,
-    (tiles, rows, units, mut start, x, behind, t): Alike<'_, T>,
-) {
-    let length = N * (N + U * units).div_ceil(LANES);
-    for (tiles, rows) in tiles.chunks_exact(length).zip(rows.chunks_exact(units)) {
-        let own = &mut x[start..][..N];
-        let z: [S::f64s; N] = std::array::from_fn(|k| simd.splat_f64s(own[k]));
-        product::<S, T, N, V, false>(simd, tiles, &z, t);
-        own.copy_from_slice(&t[..N]);
-        start += N;
-        for (&row, sum) in rows.iter().zip(t[N..].chunks_exact(U)) {
-            add_unit::<U>(x, behind, row, sum);
-        }
+/// What a solve is for: a number, or [several](super::lanes) side by side.
+pub(crate) trait Unknown: Copy {
+    const ZERO: Self;
+    /// Whether there are kernels for groups of one panel and one shape.
+    const IN_RUNS: bool = false;
+
+    fn add(&mut self, other: &Self);
+
+    /// Forward elimination of one panel with its tiles; behind its unknowns stand those of the rows below.
+    fn eliminate<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
+        simd: S,
+        work: (&[T], &mut [Self]),
+    );
+
+    /// Back substitution of one panel.
+    fn substitute<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
+        simd: S,
+        work: (&[T], &mut [Self]),
+    );
+
+    /// Forward elimination of groups of one panel and one shape.
+    fn eliminate_alike<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
+        _: S,
+        _: Alike<'_, T, Self>,
+    ) {
+    }
+
+    /// Back substitution of groups of one panel and one shape.
+    fn substitute_alike<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
+        _: S,
+        _: Alike<'_, T, Self>,
+    ) {
     }
 }
 
-/// Back substitution of groups of one panel and one shape.
-#[inline(always)]
-pub(crate) fn substitute_alike<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
-    simd: S,
-    (tiles, rows, units, start, x, behind, buffer): Alike<'_, T>,
-) {
-    let height = N + U * units;
-    let length = N * height.div_ceil(LANES);
-    let t = &mut buffer[..height + LANES];
-    t[..N].fill(0.0);
-    t[height..].fill(0.0);
-    let groups = tiles.chunks_exact(length).zip(rows.chunks_exact(units));
-    for (g, (tiles, rows)) in groups.enumerate().rev() {
-        for (&row, target) in rows.iter().zip(t[N..].chunks_exact_mut(U)) {
-            target.copy_from_slice(unit::<U>(x, behind, row));
-        }
+impl Unknown for f64 {
+    const ZERO: Self = 0.0;
+    const IN_RUNS: bool = true;
+
+    #[inline(always)]
+    fn add(&mut self, other: &Self) {
+        *self += other;
+    }
+
+    #[inline(always)]
+    fn eliminate<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
+        simd: S,
+        (tiles, t): (&[T], &mut [Self]),
+    ) {
+        let z: [S::f64s; N] = std::array::from_fn(|k| simd.splat_f64s(t[k]));
+        t[..N].fill(0.0);
+        product::<S, T, N, V, true>(simd, tiles, &z, t);
+    }
+
+    #[inline(always)]
+    fn substitute<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
+        simd: S,
+        (tiles, t): (&[T], &mut [Self]),
+    ) {
+        let own: [f64; N] = std::array::from_fn(|k| t[k]);
+        t[..N].fill(0.0);
         let sums = transposed::<S, T, N, V>(simd, tiles, t);
-        let own = &mut x[start + N * g..][..N];
         for k in 0..N {
-            own[k] += sums[k];
+            t[k] = own[k] + sums[k];
+        }
+    }
+
+    #[inline(always)]
+    fn eliminate_alike<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
+        simd: S,
+        (tiles, rows, units, mut start, x, behind, t): Alike<'_, T, Self>,
+    ) {
+        let length = N * (N + U * units).div_ceil(LANES);
+        for (tiles, rows) in tiles.chunks_exact(length).zip(rows.chunks_exact(units)) {
+            let own = &mut x[start..][..N];
+            let z: [S::f64s; N] = std::array::from_fn(|k| simd.splat_f64s(own[k]));
+            product::<S, T, N, V, false>(simd, tiles, &z, t);
+            own.copy_from_slice(&t[..N]);
+            start += N;
+            for (&row, sum) in rows.iter().zip(t[N..].chunks_exact(U)) {
+                add_unit::<f64, U>(x, behind, row, sum);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn substitute_alike<S: Simd, T: Stored, const N: usize, const V: usize, const U: usize>(
+        simd: S,
+        (tiles, rows, units, start, x, behind, buffer): Alike<'_, T, Self>,
+    ) {
+        let height = N + U * units;
+        let length = N * height.div_ceil(LANES);
+        let t = &mut buffer[..height + LANES];
+        t[..N].fill(0.0);
+        t[height..].fill(0.0);
+        let groups = tiles.chunks_exact(length).zip(rows.chunks_exact(units));
+        for (g, (tiles, rows)) in groups.enumerate().rev() {
+            for (&row, target) in rows.iter().zip(t[N..].chunks_exact_mut(U)) {
+                target.copy_from_slice(unit::<f64, U>(x, behind, row));
+            }
+            let sums = transposed::<S, T, N, V>(simd, tiles, t);
+            let own = &mut x[start + N * g..][..N];
+            for k in 0..N {
+                own[k] += sums[k];
+            }
         }
     }
 }

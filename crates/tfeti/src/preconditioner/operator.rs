@@ -15,7 +15,7 @@ use crate::linalg::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, Spars
 use crate::preconditioner::evened::even_out;
 use crate::preconditioner::released::Released;
 use crate::preconditioner::scaling::{Scaling, ScalingScratch};
-use crate::preconditioner::split::{ClassRows, Eliminated, Split, Touched, is_thin};
+use crate::preconditioner::split::{ClassRows, Eliminated, Split, is_thin};
 use crate::preconditioner::springs::Springs;
 use crate::subdomain::matrices::ClassMatrices;
 use crate::system::part::SystemPart;
@@ -94,12 +94,12 @@ impl Tfeti {
 impl DualPreconditioner {
     fn new(system: &Tfeti, kind: Kind) -> Result<Self, TfetiError> {
         let map = system.parts.map.clone();
-        let touched = Touched::new(system);
+        let touched = ClassRows::of_classes(system);
         let mut classes: Vec<Option<BoundaryStiffness>> = (0..map.classes.len())
             .into_par_iter()
             .map(|k| {
                 let held = system.parts.subdomains.held(k);
-                let class = (&map.classes[k], touched.class(k));
+                let class = (&map.classes[k], &touched[k]);
                 held.map(|own| BoundaryStiffness::new(own, class, kind)).transpose()
             })
             .collect::<Result<_, _>>()?;
@@ -112,7 +112,7 @@ impl DualPreconditioner {
         }
         // where only rows of single nodes depend on one another, none is better: measured on blocks in grooves
         let gluing = system.gluing();
-        let plain = gluing.is_aligned() && gluing.contact_compliance().is_empty();
+        let plain = gluing.is_aligned && gluing.contact_compliance().is_empty();
         let needs_scaling = !plain || !system.copy_stiffness().is_plain();
         let scaling = needs_scaling.then(|| Scaling::new(system)).transpose()?;
         let springs = Springs::new(system, needs_scaling);
@@ -133,7 +133,7 @@ impl DualPreconditioner {
     }
 
     fn stiffness_product(&self, x: &[f64], y: &mut [f64], (s, factors): (&mut PanelScratch, &Factors)) {
-        let divide = self.scaling.as_ref().map(Scaling::weights);
+        let divide = self.scaling.as_ref().map(|scaling| &scaling.weights[..]);
         self.map
             .by_panels(x, y, self.map.is_large(), s, &|panel, x, y, interior, memory| {
                 let columns = panel.columns.len();

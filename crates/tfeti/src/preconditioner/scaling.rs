@@ -17,7 +17,7 @@ use std::collections::HashMap;
 #[derive(Debug)]
 pub(crate) struct Scaling {
     /// `1 / D` of each boundary copy, relative to the stiffest.
-    weights: Vec<f64>,
+    pub(super) weights: Vec<f64>,
     /// Groups with contact or support rows.
     groups: Groups,
     /// Groups of interface rows only: their components do not couple, and have the same matrix. First rows of the
@@ -84,7 +84,7 @@ impl Scaling {
     pub(crate) fn new(system: &Tfeti) -> Result<Self, TfetiError> {
         let gluing = system.gluing();
         let all;
-        let stiffness = match gluing.is_aligned() && !gluing.is_compliant() {
+        let stiffness = match gluing.is_aligned && !gluing.is_compliant() {
             true => system.copy_stiffness(),
             // rows join nodes, corners and mid-nodes too, or end in springs: ratios of copies are not enough
             false => {
@@ -97,8 +97,8 @@ impl Scaling {
         compliance.iter_mut().for_each(|v| *v /= smallest);
         let gives_way: HashMap<usize, f64> = gluing.compliance().map(|(row, c)| (row, c / smallest)).collect();
         // Rows by group: a mesh node, or nodes that contact points join.
-        let groups = gluing.node_groups();
-        let mut members: Vec<(u32, u32)> = (0..gluing.rows_full_rank())
+        let groups = &gluing.groups;
+        let mut members: Vec<(u32, u32)> = (0..gluing.ranges().total())
             .filter_map(|row| gluing.node(row).map(|node| (groups.of(node), row as u32)))
             .collect();
         members.sort_unstable();
@@ -167,11 +167,6 @@ impl Scaling {
             .map
             .copy_values(|subdomain, local| compliance[system.torn_range(subdomain).start / 3 + local]);
         Ok(out)
-    }
-
-    /// `1 / D` of each boundary copy.
-    pub(crate) fn weights(&self) -> &[f64] {
-        &self.weights
     }
 
     /// The matrices of the groups without the directions that an active set holds: with `H` these directions,

@@ -16,10 +16,7 @@ pub(super) struct Directions {
     count: usize,
 }
 
-/// For each class what rows touch in some member.
-pub(super) struct Touched(Vec<ClassRows>);
-
-/// What rows touch of the nodes of a class.
+/// What rows touch of the nodes of a class in some member.
 #[derive(Debug, Clone)]
 pub(super) struct ClassRows {
     /// By gluing, supports and springs; by node.
@@ -82,14 +79,15 @@ impl Directions {
     }
 }
 
-impl Touched {
-    pub(super) fn new(system: &Tfeti) -> Self {
+impl ClassRows {
+    /// Of each class.
+    pub(super) fn of_classes(system: &Tfeti) -> Vec<Self> {
         let (classes, gluing) = (system.classes(), system.gluing());
-        let rows = |nodes: usize| ClassRows {
+        let rows = |nodes: usize| Self {
             always: vec![Directions::NONE; nodes],
             contact: Vec::new(),
         };
-        let mut out: Vec<ClassRows> = classes.classes().iter().map(|c| rows(c.nodes)).collect();
+        let mut out: Vec<Self> = classes.classes().iter().map(|c| rows(c.nodes)).collect();
         let place = |subdomain: u32, local: u32| (classes.place(subdomain as usize).0, local as usize);
         for block in 0..gluing.blocks() {
             for e in gluing.block(block) {
@@ -107,15 +105,9 @@ impl Touched {
                 }
             }
         }
-        Self(out)
+        out
     }
 
-    pub(super) fn class(&self, class: usize) -> &ClassRows {
-        &self.0[class]
-    }
-}
-
-impl ClassRows {
     /// What all rows touch, by node.
     pub(super) fn all(&self) -> Vec<Directions> {
         let mut all = self.always.clone();

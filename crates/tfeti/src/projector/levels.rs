@@ -65,7 +65,7 @@ impl Coarse {
         weights.diagonal[..rows].fill(0.0);
         let values = data.matrix.assemble(gluing, &modes, Some(&weights)).values;
         let write = |nodal: usize, out: &mut Vec<(u32, [f64; 6])>| modes.row(gluing, nodal, 1.0, out);
-        let wanted = levels.unwrap_or_else(|| two_levels_pay(&changing, gluing.rows_full_rank()));
+        let wanted = levels.unwrap_or_else(|| two_levels_pay(&changing, gluing.ranges().total()));
         if wanted && rows > 0 && rows == gluing.ranges().contact().end {
             let free = data.free_motions(Some(&weights));
             if let Some(bases) = self.two_levels(rows, &graph, &changing, (&values, free), &modes) {
@@ -146,7 +146,7 @@ impl Coarse {
         for e in data.gluing.ranges().contact().flat_map(|row| data.gluing.nodal(row)) {
             touching[e.subdomain as usize] = true;
         }
-        if !two_levels_pay(&touching, data.gluing.rows_full_rank()) {
+        if !two_levels_pay(&touching, data.gluing.ranges().total()) {
             return None;
         }
         let base = self.fixed_base(&data.matrix.graph(), values)?;

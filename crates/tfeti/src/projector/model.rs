@@ -7,7 +7,7 @@
 
 use crate::coarse::blocks::{BLOCK, BlockTable, table_of};
 use crate::coarse::clusters::Clusters;
-use crate::coarse::matrix::{Block, CoarseMatrix, ModeTable};
+use crate::coarse::matrix::{CoarseMatrix, ModeTable};
 use crate::linalg::tiles::{Digits, LANES};
 use crate::processes::exchange::Exchange;
 use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
@@ -15,6 +15,7 @@ use crate::projector::split::fronts::{ContactTerms, ContactWeights};
 use crate::projector::split::order::grid_of;
 use crate::projector::split::tree::cheapest_tree;
 use crate::rows::gluing::Gluing;
+use crate::subdomain::kernel::Block;
 use crate::tolerances::{RELAXED, SWEEPS};
 use nalgebra::Matrix6;
 use signorini_qp::internal::LineWeight;

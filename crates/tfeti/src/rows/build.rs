@@ -15,23 +15,13 @@ use signorini_fem_mesh::decomposition::NodeCopy;
 use signorini_fem_mesh::vec3::dot;
 
 impl Gluing {
-    /// Builds the rows. `stiffness` weighs the copies of a node in
-    /// contact and support rows, its default all alike.
+    /// Builds the rows. `stiffness` weighs the copies of a node in contact and support rows. The rows of springs to the
+    /// ground are the last of the support rows; with them comes the stiffness of all copies, with which they are
+    /// compared: the row of a soft one is as much smaller as it is softer.
     ///
     /// # Errors
-    /// [`TfetiError`] for bad supports or contact points, and where `stiffness` belongs to another decomposition.
-    pub fn new(
-        decomposition: &Decomposition,
-        supports: &[NodeSupport],
-        contact: &[ContactConstraint],
-        stiffness: &CopyStiffness,
-    ) -> Result<Self, TfetiError> {
-        Self::with_springs(decomposition, supports, contact, stiffness, (&[], stiffness))
-    }
-
-    /// The same with springs to the ground, whose rows are the last of the support rows, and the stiffness of all
-    /// copies, with which springs are compared: the row of a soft one is as much smaller as it is softer.
-    pub(crate) fn with_springs(
+    /// [`TfetiError`] for bad supports, contact points or springs.
+    pub(crate) fn new(
         decomposition: &Decomposition,
         supports: &[NodeSupport],
         contact: &[ContactConstraint],
@@ -39,7 +29,6 @@ impl Gluing {
         springs: (&[NodalSpring], &CopyStiffness),
     ) -> Result<Self, TfetiError> {
         let nodes = decomposition.nodes();
-        stiffness.check(decomposition)?;
         let merged = MergedSupports::new(supports, nodes)?;
         let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
         let found = contact_rows(contact, &merged, nodes, squares)?;
@@ -47,8 +36,7 @@ impl Gluing {
             block_pointers: vec![0],
             row_pointers: vec![0],
             prescribed: vec![Vec::new(); merged.cases],
-            aligned: stiffness.is_plain(),
-            removed: [found.removed.clone(), merged.removed.clone()].concat(),
+            is_aligned: stiffness.is_plain(),
             ..Self::default()
         };
         let mut builder = Builder {
@@ -155,7 +143,7 @@ impl Builder<'_> {
                 scale: p.normal.scale,
                 tangential: TangentialRows::None,
             });
-            self.gluing.aligned &= is_aligned(of(p), p);
+            self.gluing.is_aligned &= is_aligned(of(p), p);
         }
         let normal = self.gluing.nodal_rows();
         let mut ends = [normal; 2];
@@ -198,22 +186,21 @@ impl Builder<'_> {
         self.gluing.contact_compliance = out;
     }
 
-    /// Rows of tied constraints.
     fn tied(&mut self, contact: &[ContactConstraint], tied: &[PointRows]) {
         for p in tied {
             let of = &contact[p.point];
             let first = self.gluing.nodal_rows();
+            let mut directions = Vec::with_capacity(3);
             for row in std::iter::once(&p.normal).chain(&p.tangential) {
                 self.contact_row(of, row, &p.prescribed);
+                directions.push((row.direction, row.scale));
             }
-            let rows = first..first + 1 + p.tangential.len();
-            let all = std::iter::once(&p.normal).chain(&p.tangential);
             self.gluing.tied.push(TiedRows {
                 point: p.point,
-                rows,
-                directions: all.map(|row| (row.direction, row.scale)).collect(),
+                rows: first..self.gluing.nodal_rows(),
+                directions,
             });
-            self.gluing.aligned &= is_aligned(of, p);
+            self.gluing.is_aligned &= is_aligned(of, p);
         }
     }
 

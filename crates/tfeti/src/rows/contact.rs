@@ -2,7 +2,6 @@
 
 use crate::error::TfetiError;
 use crate::linalg::entry;
-use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
 use crate::rows::side::{ContactConstraint, check_constraints};
 use crate::rows::supports::{FixedNode, MergedSupports, NodeSupport};
 use crate::tolerances::{ANGLE, FIXED, HELD, HELD_MEANS};
@@ -27,7 +26,7 @@ pub struct PrescribedPoint {
 /// normal displacement at a time is the sum over cases of `factor(case, t) * value`.
 ///
 /// # Errors
-/// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong supports, unknown nodes, wrong frames.
+/// [`TfetiError`] as of a set-up: wrong supports, unknown nodes, wrong frames.
 pub fn prescribed_points(
     contact: &[ContactConstraint],
     supports: &[NodeSupport],
@@ -60,13 +59,12 @@ pub(super) struct PointRows {
     pub(super) prescribed: Vec<(u32, [f64; 3])>,
 }
 
-/// Rows of all points, what was left out, and the points without normal row.
+/// Rows of all points, and the points without normal row.
 #[derive(Debug, Default)]
 pub(super) struct AllRows {
     pub(super) rows: Vec<PointRows>,
     /// Rows of tied constraints: the first as the normal one.
     pub(super) tied: Vec<PointRows>,
-    pub(super) removed: Vec<RemovedRow>,
     prescribed: Vec<PrescribedPoint>,
 }
 
@@ -128,19 +126,12 @@ impl Space {
         }
     }
 
-    /// The row of a direction times a factor, without what supports fix.
-    fn row(&self, direction: Vector3<f64>, factor: f64) -> ContactRow {
-        let part = |(c, free): &(f64, Matrix3<f64>)| (free * direction * (c * factor)).into();
-        ContactRow {
-            parts: self.nodes.iter().map(part).collect(),
-            direction: direction.into(),
-            scale: self.scale * factor,
-        }
-    }
-
-    /// The row of a direction times a factor that does not leave out what supports fix.
-    fn full_row(&self, direction: Vector3<f64>, factor: f64) -> ContactRow {
-        let part = |(c, _): &(f64, Matrix3<f64>)| (direction * (c * factor)).into();
+    /// The row of a direction times a factor, without what supports fix, or `whole`.
+    fn row(&self, direction: Vector3<f64>, factor: f64, whole: bool) -> ContactRow {
+        let part = |(c, free): &(f64, Matrix3<f64>)| {
+            let own = if whole { direction } else { free * direction };
+            (own * (c * factor)).into()
+        };
         ContactRow {
             parts: self.nodes.iter().map(part).collect(),
             direction: direction.into(),
@@ -151,7 +142,7 @@ impl Space {
     /// The row of a direction, divided by its length.
     fn unit_row(&self, direction: Vector3<f64>) -> ContactRow {
         let length = direction.dot(&(self.gram * direction)).sqrt();
-        self.row(direction, length.recip())
+        self.row(direction, length.recip(), false)
     }
 
     /// Directions that supports fix at all nodes, and those at right angles to `normal` in which they hold both sides,
@@ -214,16 +205,11 @@ fn complement(fixed: &[Vector3<f64>]) -> Vec<Vector3<f64>> {
 }
 
 impl AllRows {
-    fn remove(&mut self, point: &ContactConstraint, kind: RowKind, reason: RemovalReason) {
-        let node = point.side.first();
-        self.removed.push(RemovedRow { node, kind, reason });
-    }
-
     /// The rows of a tied constraint: the axes, or all directions that are left.
     fn tie(&mut self, index: usize, point: &ContactConstraint, space: Space) {
         let fixed = space.fixed(point, Vector3::zeros());
         let mut rows: Vec<ContactRow> = match fixed.len() {
-            0 => (0..3).map(|c| space.row(Vector3::ith(c, 1.0), 1.0)).collect(),
+            0 => (0..3).map(|c| space.row(Vector3::ith(c, 1.0), 1.0, false)).collect(),
             _ => complement(&fixed).into_iter().map(|d| space.unit_row(d)).collect(),
         };
         if rows.is_empty() {
@@ -245,18 +231,9 @@ impl AllRows {
         let normal = Vector3::from(point.frame.normal);
         let tangents = point.frame.tangents.map(Vector3::from);
         let factors = [1.0, point.stretch];
-        let along_surface = || tangents.into_iter().zip(factors);
         let fixed = space.fixed(point, normal);
         let along: Vector3<f64> = fixed.iter().map(|d| *d * d.dot(&normal)).sum();
         if fixed.len() == 3 || (normal - along).norm() <= FIXED {
-            self.remove(point, RowKind::Normal, RemovalReason::NormalFixed);
-            let reason = match fixed.len() {
-                3 => RemovalReason::TangentFixed,
-                _ => RemovalReason::NoNormalRow,
-            };
-            for _ in 0..if point.friction { 2 } else { 0 } {
-                self.remove(point, RowKind::Tangential, reason);
-            }
             let value = |(case, v): &(u32, [f64; 3])| (*case, dot(*v, point.frame.normal));
             self.prescribed.push(PrescribedPoint {
                 point: index,
@@ -270,15 +247,12 @@ impl AllRows {
         // With all three directions free the rows keep one common scale, so that the friction disc stays a disc. Where
         // friction and support act along the same directions, all rows are as without support.
         let normal = match fixed.len() {
-            _ if dragged => {
-                tangential.extend(along_surface().map(|(t, factor)| space.full_row(t, factor)));
-                space.full_row(normal, 1.0)
-            }
-            0 => {
+            count if count == 0 || dragged => {
                 if point.friction {
-                    tangential.extend(along_surface().map(|(t, factor)| space.row(t, factor)));
+                    let along = tangents.into_iter().zip(factors);
+                    tangential.extend(along.map(|(t, factor)| space.row(t, factor, dragged)));
                 }
-                space.row(normal, 1.0)
+                space.row(normal, 1.0, dragged)
             }
             count => {
                 if point.friction && count == 1 {
@@ -287,9 +261,6 @@ impl AllRows {
                     let length = along[0].hypot(along[1]);
                     let free = (tangents[0] * along[1] - tangents[1] * along[0]) / length;
                     tangential.push(space.unit_row(free));
-                }
-                for _ in 0..if point.friction { count } else { 0 } {
-                    self.remove(point, RowKind::Tangential, RemovalReason::TangentFixed);
                 }
                 space.unit_row(normal)
             }

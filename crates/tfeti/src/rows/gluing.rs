@@ -3,9 +3,9 @@
 //! It is stored by what its rows do: an *interface block* is three rows (x, y, z) that combine the copies of one node
 //! with the same coefficients; every other row, a *nodal row*, is a list of (copy, vector). Supports and contact act on
 //! the mean of the copies, the interface rows on its complement, so the rows are independent by construction, except at
-//! [dependent nodes](Gluing::dependent_nodes); what else would depend is reported in [`Gluing::removed`].
+//! [dependent nodes](Gluing::dependent_nodes); what else would depend is left out.
 
-use crate::rows::kinds::{RemovedRow, RowRanges};
+use crate::rows::ranges::RowRanges;
 use crate::rows::side::ContactConstraint;
 use signorini_fem_mesh::internal::DisjointSets;
 
@@ -108,23 +108,23 @@ pub struct Gluing {
     pub(super) block_pointers: Vec<u32>,
     pub(super) block_entries: Vec<BlockEntry>,
     pub(super) block_nodes: Vec<u32>,
-    pub(super) globs: Vec<Glob>,
+    /// In the order of their blocks.
+    pub(crate) globs: Vec<Glob>,
     pub(super) row_pointers: Vec<u32>,
     pub(super) row_entries: Vec<CopyEntry>,
     pub(super) row_nodes: Vec<u32>,
     pub(super) contact: Vec<ContactRows>,
     pub(super) tied: Vec<TiedRows>,
-    pub(super) removed: Vec<RemovedRow>,
     pub(super) prescribed: Vec<Vec<(u32, f64)>>,
     /// The rows of springs, which are the last ones.
     pub(super) springs: Vec<SpringRow>,
     /// Of each contact row, in row units, m/N; empty where none gives way.
     pub(super) contact_compliance: Vec<f64>,
     /// Mesh nodes that contact points join.
-    pub(super) groups: NodeGroups,
+    pub(crate) groups: NodeGroups,
     pub(super) paper_rows: usize,
     /// Whether `B B^T` is the identity, but for rows of dependent nodes.
-    pub(super) aligned: bool,
+    pub(crate) is_aligned: bool,
     /// Nodes whose rows may depend on one another, ascending.
     pub(super) dependent: Vec<u32>,
     /// Those of them whose rows may depend on one another.
@@ -137,13 +137,7 @@ impl Gluing {
         &self.ranges
     }
 
-    /// Number of rows of `B`: the length of dual vectors. `B` has full rank, except at [dependent
-    /// nodes](Self::dependent_nodes).
-    pub fn rows_full_rank(&self) -> usize {
-        self.ranges.total()
-    }
-
-    /// Number of rows as the paper counts them: three for each additional copy of a node, three for each supported node
+    /// Number of rows as the paper counts them, with those that are left out: three for each additional copy of a node, three for each supported node
     /// and three (without friction one) for each contact point, supported or not.
     pub fn rows_as_paper(&self) -> usize {
         self.paper_rows
@@ -165,24 +159,9 @@ impl Gluing {
         self.dependent.binary_search(&node).is_ok()
     }
 
-    /// Mesh nodes that contact points join.
-    pub(crate) fn node_groups(&self) -> &NodeGroups {
-        &self.groups
-    }
-
-    /// Whether `B B^T` is the identity, but for rows of dependent nodes.
-    pub(crate) fn is_aligned(&self) -> bool {
-        self.aligned
-    }
-
     /// The contact points that have a normal row, in the order of the normal rows.
     pub fn contact(&self) -> &[ContactRows] {
         &self.contact
-    }
-
-    /// Rows left out because they would depend on others, with the reason.
-    pub fn removed(&self) -> &[RemovedRow] {
-        &self.removed
     }
 
     /// Row offsets `(row, value)` of displacement case `case` with factor one, rows ascending.
@@ -262,7 +241,6 @@ impl Gluing {
         sum
     }
 
-    /// Number of interface blocks.
     pub(crate) fn blocks(&self) -> usize {
         self.block_pointers.len() - 1
     }
@@ -271,9 +249,9 @@ impl Gluing {
         &self.block_entries[self.block_pointers[block] as usize..self.block_pointers[block + 1] as usize]
     }
 
-    /// The globs, in the order of their blocks.
-    pub(crate) fn globs(&self) -> &[Glob] {
-        &self.globs
+    /// The copies of a node of a glob: its last run combines all of them.
+    pub(crate) fn copies(&self, glob: &Glob, node: usize) -> &[BlockEntry] {
+        self.block(glob.block(glob.runs as usize - 1, node))
     }
 
     /// Number of rows that are not interface rows: contact rows, then support rows.
@@ -285,7 +263,6 @@ impl Gluing {
         &self.row_entries[self.row_pointers[nodal] as usize..self.row_pointers[nodal + 1] as usize]
     }
 
-    /// Row number of a nodal row.
     pub(crate) fn nodal_row(&self, nodal: usize) -> usize {
         if nodal < self.ranges.interface.start {
             nodal

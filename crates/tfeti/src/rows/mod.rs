@@ -2,7 +2,7 @@
 //!
 //! Uses `linalg` and `subdomain::copy_stiffness`. In go the decomposition, supports and contact constraints, whose
 //! sides are lists of nodes with weights (`side`). Out comes a `gluing`: interface blocks and nodal rows by their
-//! copies, with names (`kinds`), prescribed offsets and what was left out.
+//! copies, where each kind stands (`ranges`), and prescribed offsets.
 //!
 //! `supports` merges what is prescribed at a node, `contact` reduces each constraint to the directions that are left,
 //! `build` spreads all over the copies, `dependencies` finds rows whose forces may replace one another,
@@ -12,7 +12,7 @@ pub(crate) mod build;
 pub(crate) mod contact;
 pub(crate) mod dependencies;
 pub(crate) mod gluing;
-pub(crate) mod kinds;
 pub(crate) mod part;
+pub(crate) mod ranges;
 pub(crate) mod side;
 pub(crate) mod supports;

@@ -1,7 +1,7 @@
 //! Some of the rows of a gluing, for tables of a part of dual vectors.
 
 use super::gluing::{Glob, Gluing};
-use super::kinds::RowRanges;
+use super::ranges::RowRanges;
 
 impl Gluing {
     /// The rows of the globs and of the other rows that are marked, in their order; all contact rows have to be. Only

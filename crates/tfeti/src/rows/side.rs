@@ -16,13 +16,11 @@ pub struct Side(Vec<(u32, f64)>);
 
 impl Side {
     /// A single node.
-    #[must_use]
     pub fn node(node: u32) -> Self {
         Self(vec![(node, 1.0)])
     }
 
     /// Mesh nodes with their weights; they are checked where rows are made of them.
-    #[must_use]
     pub fn new(nodes: Vec<(u32, f64)>) -> Self {
         Self(nodes)
     }
@@ -66,7 +64,6 @@ impl From<u32> for Side {
 /// A node in an edge or a corner has several, with other normals or partners; rows of such a node may depend on one
 /// another.
 #[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
 pub struct ContactConstraint {
     /// Nodes on the body whose outward normal is given.
     pub side: Side,
@@ -78,18 +75,18 @@ pub struct ContactConstraint {
     pub friction: bool,
     /// Whether the obstacle moves along the surface. Directions that supports fix then keep their tangential rows.
     pub moving: bool,
-    /// Whether both sides move alike: equalities in place of contact and friction.
+    /// Whether both sides move alike, in all directions that supports leave free, in place of contact and friction.
     pub tied: bool,
-    /// How far the point gives way along the normal and along the surface under a force, m/N; 0 for not at all.
+    /// How far the point gives way along the normal and along the surface under a force, m/N: finite, 0 for not at all.
     pub compliance: [f64; 2],
-    /// Factor of the second tangential row beside the first, 1 for isotropic friction. An ellipse with this ratio of
+    /// Factor of the second tangential row beside the first, finite and positive, 1 for isotropic friction. An ellipse with this ratio of
     /// its axes, along the tangents, is a disc in the rows.
     pub stretch: f64,
 }
 
 impl ContactConstraint {
-    /// A node, or a side of several, that may touch a rigid obstacle that does not move, without friction.
-    #[must_use]
+    /// A node, or a side of several, that may touch a rigid obstacle that does not move, without friction. What else
+    /// there is to say is said by its fields.
     pub fn new(side: impl Into<Side>, frame: SurfaceFrame) -> Self {
         let (side, partner) = (side.into(), None);
         Self {
@@ -115,34 +112,6 @@ impl ContactConstraint {
     #[must_use]
     pub fn with_friction(mut self, friction: bool) -> Self {
         self.friction = friction;
-        self
-    }
-
-    /// Whether the obstacle moves along the surface.
-    #[must_use]
-    pub fn with_moving_obstacle(mut self, moving: bool) -> Self {
-        self.moving = moving;
-        self
-    }
-
-    /// Friction along the second tangent over that along the first: finite and positive.
-    #[must_use]
-    pub fn with_stretch(mut self, stretch: f64) -> Self {
-        self.stretch = stretch;
-        self
-    }
-
-    /// How far it gives way along the normal and along the surface under a force, m/N: finite and not negative.
-    #[must_use]
-    pub fn with_compliance(mut self, compliance: [f64; 2]) -> Self {
-        self.compliance = compliance;
-        self
-    }
-
-    /// Both sides move alike, in all directions that supports leave free.
-    #[must_use]
-    pub fn with_tied(mut self, tied: bool) -> Self {
-        self.tied = tied;
         self
     }
 
@@ -178,12 +147,11 @@ impl ContactConstraint {
         for side in std::iter::once(&self.side).chain(&self.partner) {
             side.check(point, nodes)?;
         }
-        if !(self.stretch.is_finite() && self.stretch > 0.0) {
-            let (node, stretch) = (self.side.first(), self.stretch);
+        let (node, stretch) = (self.side.first(), self.stretch);
+        if !(stretch.is_finite() && stretch > 0.0) {
             return Err(TfetiError::BadStretch { point, node, stretch });
         }
         if let Some(&compliance) = self.compliance.iter().find(|c| !(c.is_finite() && **c >= 0.0)) {
-            let node = self.side.first();
             return Err(TfetiError::BadCompliance {
                 point,
                 node,
@@ -196,7 +164,6 @@ impl ContactConstraint {
             let expected = if i == j { 1.0 } else { 0.0 };
             let error = (dot(axes[i], axes[j]) - expected).abs();
             if error.is_nan() || error > UNIT {
-                let node = self.side.first();
                 return Err(TfetiError::BadFrame { point, node });
             }
         }

@@ -2,7 +2,6 @@
 
 use crate::error::TfetiError;
 use crate::linalg::entry;
-use crate::rows::kinds::{RemovalReason, RemovedRow, RowKind};
 use crate::tolerances::{AGREEING, FIXED};
 use signorini_fem_mesh::vec3::{dot, norm};
 
@@ -14,7 +13,7 @@ pub enum Directions {
     All,
     /// Single components x, y, z.
     Components([bool; 3]),
-    /// Any directions; they are normalised, and dependent ones are removed and reported.
+    /// Any directions; they are normalised, and dependent ones are left out.
     Vectors(Vec<[f64; 3]>),
 }
 
@@ -78,13 +77,11 @@ pub struct NodeSupport {
 
 impl NodeSupport {
     /// Fixes all components of the nodes at zero.
-    #[must_use]
     pub fn fixed(nodes: Vec<u32>) -> Self {
         Self::partial(nodes, Directions::All)
     }
 
     /// Fixes some directions of the nodes at zero.
-    #[must_use]
     pub fn partial(nodes: Vec<u32>, directions: Directions) -> Self {
         Self {
             nodes,
@@ -148,7 +145,6 @@ impl FixedNode {
 pub(super) struct MergedSupports {
     /// Nodes with at least one fixed direction, ascending (each counts three rows in the paper).
     pub(super) nodes: Vec<FixedNode>,
-    pub(super) removed: Vec<RemovedRow>,
     pub(super) cases: usize,
 }
 
@@ -167,20 +163,16 @@ pub struct PrescribedDirection {
 /// The directions that supports fix, nodes ascending, each once.
 ///
 /// # Errors
-/// [`TfetiError`] as for [`Gluing::new`](crate::Gluing::new): wrong or contradictory supports, unknown nodes.
+/// [`TfetiError`] as of a set-up: wrong or contradictory supports, unknown nodes.
 pub fn prescribed_directions(supports: &[NodeSupport], nodes: usize) -> Result<Vec<PrescribedDirection>, TfetiError> {
     let merged = MergedSupports::new(supports, nodes)?;
-    let of = |node: &FixedNode| {
-        let directions = node.directions.iter();
-        let (node, of) = (node.node, |d: &FixedDirection| (d.direction, d.support));
-        directions
-            .map(of)
-            .map(move |(direction, support)| PrescribedDirection {
-                node,
-                direction,
-                support,
-            })
-            .collect::<Vec<_>>()
+    let of = |fixed: &FixedNode| {
+        let prescribed = |d: &FixedDirection| PrescribedDirection {
+            node: fixed.node,
+            direction: d.direction,
+            support: d.support,
+        };
+        fixed.directions.iter().map(prescribed).collect::<Vec<_>>()
     };
     Ok(merged.nodes.iter().flat_map(of).collect())
 }
@@ -217,13 +209,13 @@ impl MergedSupports {
                 if motion.is_some_and(|(_, value)| !value.iter().all(|v| v.is_finite())) {
                     return Err(TfetiError::BadMotion { support: s, node });
                 }
-                let directions_of = || FixedNode {
+                let new = || FixedNode {
                     node,
-                    directions: Vec::new(),
+                    ..FixedNode::default()
                 };
-                let entry = fixed[node as usize].get_or_insert_with(directions_of);
+                let entry = fixed[node as usize].get_or_insert_with(new);
                 for direction in &directions {
-                    merged.removed.extend(add_direction(entry, s, *direction, motion)?);
+                    add_direction(entry, s, *direction, motion)?;
                 }
             }
         }
@@ -259,13 +251,13 @@ fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<[f64; 3]>, Tfe
     Ok(directions)
 }
 
-/// Orthonormalises a direction against those already fixed; `Some` if it adds nothing.
+/// Orthonormalises a direction against those already fixed, and adds it if something is left.
 fn add_direction(
     fixed_node: &mut FixedNode,
     support: usize,
     direction: [f64; 3],
     motion: Option<(u32, [f64; 3])>,
-) -> Result<Option<RemovedRow>, TfetiError> {
+) -> Result<(), TfetiError> {
     let mut rest = direction;
     let mut values: Vec<(u32, f64)> = Vec::new();
     let mut size = 0.0_f64;
@@ -304,7 +296,7 @@ fn add_direction(
             values,
             support,
         });
-        return Ok(None);
+        return Ok(());
     }
     if let Some(&(case, difference)) = values.iter().find(|v| v.1.abs() > AGREEING * size) {
         return Err(TfetiError::ContradictorySupports {
@@ -315,9 +307,5 @@ fn add_direction(
             difference,
         });
     }
-    Ok(Some(RemovedRow {
-        node: fixed_node.node,
-        kind: RowKind::Dirichlet,
-        reason: RemovalReason::DoubledSupport { support },
-    }))
+    Ok(())
 }

@@ -35,15 +35,11 @@ impl Classes {
     }
 
     /// Class of a subdomain and its position among the members.
-    ///
-    /// # Panics
-    /// If there is no such subdomain.
     pub fn place(&self, subdomain: usize) -> (usize, usize) {
         let (class, member) = self.place[subdomain];
         (class as usize, member as usize)
     }
 
-    /// Number of subdomains.
     pub(crate) fn subdomains(&self) -> usize {
         self.place.len()
     }

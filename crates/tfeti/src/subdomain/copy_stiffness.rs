@@ -1,6 +1,5 @@
 //! Stiffness of the copies of a node, where they differ: in a body of several materials, and in ragged cuts.
 
-use crate::error::TfetiError;
 use crate::subdomain::matrices::{ClassBase, Subdomains};
 use crate::tolerances::ALIKE;
 use signorini_fem_mesh::Decomposition;
@@ -53,29 +52,6 @@ impl CopyStiffness {
         } else {
             Self::default()
         }
-    }
-
-    /// Checks that it has a value for each copy in each subdomain, unless all copies of a node count alike.
-    pub(crate) fn check(&self, decomposition: &Decomposition) -> Result<(), TfetiError> {
-        let subdomains = decomposition.subdomains();
-        if self.is_plain() {
-            return Ok(());
-        }
-        for subdomain in 0..subdomains.len().max(self.first.len()) {
-            let expected = subdomains.get(subdomain).map_or(0, |s| s.nodes.len());
-            let found = self.first.get(subdomain).map_or(0, |first| {
-                let end = self.first.get(subdomain + 1).copied();
-                end.unwrap_or(self.values.len()) - first
-            });
-            if found != expected {
-                return Err(TfetiError::ForeignStiffness {
-                    subdomain,
-                    found,
-                    expected,
-                });
-            }
-        }
-        Ok(())
     }
 
     /// Whether all copies of a node count alike.

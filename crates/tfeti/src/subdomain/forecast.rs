@@ -1,7 +1,6 @@
 //! What a set-up will need, from counts alone: classes are found, no matrix is assembled.
 
 use crate::error::TfetiError;
-use crate::linalg::dense;
 use crate::linalg::elimination::patterns;
 use crate::linalg::sparse::{Columns, FactorError, Symbolic, minimum_degree, quotient};
 use crate::subdomain::class::Classes;
@@ -9,7 +8,6 @@ use crate::subdomain::cost::{ClassReport, InverseSettings, Size, choose};
 use crate::subdomain::packed;
 use rayon::prelude::*;
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
-use std::time::Instant;
 
 /// Forecast of memory and work of a T-FETI system: what [`SetupReport`](crate::SetupReport) will say.
 ///
@@ -93,7 +91,7 @@ impl<'a> Forecast<'a> {
             let mut report = size.report(dense[k]);
             if size.is_packed(dense[k]) {
                 let (pattern, symbolic) = &analysed[k];
-                report.bytes = 8 * packed::stored(pattern, &symbolic.order(), 3) as u64;
+                report.bytes = 8 * packed::stored(pattern, &symbolic.order()) as u64;
             }
             report
         };
@@ -179,10 +177,8 @@ fn coarse_factor(decomposition: &Decomposition) -> Result<(usize, f64), FactorEr
     let mut lower = coarse_graph(decomposition);
     let pattern = Columns::of_blocks(&mut lower, 6);
     let (pointers, rows) = quotient(&pattern, 6);
-    let order: Vec<u32> = minimum_degree(&pointers, &rows)?
-        .into_iter()
-        .map(|b| b as u32)
-        .collect();
+    let order = minimum_degree(&pointers, &rows)?.into_iter().map(|b| b as u32);
+    let order: Vec<u32> = order.collect();
     let stored = Symbolic::ordered(&pattern, &order, 6)?.stored();
     let mut graph = lower.clone();
     for (a, list) in lower.iter().enumerate() {
@@ -191,52 +187,4 @@ fn coarse_factor(decomposition: &Decomposition) -> Result<(usize, f64), FactorEr
     let columns = patterns(&graph, &order);
     let border = columns.iter().map(|below| 6.0 * below.len() as f64);
     Ok((stored, border.map(|b| 6.0 * b * b + 36.0 * b + 72.0).sum()))
-}
-
-/// What a processor does a second.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Rate {
-    /// Operations of dense products.
-    pub flops: f64,
-    /// Numbers that a vector operation reads and writes.
-    pub numbers: f64,
-}
-
-impl Default for Rate {
-    /// One core of a desktop processor with 256 bit vectors.
-    fn default() -> Self {
-        Self {
-            flops: 6e10,
-            numbers: 5e9,
-        }
-    }
-}
-
-impl Rate {
-    /// Measures this machine with one small dense product and one vector operation, in about ten milliseconds.
-    #[must_use]
-    pub fn measure() -> Self {
-        const SIZE: usize = 240;
-        const COLUMNS: usize = 48;
-        const LENGTH: usize = 1 << 18;
-        let a: Vec<f64> = (0..SIZE * SIZE).map(|i| (i % 17) as f64).collect();
-        let b: Vec<f64> = (0..SIZE * COLUMNS).map(|i| (i % 13) as f64).collect();
-        let mut c = vec![0.0; SIZE * COLUMNS];
-        let best = |work: &mut dyn FnMut()| {
-            let time = |_| {
-                let start = Instant::now();
-                work();
-                start.elapsed().as_secs_f64().max(1e-9)
-            };
-            (0..6).map(time).fold(f64::INFINITY, f64::min)
-        };
-        let product = best(&mut || dense::multiply(&mut c, &a, &b, SIZE, SIZE, COLUMNS));
-        let x: Vec<f64> = (0..LENGTH).map(|i| (i % 11) as f64).collect();
-        let mut y = vec![0.0; LENGTH];
-        let stream = best(&mut || y.iter_mut().zip(&x).for_each(|(y, x)| *y += 1.5 * x));
-        Self {
-            flops: (2 * SIZE * SIZE * COLUMNS) as f64 / product,
-            numbers: 3.0 * LENGTH as f64 / stream,
-        }
-    }
 }

@@ -62,7 +62,7 @@ impl Inverse {
     /// The same, stored for products with one column.
     pub(crate) fn packed(self, stiffness: &Columns) -> Self {
         match self {
-            Self::Sparse(factor) => Self::Packed(PackedFactor::new(&factor, stiffness, 3)),
+            Self::Sparse(factor) => Self::Packed(PackedFactor::new(&factor, stiffness)),
             packed => packed,
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::error::TfetiError;
 use crate::tolerances::PIVOT;
+use signorini_fem_mesh::vec3::{add, dot, sub};
 
 /// Orthonormal basis of the kernel of a subdomain's stiffness matrix.
 ///
@@ -14,26 +15,20 @@ pub struct Kernel {
     /// Positions of the nodes relative to their mean, divided by `radius`.
     arms: Vec<[f64; 3]>,
     /// `(t, omega) = transform * amplitudes`, row-major.
-    transform: [[f64; 6]; 6],
-    inverse: [[f64; 6]; 6],
+    transform: Block,
+    inverse: Block,
 }
+
+/// Six rows of six.
+pub(crate) type Block = [[f64; 6]; 6];
 
 /// Mean of some points.
 pub(crate) fn mean(points: impl Iterator<Item = [f64; 3]> + Clone) -> [f64; 3] {
     let count = points.clone().count().max(1) as f64;
     // The first point is taken off first, so that bodies far from the origin lose nothing.
     let first = points.clone().next().unwrap_or([0.0; 3]);
-    let mut sum = [0.0; 3];
-    for p in points {
-        for c in 0..3 {
-            sum[c] += p[c] - first[c];
-        }
-    }
-    [
-        first[0] + sum[0] / count,
-        first[1] + sum[1] / count,
-        first[2] + sum[2] / count,
-    ]
+    let sum = points.fold([0.0; 3], |sum, p| add(sum, sub(p, first)));
+    std::array::from_fn(|c| first[c] + sum[c] / count)
 }
 
 /// The motion `t + omega x arm` of `motion = (t, omega)`.
@@ -65,25 +60,13 @@ impl Kernel {
     pub fn new(points: &[[f64; 3]], subdomain: usize) -> Result<Self, TfetiError> {
         let count = points.len().max(1) as f64;
         let centre = mean(points.iter().copied());
-        let mut arms: Vec<[f64; 3]> = points
-            .iter()
-            .map(|p| [p[0] - centre[0], p[1] - centre[1], p[2] - centre[2]])
-            .collect();
-        let radius = (arms
-            .iter()
-            .map(|r| r[0] * r[0] + r[1] * r[1] + r[2] * r[2])
-            .sum::<f64>()
-            / count)
-            .sqrt();
+        let mut arms: Vec<[f64; 3]> = points.iter().map(|p| sub(*p, centre)).collect();
+        let radius = (arms.iter().map(|r| dot(*r, *r)).sum::<f64>() / count).sqrt();
         let collinear = TfetiError::Collinear { subdomain };
         if !(radius.is_finite() && radius > 0.0) {
             return Err(collinear);
         }
-        for arm in &mut arms {
-            for c in arm.iter_mut() {
-                *c /= radius;
-            }
-        }
+        arms.as_flattened_mut().iter_mut().for_each(|c| *c /= radius);
         let mut kernel = Self {
             radius,
             arms,
@@ -93,14 +76,14 @@ impl Kernel {
         // Cholesky of the Gram matrix, twice: the second pass removes what rounding left for slender subdomains.
         for _ in 0..2 {
             let lower = cholesky6(&kernel.gram()).ok_or_else(|| collinear.clone())?;
-            let inverse_transposed = transpose(&invert_lower(&lower));
+            let inverse_transposed = transposed(&invert_lower(&lower));
             kernel.transform = product(&kernel.transform, &inverse_transposed);
-            kernel.inverse = product(&transpose(&lower), &kernel.inverse);
+            kernel.inverse = product(&transposed(&lower), &kernel.inverse);
         }
         Ok(kernel)
     }
 
-    fn gram(&self) -> [[f64; 6]; 6] {
+    fn gram(&self) -> Block {
         let mut gram = [[0.0; 6]; 6];
         for node in 0..self.arms.len() {
             let block = self.node_modes(node);
@@ -113,7 +96,6 @@ impl Kernel {
         gram
     }
 
-    /// Number of nodes.
     pub(crate) fn nodes(&self) -> usize {
         self.arms.len()
     }
@@ -129,64 +111,32 @@ impl Kernel {
     }
 
     /// The rows of `R` at one node: `[component][mode]`.
-    ///
-    /// # Panics
-    /// If there is no such node.
     pub fn node_modes(&self, node: usize) -> [[f64; 6]; 3] {
-        let mut out = [[0.0; 6]; 3];
-        for mode in 0..6 {
-            let mut motion = [0.0; 6];
-            for i in 0..6 {
-                motion[i] = self.transform[i][mode];
-            }
-            let u = displacement(&motion, &self.arms[node]);
-            for c in 0..3 {
-                out[c][mode] = u[c];
-            }
-        }
-        out
+        let motion = |mode: usize| self.transform.map(|row| row[mode]);
+        let u: [[f64; 3]; 6] = std::array::from_fn(|mode| displacement(&motion(mode), &self.arms[node]));
+        std::array::from_fn(|c| u.map(|u| u[c]))
     }
 
     /// The whole `R`, column-major, `3 nodes x 6`.
     pub fn modes(&self) -> Vec<f64> {
-        let dim = 3 * self.nodes();
-        let mut out = vec![0.0; 6 * dim];
-        for node in 0..self.nodes() {
-            let block = self.node_modes(node);
-            for c in 0..3 {
-                for mode in 0..6 {
-                    out[mode * dim + 3 * node + c] = block[c][mode];
-                }
-            }
-        }
-        out
+        let blocks: Vec<_> = (0..self.nodes()).map(|node| self.node_modes(node)).collect();
+        let column = |mode: usize| blocks.iter().flat_map(move |block| block.map(|row| row[mode]));
+        (0..6).flat_map(column).collect()
     }
 
     /// Motion `(t, omega)` about the centroid of given amplitudes, `omega` in displacement at [`Kernel::radius`].
     pub(crate) fn motion(&self, amplitudes: &[f64]) -> [f64; 6] {
-        let mut out = [0.0; 6];
-        for i in 0..6 {
-            out[i] = (0..6).map(|j| self.transform[i][j] * amplitudes[j]).sum();
-        }
-        out
+        std::array::from_fn(|i| (0..6).map(|j| self.transform[i][j] * amplitudes[j]).sum())
     }
 
     /// Amplitudes of a motion: the inverse of [`Kernel::motion`].
     pub(crate) fn amplitudes(&self, motion: &[f64; 6]) -> [f64; 6] {
-        let mut out = [0.0; 6];
-        for i in 0..6 {
-            out[i] = (0..6).map(|j| self.inverse[i][j] * motion[j]).sum();
-        }
-        out
+        std::array::from_fn(|i| (0..6).map(|j| self.inverse[i][j] * motion[j]).sum())
     }
 
     /// `R^T f` of forces whose wrench about the centroid is given.
     pub(crate) fn project_wrench(&self, wrench: &[f64; 6]) -> [f64; 6] {
-        let mut out = [0.0; 6];
-        for i in 0..6 {
-            out[i] = (0..6).map(|j| self.transform[j][i] * wrench[j]).sum();
-        }
-        out
+        std::array::from_fn(|i| (0..6).map(|j| self.transform[j][i] * wrench[j]).sum())
     }
 
     /// `R^T f` for a local vector of length `3 nodes`.
@@ -199,9 +149,6 @@ impl Kernel {
     }
 
     /// `u += factor R amplitudes` for a local vector of length `3 nodes`.
-    ///
-    /// # Panics
-    /// If there are fewer than six amplitudes.
     pub fn add_motion(&self, factor: f64, amplitudes: &[f64], u: &mut [f64]) {
         let motion = self.motion(amplitudes);
         for (arm, target) in self.arms.iter().zip(u.chunks_exact_mut(3)) {
@@ -213,19 +160,19 @@ impl Kernel {
     }
 }
 
-fn identity() -> [[f64; 6]; 6] {
+fn identity() -> Block {
     std::array::from_fn(|i| std::array::from_fn(|j| if i == j { 1.0 } else { 0.0 }))
 }
 
-fn transpose(a: &[[f64; 6]; 6]) -> [[f64; 6]; 6] {
+pub(crate) fn transposed(a: &Block) -> Block {
     std::array::from_fn(|i| std::array::from_fn(|j| a[j][i]))
 }
 
-fn product(a: &[[f64; 6]; 6], b: &[[f64; 6]; 6]) -> [[f64; 6]; 6] {
+pub(crate) fn product(a: &Block, b: &Block) -> Block {
     std::array::from_fn(|i| std::array::from_fn(|j| (0..6).map(|k| a[i][k] * b[k][j]).sum()))
 }
 
-fn cholesky6(a: &[[f64; 6]; 6]) -> Option<[[f64; 6]; 6]> {
+fn cholesky6(a: &Block) -> Option<Block> {
     let mut l = [[0.0; 6]; 6];
     let scale = (0..6).map(|i| a[i][i]).fold(0.0, f64::max);
     for j in 0..6 {
@@ -244,7 +191,7 @@ fn cholesky6(a: &[[f64; 6]; 6]) -> Option<[[f64; 6]; 6]> {
     Some(l)
 }
 
-fn invert_lower(l: &[[f64; 6]; 6]) -> [[f64; 6]; 6] {
+fn invert_lower(l: &Block) -> Block {
     let mut x = [[0.0; 6]; 6];
     for j in 0..6 {
         x[j][j] = 1.0 / l[j][j];

@@ -125,12 +125,10 @@ impl Subdomains {
         self.bases[class].held.as_ref()
     }
 
-    /// Number of subdomains.
     pub(crate) fn count(&self) -> usize {
         self.classes.subdomains()
     }
 
-    /// Class of a subdomain.
     pub(crate) fn class(&self, subdomain: usize) -> usize {
         self.classes.place(subdomain).0
     }
@@ -140,7 +138,6 @@ impl Subdomains {
         &self.bases[self.class(subdomain)]
     }
 
-    /// Rigid motions of a subdomain.
     pub(crate) fn kernel(&self, subdomain: usize) -> &Kernel {
         &self.of(subdomain).kernel
     }

@@ -4,7 +4,7 @@
 //! stiffness matrix and rigid motions of each (`matrices`, `kernel`), who of several ranks holds them (`ownership`), a
 //! generalised inverse (`inverse`; `packed` for one right-hand side), the choice between a dense and a sparse one
 //! (`cost`), the stiffness of the copies of a node (`copy_stiffness`) and the sizes that a set-up will have
-//! (`forecast`).
+//! (`forecast`), with the speed of the machine (`rate`).
 
 pub(crate) mod class;
 pub(crate) mod copy_stiffness;
@@ -15,3 +15,4 @@ pub(crate) mod kernel;
 pub(crate) mod matrices;
 pub(crate) mod ownership;
 pub(crate) mod packed;
+pub(crate) mod rate;

@@ -18,6 +18,17 @@ pub(crate) struct Ownership {
     ranks: Vec<Vec<(usize, usize)>>,
 }
 
+/// The ranks of consecutive numbers, so many for each subdomain, from the rank of each subdomain.
+pub(crate) fn pieces(ranks: &[u32], numbers: usize) -> Vec<(usize, Range<usize>)> {
+    let mut at = 0;
+    let piece = |same: &[u32]| {
+        let start = at;
+        at += numbers * same.len();
+        (same[0] as usize, start..at)
+    };
+    ranks.chunk_by(|a, b| a == b).map(piece).collect()
+}
+
 impl Ownership {
     pub(crate) fn new(classes: &Classes, exchange: Arc<Exchange>) -> Self {
         let mut panels = Vec::new();

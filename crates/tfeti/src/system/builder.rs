@@ -2,7 +2,7 @@
 
 use crate::coarse::space::Coarse;
 use crate::dual::boundary::BoundaryMap;
-use crate::dual::inverses::{ClassInverse, invert};
+use crate::dual::inverses::invert;
 use crate::dual::operator::DualOperator;
 use crate::error::TfetiError;
 use crate::processes::communicator::Communicator;
@@ -17,7 +17,7 @@ use crate::subdomain::forecast::Forecast;
 use crate::subdomain::kernel::mean;
 use crate::subdomain::matrices::Subdomains;
 use crate::subdomain::ownership::Ownership;
-use crate::system::report::{SetupReport, class_reports, count};
+use crate::system::report::SetupReport;
 use crate::system::tfeti::{Parts, Tfeti};
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 use std::sync::Arc;
@@ -40,7 +40,6 @@ pub struct TfetiBuilder<'a> {
 
 impl<'a> TfetiBuilder<'a> {
     /// A body without supports and contact.
-    #[must_use]
     pub fn new(mesh: &'a TetMesh, decomposition: &'a Decomposition, materials: &'a Materials) -> Self {
         Self {
             mesh,
@@ -59,7 +58,6 @@ impl<'a> TfetiBuilder<'a> {
     /// The body of a forecast, without supports and contact. What the forecast found of mesh, decomposition and
     /// materials is not looked for again; sharing and inverses are as it was told.
     #[doc(hidden)]
-    #[must_use]
     pub fn of_forecast(forecast: &'a Forecast<'a>) -> Self {
         Self {
             share_translates: forecast.share_translates,
@@ -127,61 +125,43 @@ impl<'a> TfetiBuilder<'a> {
         };
         check("nodes", decomposition.nodes(), mesh.points().len())?;
         check("elements", decomposition.parts().len(), mesh.tets().len())?;
-        let mut clock = Clock(Instant::now());
         let classes = match self.forecast {
             Some(forecast) => forecast.found.clone(),
             None => Classes::find(mesh, decomposition, self.materials, self.share_translates)?,
         };
-        let classes_seconds = clock.lap();
         let exchange = Arc::new(self.communicator.cloned().map_or_else(Exchange::default, Exchange::new));
         let ownership = Ownership::new(&classes, exchange.clone());
+        let started = Instant::now();
         let subdomains = Subdomains::assemble(mesh, decomposition, self.materials, classes, ownership)?;
         let subdomains = Arc::new(subdomains);
-        let assembly_seconds = clock.lap();
+        let assembly_seconds = started.elapsed().as_secs_f64();
         let (gluing, stiffness) = self.glue(&subdomains)?;
         let map = Arc::new(BoundaryMap::new(&subdomains.classes, &gluing, &subdomains.ownership));
-        let gluing_seconds = clock.lap();
         let points = mesh.points();
         let centre = |nodes: &[u32]| mean(nodes.iter().map(|&n| points[n as usize]));
         let all = decomposition.subdomains().iter();
         let centres = all.map(|s| centre(&s.nodes)).collect();
         let known = self.forecast.map(|f| f.symbolic.as_slice());
-        let ((inverses, inverse_seconds), coarse) = rayon::join(
-            || {
-                let started = Instant::now();
-                let inverses = invert(&subdomains, &map, &self.inverse, known);
-                (inverses, started.elapsed().as_secs_f64())
-            },
+        let (inverses, coarse) = rayon::join(
+            || invert(&subdomains, &map, &self.inverse, known),
             || {
                 let (map, gluing) = (map.clone(), gluing.clone());
                 Coarse::new(map, subdomains.clone(), gluing, centres)
             },
         );
-        let inverses = inverses?;
-        let coarse = coarse?;
+        let ((inverses, classes), coarse) = (inverses?, coarse?);
         exchange.check()?;
-        let coarse_seconds = (clock.lap() - inverse_seconds).max(0.0);
-        let free = coarse.free_motions(None)?;
+        let factors = inverses.iter().flatten().count();
         let report = SetupReport {
-            subdomains: subdomains.count(),
-            classes: class_reports(&subdomains.classes, &map, &inverses),
-            primal_unknowns: decomposition.torn_dofs(),
-            rows: gluing.ranges().clone(),
-            rows_as_paper: gluing.rows_as_paper(),
-            removed: count(gluing.removed()),
-            inverse_bytes: inverses.0.iter().flatten().map(ClassInverse::bytes).sum(),
+            inverse_bytes: classes.iter().map(|class| class.bytes).sum(),
+            classes,
             coarse_bytes: 8 * coarse.factor_size() as u64,
             table_bytes: map.bytes(),
-            factorisations: 1 + inverses.0.iter().flatten().count(),
-            analysed: known.map_or(inverses.0.iter().flatten().count(), |_| 0),
-            free_motions: free.iter().map(ToString::to_string).collect(),
-            classes_seconds,
-            gluing_seconds,
+            factorisations: 1 + factors,
+            analysed: known.map_or(factors, |_| 0),
             assembly_seconds,
-            inverse_seconds,
-            coarse_seconds,
         };
-        let inverses = Arc::new(inverses.0);
+        let inverses = Arc::new(inverses);
         let dual = DualOperator::new(map.clone(), subdomains.clone(), inverses.clone(), gluing.clone());
         let parts = Parts {
             subdomains,
@@ -200,7 +180,7 @@ impl<'a> TfetiBuilder<'a> {
             false => all.clone().unless_alike(self.decomposition),
         };
         let springs = (self.springs, &all);
-        let gluing = Gluing::with_springs(self.decomposition, self.supports, self.contact, &stiffness, springs)?;
+        let gluing = Gluing::new(self.decomposition, self.supports, self.contact, &stiffness, springs)?;
         Ok((Arc::new(gluing), stiffness))
     }
 }
@@ -213,14 +193,4 @@ fn has_several_laws(mesh: &TetMesh, materials: &Materials) -> bool {
     regions.sort_unstable();
     regions.dedup();
     regions.windows(2).any(|pair| law(pair[0]) != law(pair[1]))
-}
-
-struct Clock(Instant);
-
-impl Clock {
-    /// Seconds since the last call.
-    fn lap(&mut self) -> f64 {
-        let last = std::mem::replace(&mut self.0, Instant::now());
-        last.elapsed().as_secs_f64()
-    }
 }

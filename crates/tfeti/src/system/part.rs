@@ -23,7 +23,7 @@ impl Tfeti {
     /// which vectors are whole.
     pub fn part(&self) -> Option<SystemPart> {
         let (gluing, exchange) = (self.gluing(), self.parts.map.exchange());
-        let plain = gluing.is_aligned() && self.copy_stiffness().is_plain() && !gluing.is_compliant();
+        let plain = gluing.is_aligned && self.copy_stiffness().is_plain() && !gluing.is_compliant();
         if exchange.ranks() == 1 || !plain || !gluing.dependent_nodes().is_empty() {
             return None;
         }

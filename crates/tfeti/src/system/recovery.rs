@@ -80,9 +80,6 @@ impl Tfeti {
     }
 
     /// `out = B u` for a torn vector.
-    ///
-    /// # Panics
-    /// If a vector is too short.
     pub fn rows_times(&self, u: &[f64], out: &mut [f64]) {
         let gluing = self.gluing();
         let interface = gluing.ranges().interface.clone();
@@ -103,9 +100,6 @@ impl Tfeti {
     }
 
     /// `f += B^T x` for a torn vector.
-    ///
-    /// # Panics
-    /// If a vector is too short.
     pub fn add_rows_transposed(&self, x: &[f64], f: &mut [f64]) {
         self.add_some_transposed(x, f, |_| true);
     }
@@ -129,15 +123,6 @@ impl Tfeti {
         }
     }
 
-    /// `f + B^T lambda` where this process works.
-    fn loaded(&self, force: &[f64], lambda: &[f64]) -> Result<Vec<f64>, TfetiError> {
-        self.check("force", force, self.torn_dim())?;
-        self.check("multipliers", lambda, self.dual_dim())?;
-        let mut total = force.to_vec();
-        self.add_some_transposed(lambda, &mut total, |s| self.is_here(s as usize));
-        Ok(total)
-    }
-
     /// Sum of loads: `sum factor * force`.
     pub fn combine_forces(&self, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
         let mut force = vec![0.0; self.torn_dim()];
@@ -147,51 +132,34 @@ impl Tfeti {
         force
     }
 
-    /// The torn displacement `u = K+ (f + B^T lambda) + R alpha` (5.27).
+    /// The torn displacement `u = K+ (f + B^T lambda) + R alpha` (5.27), and the residual of equilibrium
+    /// `K u - f - B^T lambda`, a torn vector in newtons.
     ///
     /// `force` is a torn vector in newtons, `alpha` the rigid amplitudes, for instance from
     /// [`CoarseFactor::amplitudes`](crate::CoarseFactor::amplitudes).
     ///
     /// # Errors
-    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
-    pub fn recover(&self, force: &[f64], lambda: &[f64], alpha: &[f64]) -> Result<Vec<f64>, TfetiError> {
-        self.displaced(&self.loaded(force, lambda)?, alpha)
-    }
-
-    fn displaced(&self, total: &[f64], alpha: &[f64]) -> Result<Vec<f64>, TfetiError> {
+    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`], also of a displacement that is not finite.
+    pub fn recover(&self, force: &[f64], lambda: &[f64], alpha: &[f64]) -> Result<[Vec<f64>; 2], TfetiError> {
+        self.check("force", force, self.torn_dim())?;
+        self.check("multipliers", lambda, self.dual_dim())?;
         self.check("rigid amplitudes", alpha, 6 * self.subdomains())?;
+        let mut total = force.to_vec();
+        self.add_some_transposed(lambda, &mut total, |s| self.is_here(s as usize));
         let mut u = vec![0.0; self.torn_dim()];
-        self.generalised_inverse(total, &mut u);
+        self.generalised_inverse(&total, &mut u);
         for (s, amplitudes) in alpha.chunks_exact(6).enumerate() {
             let range = self.torn_range(s);
             self.kernel(s).add_motion(1.0, amplitudes, &mut u[range]);
         }
-        Ok(u)
-    }
-
-    /// The displacement of [`recover`](Self::recover) and its residual, that of
-    /// [`equilibrium_residual`](Self::equilibrium_residual).
-    ///
-    /// # Errors
-    /// As these.
-    #[doc(hidden)]
-    pub fn recover_with_residual(
-        &self,
-        force: &[f64],
-        lambda: &[f64],
-        alpha: &[f64],
-    ) -> Result<[Vec<f64>; 2], TfetiError> {
-        let total = self.loaded(force, lambda)?;
-        let u = self.displaced(&total, alpha)?;
-        let residual = self.unbalanced(&u, &total)?;
+        self.check("displacement", &u, self.torn_dim())?;
+        let mut residual = vec![0.0; u.len()];
+        self.stiffness_less(&u, Some(&total), &mut residual);
         Ok([u, residual])
     }
 
     /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies that differ count by
     /// their [stiffness](Self::copy_stiffness).
-    ///
-    /// # Panics
-    /// If `u` is shorter than a torn vector.
     pub fn nodal_mean(&self, u: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; 3 * self.nodes];
         let mut sums = vec![0.0; self.nodes];
@@ -206,21 +174,6 @@ impl Tfeti {
             value.iter_mut().for_each(|v| *v /= sum);
         }
         out
-    }
-
-    /// Residual of equilibrium `K u - f - B^T lambda` in newtons, a torn vector.
-    ///
-    /// # Errors
-    /// [`TfetiError::Length`] and [`TfetiError::NotFinite`].
-    pub fn equilibrium_residual(&self, u: &[f64], force: &[f64], lambda: &[f64]) -> Result<Vec<f64>, TfetiError> {
-        self.unbalanced(u, &self.loaded(force, lambda)?)
-    }
-
-    fn unbalanced(&self, u: &[f64], total: &[f64]) -> Result<Vec<f64>, TfetiError> {
-        self.check("displacement", u, self.torn_dim())?;
-        let mut residual = vec![0.0; u.len()];
-        self.stiffness_less(u, Some(total), &mut residual);
-        Ok(residual)
     }
 
     /// Row offsets `c` of prescribed displacements: `sum factor * offset` over `(case, factor)`.

@@ -12,6 +12,7 @@ use crate::subdomain::class::Classes;
 use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::subdomain::kernel::Kernel;
 use crate::subdomain::matrices::Subdomains;
+use crate::subdomain::ownership::pieces;
 use crate::system::report::SetupReport;
 use crate::tolerances::{PANEL, SUBDOMAINS};
 use rayon::prelude::*;
@@ -139,9 +140,6 @@ impl Tfeti {
     }
 
     /// The process that works with the matrices of a subdomain, by its rank.
-    ///
-    /// # Panics
-    /// If there is no such subdomain.
     pub fn rank_of(&self, subdomain: usize) -> usize {
         let (class, member) = self.classes().place(subdomain);
         self.parts.subdomains.ownership.rank_of(class, member)
@@ -160,12 +158,7 @@ impl Tfeti {
         let own = out.par_iter_mut().with_min_len(SUBDOMAINS).enumerate();
         own.filter(|(s, _)| self.is_here(*s))
             .for_each(|(s, own)| *own = measure(s));
-        let mut at = 0;
-        let piece = |same: &[u32]| {
-            at += K * same.len();
-            (same[0] as usize, at - K * same.len()..at)
-        };
-        let pieces: Vec<_> = self.torn_ranks.chunk_by(|a, b| a == b).map(piece).collect();
+        let pieces = pieces(&self.torn_ranks, K);
         self.exchange().complete(out.as_flattened_mut(), &pieces);
         out
     }
@@ -207,7 +200,7 @@ impl Tfeti {
 
     /// Length of dual vectors.
     pub fn dual_dim(&self) -> usize {
-        self.parts.gluing.rows_full_rank()
+        self.parts.gluing.ranges().total()
     }
 
     /// Length of torn vectors: the paper's `n_p`.
@@ -216,17 +209,11 @@ impl Tfeti {
     }
 
     /// Unknowns of a subdomain in torn vectors.
-    ///
-    /// # Panics
-    /// If there is no such subdomain.
     pub fn torn_range(&self, subdomain: usize) -> Range<usize> {
         self.offsets[subdomain]..self.offsets[subdomain + 1]
     }
 
     /// Rigid motions of a subdomain.
-    ///
-    /// # Panics
-    /// If there is no such subdomain.
     pub fn kernel(&self, subdomain: usize) -> &Kernel {
         self.parts.subdomains.kernel(subdomain)
     }

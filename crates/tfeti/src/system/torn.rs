@@ -9,9 +9,6 @@ use rayon::prelude::*;
 
 impl Tfeti {
     /// `y = K x` for torn vectors.
-    ///
-    /// # Panics
-    /// If the vectors are shorter than [`torn_dim`](Self::torn_dim).
     pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
         self.stiffness_less(x, None, y);
     }
@@ -59,9 +56,6 @@ impl Tfeti {
     }
 
     /// `u = K+ f` for torn vectors.
-    ///
-    /// # Panics
-    /// If the vectors are shorter than [`torn_dim`](Self::torn_dim).
     pub fn generalised_inverse(&self, f: &[f64], u: &mut [f64]) {
         let parts = &self.parts;
         self.by_class(u, |class, members, columns| {

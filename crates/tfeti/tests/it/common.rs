@@ -2,7 +2,7 @@
 
 use signorini_fem_mesh::{Decomposition, Hooke, LoadDensity, Materials, SurfaceFrame, TetMesh, assemble_load, brick};
 use signorini_qp::SymmetricOperator;
-use signorini_tfeti::internal::{CopyStiffness, InverseKind};
+use signorini_tfeti::internal::InverseKind;
 use signorini_tfeti::{ContactConstraint, Gluing, InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError};
 
 pub(crate) struct Brick {
@@ -116,8 +116,8 @@ pub(crate) fn build(b: &Brick, kind: InverseKind, share_translates: bool) -> Tfe
 
 /// `B` alone.
 pub(crate) fn gluing(b: &Brick, supports: &[NodeSupport], contact: &[ContactConstraint]) -> Result<Gluing, TfetiError> {
-    let alike = CopyStiffness::default();
-    Gluing::new(&b.decomposition, supports, contact, &alike)
+    let system = b.builder(supports).with_contact(contact).build()?;
+    Ok(system.gluing().clone())
 }
 
 /// Row `row` of `G^T`: what the rigid motions of each subdomain do to it.
@@ -131,7 +131,7 @@ pub(crate) fn column(system: &Tfeti, row: usize) -> Vec<(usize, [f64; 6])> {
 
 /// Dense `B B^T` of all rows.
 pub(crate) fn gram(g: &Gluing) -> Vec<Vec<f64>> {
-    let rows: Vec<std::collections::BTreeMap<(usize, usize), f64>> = (0..g.rows_full_rank())
+    let rows: Vec<std::collections::BTreeMap<(usize, usize), f64>> = (0..g.ranges().total())
         .map(|r| {
             let mut map = std::collections::BTreeMap::new();
             g.row(r)

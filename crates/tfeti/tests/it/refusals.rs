@@ -1,11 +1,10 @@
 //! Arguments that do not fit are refused by errors.
 
 use crate::common::{Brick, gluing};
-use signorini_fem_mesh::Decomposition;
 use signorini_qp::internal::LineWeight;
 use signorini_qp::{EqualityProjector, QpError};
-use signorini_tfeti::internal::{ActiveSetFactor, CopyStiffness};
-use signorini_tfeti::{ActiveSetProjector, Gluing, Motion, NodeSupport, RowWeights, TfetiError};
+use signorini_tfeti::internal::ActiveSetFactor;
+use signorini_tfeti::{ActiveSetProjector, Motion, NodeSupport, RowWeights, TfetiError};
 
 #[test]
 fn projectors_check_their_arguments() {
@@ -84,26 +83,6 @@ fn cases_beyond_the_supports_are_refused() {
                     ..
                 }
             ),
-            "{error}"
-        );
-    }
-}
-
-#[test]
-fn gluing_checks_what_belongs_to_the_decomposition() {
-    let b = Brick::new(1, 2);
-    let stiffness = b.system().all_copy_stiffness();
-    let gluing = |decomposition: &Decomposition, stiffness: &CopyStiffness| {
-        Gluing::new(decomposition, &b.supports(), &b.contact(true), stiffness)
-    };
-    assert!(gluing(&b.decomposition, &stiffness).is_ok());
-    for other in [
-        Decomposition::whole(&b.mesh),
-        Decomposition::boxes(&b.mesh, [6, 1, 1]).unwrap(),
-    ] {
-        let error = gluing(&other, &stiffness).unwrap_err();
-        assert!(
-            matches!(error, TfetiError::ForeignStiffness { subdomain: 0, .. }),
             "{error}"
         );
     }

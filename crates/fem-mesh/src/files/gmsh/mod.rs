@@ -135,48 +135,41 @@ fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<reader::Name>), GmshErro
             return Err(GmshError::RepeatedNode { tag });
         }
     }
-    let number_of = |element: u64, node: u64| {
-        let found = number.get(&node).copied();
-        found.ok_or(GmshError::UnknownNode { element, node })
-    };
     let surfaces = Tags::new("surface", &file.entities[0])?;
     let volumes = Tags::new("volume", &file.entities[1])?;
-    let (mut tets, mut facets, mut regions) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut linear, mut quadratic, mut facets, mut regions) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     for element in &file.elements {
-        let node = |place: usize| number_of(element.tag, element.nodes[place]);
-        if element.is_tet {
-            tets.push([node(0)?, node(1)?, node(2)?, node(3)?]);
-            regions.push(volumes.of(element.entity).unwrap_or(0));
-        } else if let Some(tag) = surfaces.of(element.entity) {
-            facets.push(Facet {
-                nodes: [node(0)?, node(1)?, node(2)?],
-                tag: FacetTag(tag),
-            });
-        }
-    }
-    if tets.is_empty() {
-        return Err(GmshError::NoTetrahedra);
-    }
-    if !file.mids.is_empty() {
-        let (linear, quadratic) = (tets.len() - file.mids.len(), file.mids.len());
-        if linear > 0 {
-            return Err(GmshError::MixedOrder { linear, quadratic });
-        }
-        let owners = file.elements.iter().filter(|e| e.is_tet);
-        let mut whole = Vec::with_capacity(quadratic);
-        for ((owner, corners), mids) in owners.zip(&tets).zip(&file.mids) {
-            let mut tet = [0; 10];
-            tet[..4].copy_from_slice(corners);
-            for (place, &node) in tet[4..].iter_mut().zip(mids) {
-                *place = number_of(owner.tag, node)?;
+        match element.count {
+            4 => linear.push(nodes(element, &number)?),
+            10 => quadratic.push(nodes(element, &number)?),
+            _ => {
+                if let Some(tag) = surfaces.of(element.entity) {
+                    let (nodes, tag) = (nodes(element, &number)?, FacetTag(tag));
+                    facets.push(Facet { nodes, tag });
+                }
+                continue;
             }
-            whole.push(tet);
         }
-        let mesh = mesh(TetMesh::quadratic, file.points, whole, (facets, surfaces.grouped))?;
-        return Ok((mesh.with_regions(regions)?, file.names));
+        regions.push(volumes.of(element.entity).unwrap_or(0));
     }
-    let mesh = mesh(TetMesh::new, file.points, tets, (facets, surfaces.grouped))?;
+    let facets = (facets, surfaces.are_groups());
+    let mesh = match (linear.len(), quadratic.len()) {
+        (0, 0) => return Err(GmshError::NoTetrahedra),
+        (_, 0) => mesh(TetMesh::new, file.points, linear, facets)?,
+        (0, _) => mesh(TetMesh::quadratic, file.points, quadratic, facets)?,
+        (linear, quadratic) => return Err(GmshError::MixedOrder { linear, quadratic }),
+    };
     Ok((mesh.with_regions(regions)?, file.names))
+}
+
+/// The first nodes of an element by their places in the file.
+fn nodes<const N: usize>(element: &reader::Element, number: &HashMap<u64, u32>) -> Result<[u32; N], GmshError> {
+    let mut out = [0; N];
+    for (place, &node) in out.iter_mut().zip(&element.nodes) {
+        let element = element.tag;
+        *place = *number.get(&node).ok_or(GmshError::UnknownNode { element, node })?;
+    }
+    Ok(out)
 }
 
 /// The mesh of tetrahedra of either order; `grouped`: whether the facets are those of named groups.
@@ -195,7 +188,6 @@ fn mesh<const N: usize>(
     build(points, tets, facets)
 }
 
-/// The facets that lie on the boundary of the mesh.
 fn on_boundary(bare: &TetMesh, facets: Vec<Facet>) -> Vec<Facet> {
     let sorted = |mut nodes: [u32; 3]| {
         nodes.sort_unstable();
@@ -208,12 +200,8 @@ fn on_boundary(bare: &TetMesh, facets: Vec<Facet>) -> Vec<Facet> {
         .collect()
 }
 
-/// From entities to tags, for one dimension.
-struct Tags {
-    group_of: HashMap<i32, u32>,
-    /// Whether the file has physical groups of this dimension.
-    grouped: bool,
-}
+/// From entities to physical groups, for one dimension; empty of a file without these.
+struct Tags(HashMap<i32, u32>);
 
 impl Tags {
     fn new(what: &'static str, entities: &[reader::Entity]) -> Result<Self, GmshError> {
@@ -234,15 +222,17 @@ impl Tags {
                 }
             }
         }
-        let grouped = !group_of.is_empty();
-        Ok(Self { group_of, grouped })
+        Ok(Self(group_of))
+    }
+
+    fn are_groups(&self) -> bool {
+        !self.0.is_empty()
     }
 
     fn of(&self, entity: i32) -> Option<u32> {
-        if self.grouped {
-            self.group_of.get(&entity).copied()
-        } else {
-            Some(entity.unsigned_abs())
+        match self.are_groups() {
+            true => self.0.get(&entity).copied(),
+            false => Some(entity.unsigned_abs()),
         }
     }
 }

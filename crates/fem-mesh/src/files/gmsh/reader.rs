@@ -30,7 +30,6 @@ pub(super) type Name = (i32, i32, String);
 /// Number and physical groups of a surface or volume.
 pub(super) type Entity = (i32, Vec<i32>);
 
-/// What a file holds.
 #[derive(Default)]
 pub(super) struct Contents {
     pub(super) names: Vec<Name>,
@@ -41,8 +40,6 @@ pub(super) struct Contents {
     pub(super) points: Vec<[f64; 3]>,
     /// Triangles and tetrahedra in the order of the file.
     pub(super) elements: Vec<Element>,
-    /// Nodes on the edges 01, 12, 02, 03, 13, 23 of each tetrahedron of second order.
-    pub(super) mids: Vec<[u64; 6]>,
 }
 
 /// A triangle or a tetrahedron.
@@ -50,12 +47,13 @@ pub(super) struct Element {
     pub(super) tag: u64,
     /// The surface or volume that it belongs to.
     pub(super) entity: i32,
-    /// Numbers of the corners; four only for a tetrahedron.
-    pub(super) nodes: [u64; 4],
-    pub(super) is_tet: bool,
+    /// Numbers of its nodes, corners first, those of a tetrahedron of second order as
+    /// [`TetMesh::quadratic`](crate::TetMesh::quadratic) has them.
+    pub(super) nodes: [u64; 10],
+    /// How many there are.
+    pub(super) count: usize,
 }
 
-/// Reads the contents of a file.
 pub(super) fn read(bytes: &[u8]) -> Result<Contents, GmshError> {
     let mut reader = Reader {
         bytes,
@@ -72,32 +70,19 @@ pub(super) fn read(bytes: &[u8]) -> Result<Contents, GmshError> {
     let (mut nodes, mut elements) = (false, false);
     while reader.skip_blanks() {
         match reader.line() {
-            b"$PhysicalNames" => {
-                reader.section = "$PhysicalNames";
-                out.names = reader.names()?;
-                reader.end(b"$EndPhysicalNames")?;
-            }
-            b"$Entities" => {
-                reader.section = "$Entities";
-                out.entities = reader.entities()?;
-                reader.end(b"$EndEntities")?;
-            }
+            b"$PhysicalNames" => out.names = reader.section("$PhysicalNames", Reader::names)?,
+            b"$Entities" => out.entities = reader.section("$Entities", Reader::entities)?,
             b"$Nodes" => {
-                reader.section = "$Nodes";
-                (out.tags, out.points) = reader.nodes()?;
-                reader.end(b"$EndNodes")?;
+                (out.tags, out.points) = reader.section("$Nodes", Reader::nodes)?;
                 nodes = true;
             }
             b"$Elements" => {
-                reader.section = "$Elements";
-                (out.elements, out.mids) = reader.elements()?;
-                reader.end(b"$EndElements")?;
+                out.elements = reader.section("$Elements", Reader::elements)?;
                 elements = true;
             }
             b"$PartitionedEntities" => {
-                return Err(GmshError::Partitioned {
-                    section: "$PartitionedEntities",
-                });
+                let section = "$PartitionedEntities";
+                return Err(GmshError::Partitioned { section });
             }
             other => reader.skip_section(other)?,
         }
@@ -213,9 +198,17 @@ impl<'a> Reader<'a> {
         }
     }
 
-    fn end(&mut self, name: &[u8]) -> Result<(), GmshError> {
+    /// A section up to and with its end.
+    fn section<T>(&mut self, name: &'static str, read: fn(&mut Self) -> Result<T, GmshError>) -> Result<T, GmshError> {
+        self.section = name;
+        let found = read(self)?;
+        self.end()?;
+        Ok(found)
+    }
+
+    fn end(&mut self) -> Result<(), GmshError> {
         self.skip_blanks();
-        if self.line() == name {
+        if self.line().strip_prefix(b"$End") == self.section.as_bytes().get(1..) {
             Ok(())
         } else {
             self.damaged("the end of the section is expected")
@@ -244,7 +237,7 @@ impl<'a> Reader<'a> {
                 _ => return self.damaged("the number 1 is expected, which tells the byte order"),
             };
         }
-        self.end(b"$EndMeshFormat")
+        self.end()
     }
 
     /// Names of groups: text also in binary files.
@@ -322,8 +315,8 @@ impl<'a> Reader<'a> {
         Ok((tags, points))
     }
 
-    fn elements(&mut self) -> Result<(Vec<Element>, Vec<[u64; 6]>), GmshError> {
-        let (mut out, mut mids) = (Vec::new(), Vec::new());
+    fn elements(&mut self) -> Result<Vec<Element>, GmshError> {
+        let mut out = Vec::new();
         for _ in 0..self.header()? {
             let (_dimension, entity, kind) = (self.int()?, self.int()?, self.int()?);
             let name = match TYPES.iter().find(|t| t.0 == kind) {
@@ -337,24 +330,21 @@ impl<'a> Reader<'a> {
                 for node in &mut nodes[..count] {
                     *node = self.size()?;
                 }
-                let [a, b, c, d, ..] = nodes;
                 if kind == TET_10 {
                     // Gmsh has the edges 23 and 13 in this order
-                    let [.., e, f, g, h, i, j] = nodes;
-                    mids.push([e, f, g, h, j, i]);
+                    nodes.swap(8, 9);
                 }
-                let is_tet = matches!(kind, TET_4 | TET_10);
-                if is_tet || matches!(kind, TRIANGLE_3 | TRIANGLE_6) {
+                if [TRIANGLE_3, TRIANGLE_6, TET_4, TET_10].contains(&kind) {
                     out.push(Element {
                         tag,
                         entity,
-                        nodes: [a, b, c, d],
-                        is_tet,
+                        nodes,
+                        count,
                     });
                 }
             }
         }
-        Ok((out, mids))
+        Ok(out)
     }
 
     /// Skips a section of another kind, up to and with its end.

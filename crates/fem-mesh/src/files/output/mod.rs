@@ -42,7 +42,6 @@ pub struct Field {
 
 impl Field {
     /// One number each.
-    #[must_use]
     pub fn scalar(name: impl Into<String>, values: Vec<f64>) -> Self {
         Self {
             name: name.into(),
@@ -52,7 +51,6 @@ impl Field {
     }
 
     /// A vector each.
-    #[must_use]
     pub fn vector(name: impl Into<String>, values: &[[f64; 3]]) -> Self {
         Self {
             name: name.into(),
@@ -64,7 +62,6 @@ impl Field {
     /// Symmetric tensors in Voigt order xx, yy, zz, yz, xz, xy, written in the order of VTK (xx,
     /// yy, zz, xy, yz, xz). The entries are taken as they are: halve engineering shear strains
     /// first if tensor components are meant.
-    #[must_use]
     pub fn symmetric_tensor(name: impl Into<String>, values: &[[f64; 6]]) -> Self {
         let reorder = |v: &[f64; 6]| [v[0], v[1], v[2], v[5], v[3], v[4]];
         let values = values.iter().flat_map(reorder).collect();

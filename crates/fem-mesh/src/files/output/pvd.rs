@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use crate::tolerances::SAME_TIME;
 
-use super::vtu::{escape, write_pvtu, write_vtu_part};
+use super::vtu::{escape, write_cells, write_pvtu};
 use super::{Field, OutputError, SurfaceFields, write_surfaces_vtu, write_vtu};
 use crate::files::replace::replace;
 use crate::mesh::TetMesh;
@@ -182,7 +182,7 @@ impl PvdSeries {
         let step = self.times.len();
         let name = |rank: u32| format!("{}_{step:04}_{rank}.vtu", self.name);
         let path = self.folder.join(name(rank));
-        write_vtu_part(&path, mesh, (owners, rank), point_fields, cell_fields)?;
+        write_cells(&path, mesh, |tet| owners[tet] == rank, point_fields, cell_fields)?;
         if rank > 0 {
             self.times.push(time);
             self.lists.push(true);
@@ -211,13 +211,11 @@ impl PvdSeries {
     }
 
     /// The file to open in ParaView.
-    #[must_use]
     pub fn path(&self) -> PathBuf {
         self.folder.join(format!("{}.pvd", self.name))
     }
 
     /// Times of the steps written so far, with those that an opened series had.
-    #[must_use]
     pub fn times(&self) -> &[f64] {
         &self.times
     }
@@ -244,80 +242,61 @@ impl PvdSeries {
         self.folder.join(self.file_name(self.times.len(), false))
     }
 
+    /// Writes the list with one more step, which counts if that succeeds.
     fn list(&mut self, time: f64, is_list: bool) -> Result<(), OutputError> {
+        self.times.push(time);
+        self.lists.push(is_list);
+        let written = replace(&self.path(), self.text().as_bytes());
+        if written.is_err() {
+            self.times.pop();
+            self.lists.pop();
+        }
+        written.map_err(|(path, source)| OutputError::Io { path, source })
+    }
+
+    fn text(&self) -> String {
         let mut xml = HEAD.join("\n");
-        let steps = self.times.iter().zip(&self.lists).chain([(&time, &is_list)]);
-        for (step, (time, is_list)) in steps.enumerate() {
-            let [before, after] = self.entry(step, *is_list);
+        for (step, (time, is_list)) in self.times.iter().zip(&self.lists).enumerate() {
+            let file = escape(&self.file_name(step, *is_list));
             // Writing to a string cannot fail.
-            let _ = write!(xml, "\n{before}{time}{after}");
+            let _ = write!(
+                xml,
+                "\n    <DataSet timestep=\"{time}\" group=\"\" part=\"0\" file=\"{file}\"/>"
+            );
         }
         for line in FOOT {
             let _ = write!(xml, "\n{line}");
         }
-        xml.push('\n');
-        replace(&self.path(), xml.as_bytes()).map_err(|(path, source)| OutputError::Io { path, source })?;
-        self.times.push(time);
-        self.lists.push(is_list);
-        Ok(())
+        xml + "\n"
     }
 
-    /// The line of a step in the list, before and after its time.
-    fn entry(&self, step: usize, is_list: bool) -> [String; 2] {
-        let file = escape(&self.file_name(step, is_list));
-        [
-            "    <DataSet timestep=\"".into(),
-            format!("\" group=\"\" part=\"0\" file=\"{file}\"/>"),
-        ]
-    }
-
-    /// Takes the times of a list that `list` wrote.
+    /// Takes the times of a list, which must be the one that is written of them.
     fn read(&mut self, list: &str) -> Result<(), OutputError> {
         let lines: Vec<&str> = list.lines().collect();
-        let broken = |line: usize, expected: String| OutputError::BrokenSeries {
+        for line in lines.iter().skip(HEAD.len()) {
+            let time: Option<f64> = line.split('"').nth(1).and_then(|time| time.parse().ok());
+            let Some(time) = time.filter(|t| t.is_finite() && *t > self.last()) else {
+                break;
+            };
+            self.times.push(time);
+            self.lists.push(line.contains(".pvtu\""));
+        }
+        let text = self.text();
+        let wanted: Vec<&str> = text.lines().collect();
+        let Some(line) = (0..lines.len().max(wanted.len())).find(|&k| lines.get(k) != wanted.get(k)) else {
+            return Ok(());
+        };
+        let expected = match wanted.get(line) {
+            None => "the end of the file".into(),
+            Some(end) if *end == FOOT[0] => format!("a step with a time later than the one before, or {end:?},"),
+            Some(wanted) => format!("{wanted:?}"),
+        };
+        Err(OutputError::BrokenSeries {
             path: self.path(),
             line: line + 1,
             found: lines.get(line).copied().unwrap_or_default().into(),
             expected,
-        };
-        let same = |line: usize, expected: &str| match lines.get(line) {
-            Some(found) if *found == expected => Ok(()),
-            _ => Err(broken(line, format!("{expected:?}"))),
-        };
-        for (line, expected) in HEAD.into_iter().enumerate() {
-            same(line, expected)?;
-        }
-        let (mut times, mut lists): (Vec<f64>, Vec<bool>) = Default::default();
-        loop {
-            let line = HEAD.len() + times.len();
-            if lines.get(line) == Some(&FOOT[0]) {
-                break;
-            }
-            let time = |is_list: bool| {
-                let [before, after] = self.entry(times.len(), is_list);
-                let time = lines.get(line)?.strip_prefix(&*before)?.strip_suffix(&*after)?.parse();
-                let later = |&t: &f64| t.is_finite() && times.last().is_none_or(|&last| t > last);
-                Some((time.ok().filter(later)?, is_list))
-            };
-            let Some((time, is_list)) = time(false).or_else(|| time(true)) else {
-                let [before, after] = self.entry(times.len(), false);
-                let expected = format!(
-                    "a line {:?} with a time later than the one before, or {:?},",
-                    format!("{before}...{after}"),
-                    FOOT[0]
-                );
-                return Err(broken(line, expected));
-            };
-            times.push(time);
-            lists.push(is_list);
-        }
-        let end = HEAD.len() + times.len() + FOOT.len();
-        same(end - 1, FOOT[1])?;
-        if lines.len() > end {
-            return Err(broken(end, "the end of the file".into()));
-        }
-        (self.times, self.lists) = (times, lists);
-        Ok(())
+        })
     }
 }
 

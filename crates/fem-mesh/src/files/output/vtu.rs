@@ -22,28 +22,21 @@ pub fn write_vtu(
     point_fields: &[Field],
     cell_fields: &[Field],
 ) -> Result<(), OutputError> {
-    check(point_fields, mesh.points().len(), "nodes")?;
-    check(cell_fields, mesh.tets().len(), "cells")?;
-    let mut file = File::new();
-    match mesh.order() {
-        1 => file.piece(mesh.points(), mesh.tets(), point_fields, cell_fields),
-        _ => file.piece(mesh.points(), &mesh.quadratic_tets(), point_fields, cell_fields),
-    }
-    file.write(path.as_ref())
+    write_cells(path.as_ref(), mesh, |_| true, point_fields, cell_fields)
 }
 
-/// Writes those tetrahedra that belong to one of several processes, `owners` being the process of each, as a piece with
-/// the nodes that they use. The fields are those of the mesh.
-pub(super) fn write_vtu_part(
+/// Writes those tetrahedra that are `kept`, if any, as a piece with the nodes that they use. The fields are those of the
+/// mesh.
+pub(super) fn write_cells(
     path: &Path,
     mesh: &TetMesh,
-    (owners, rank): (&[u32], u32),
+    kept: impl Fn(usize) -> bool,
     point_fields: &[Field],
     cell_fields: &[Field],
 ) -> Result<(), OutputError> {
     check(point_fields, mesh.points().len(), "nodes")?;
     check(cell_fields, mesh.tets().len(), "cells")?;
-    let own: Vec<usize> = (0..owners.len()).filter(|&t| owners[t] == rank).collect();
+    let own: Vec<usize> = (0..mesh.tets().len()).filter(|&t| kept(t)).collect();
     if own.is_empty() {
         return Ok(());
     }

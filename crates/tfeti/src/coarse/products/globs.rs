@@ -5,11 +5,12 @@
 //! these are shifted to the centres of the subdomains. Globs of one shape share their arms.
 
 use crate::dual::boundary::{over_tasks, shares};
-use crate::rows::gluing::{Glob, Gluing};
+use crate::rows::gluing::Gluing;
 use crate::subdomain::kernel::{Kernel, add_wrench, displacement};
 use crate::tolerances::{GLOB_TASK, PARTS};
 use pulp::{Arch, Simd, WithSimd};
-use signorini_fem_mesh::internal::buckets;
+use signorini_fem_mesh::internal::Lists;
+use signorini_fem_mesh::vec3::add;
 use std::collections::HashMap;
 use std::hint::black_box;
 use std::ops::Range;
@@ -30,8 +31,7 @@ pub(crate) struct GlobTables {
     coefficients: Vec<f64>,
     tasks: Vec<Task>,
     /// Sides of each subdomain.
-    side_pointers: Vec<u32>,
-    sides: Vec<u32>,
+    sides: Lists<u32>,
 }
 
 /// A glob and where its data stand.
@@ -55,35 +55,35 @@ struct Task {
     side: usize,
 }
 
-/// A subdomain of a glob: the first run with it, and its place among the entries of that run's blocks.
-struct Side {
-    subdomain: u32,
-    run: usize,
-    entry: usize,
-}
-
 impl GlobTables {
     pub(crate) fn new<'k>(gluing: &Gluing, subdomains: usize, kernel: impl Fn(u32) -> (usize, &'k Kernel)) -> Self {
         let mut out = Self::default();
         let mut shapes: HashMap<(usize, Vec<u32>), [u32; 2]> = HashMap::new();
         let mut rules: Vec<Range<usize>> = Vec::new();
-        for glob in gluing.globs() {
-            let sides = sides_of(gluing, glob);
+        for glob in &gluing.globs {
+            let sides = gluing.copies(glob, 0);
+            let locals = |side: usize| (0..glob.nodes as usize).map(move |n| gluing.copies(glob, n)[side].local);
             let first = out.subdomains.len();
-            for side in &sides {
+            for (k, side) in sides.iter().enumerate() {
                 let (_, kernel) = kernel(side.subdomain);
+                let sum = locals(k).fold([0.0; 3], |sum, local| add(sum, arm(kernel, local)));
                 out.subdomains.push(side.subdomain);
-                out.levers.push(mean_arm(gluing, glob, side, kernel));
+                out.levers.push(sum.map(|v| v / f64::from(glob.nodes)));
             }
             let (class, own) = kernel(sides[0].subdomain);
-            let locals = locals(gluing, glob, &sides[0]).collect();
+            let locals = locals(0).collect();
             let [arms, node_arms] = *shapes.entry((class, locals)).or_insert_with_key(|key| {
                 let start = [out.arms.len() as u32, out.node_arms.len() as u32];
                 out.push_arms(own, &key.1, &out.levers[first].clone());
                 start
             });
             let start = out.coefficients.len();
-            push_coefficients(gluing, glob, &sides, &mut out.coefficients);
+            for run in 0..glob.runs as usize {
+                // a run combines the first sides
+                let entries = gluing.block(glob.block(run, 0)).iter().map(|e| e.coefficient);
+                let others = std::iter::repeat(0.0);
+                out.coefficients.extend(entries.chain(others).take(sides.len()));
+            }
             let (old, new) = out.coefficients.split_at(start);
             let coefficients = match rules.iter().find(|r| old[(*r).clone()] == *new) {
                 Some(same) => {
@@ -114,7 +114,7 @@ impl GlobTables {
             globs,
         };
         out.tasks = shares(&work, GLOB_TASK, PARTS).into_iter().map(task).collect();
-        (out.side_pointers, out.sides) = buckets(subdomains, &out.subdomains);
+        out.sides = Lists::by_key(subdomains, &out.subdomains);
         out
     }
 
@@ -135,15 +135,12 @@ impl GlobTables {
         }
     }
 
-    /// Number of sides.
     pub(crate) fn len(&self) -> usize {
         self.subdomains.len()
     }
 
-    /// Sides of a subdomain.
     pub(crate) fn sides_of(&self, subdomain: usize) -> &[u32] {
-        let pointers = &self.side_pointers;
-        &self.sides[pointers[subdomain] as usize..pointers[subdomain + 1] as usize]
+        self.sides.of(subdomain)
     }
 
     /// Wrench on a subdomain, about its centre, from those on its sides.
@@ -195,50 +192,9 @@ impl GlobTables {
     }
 }
 
-/// The subdomains of a glob.
-fn sides_of(gluing: &Gluing, glob: &Glob) -> Vec<Side> {
-    let mut sides: Vec<Side> = Vec::with_capacity(glob.runs as usize + 1);
-    for run in 0..glob.runs as usize {
-        for (entry, e) in gluing.block(glob.block(run, 0)).iter().enumerate() {
-            if sides.iter().all(|s| s.subdomain != e.subdomain) {
-                sides.push(Side {
-                    subdomain: e.subdomain,
-                    run,
-                    entry,
-                });
-            }
-        }
-    }
-    sides
-}
-
-/// Local numbers of the nodes of a glob on one side.
-fn locals<'a>(gluing: &'a Gluing, glob: &'a Glob, side: &'a Side) -> impl Iterator<Item = u32> {
-    (0..glob.nodes as usize).map(|n| gluing.block(glob.block(side.run, n))[side.entry].local)
-}
-
 /// Arm of a node in metres.
 fn arm(kernel: &Kernel, local: u32) -> [f64; 3] {
     kernel.arm(local as usize).map(|a| a * kernel.radius())
-}
-
-fn mean_arm(gluing: &Gluing, glob: &Glob, side: &Side, kernel: &Kernel) -> [f64; 3] {
-    let mut sum = [0.0; 3];
-    for local in locals(gluing, glob, side) {
-        let arm = arm(kernel, local);
-        (0..3).for_each(|c| sum[c] += arm[c]);
-    }
-    sum.map(|v| v / f64::from(glob.nodes))
-}
-
-fn push_coefficients(gluing: &Gluing, glob: &Glob, sides: &[Side], out: &mut Vec<f64>) {
-    for run in 0..glob.runs as usize {
-        let entries = gluing.block(glob.block(run, 0));
-        out.extend(sides.iter().map(|side| {
-            let entry = entries.iter().find(|e| e.subdomain == side.subdomain);
-            entry.map_or(0.0, |e| e.coefficient)
-        }));
-    }
 }
 
 /// Numbers worked on at a time: whole nodes and whole vector registers.

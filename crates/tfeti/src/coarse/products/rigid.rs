@@ -9,8 +9,9 @@ use crate::linalg::both;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::kernel::{Kernel, add_wrench};
 use crate::subdomain::matrices::Subdomains;
+use crate::subdomain::ownership::pieces;
 use crate::tolerances::{PARTS, SUBDOMAIN_TASK};
-use signorini_fem_mesh::internal::buckets;
+use signorini_fem_mesh::internal::Lists;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -23,8 +24,7 @@ pub(crate) struct RigidTables {
     supports: PointTables,
     globs: GlobTables,
     /// Copies of each subdomain with rows that are no interface rows: place among those of the map, and arm.
-    nodal_pointers: Vec<u32>,
-    nodal: Vec<[u32; 2]>,
+    nodal: Lists<[u32; 2]>,
     /// Consecutive subdomains with about equal work.
     tasks: Vec<Range<usize>>,
     /// Where ranks keep parts of vectors: the rank of each subdomain, and the ranks of consecutive entries of `G x`.
@@ -60,28 +60,22 @@ impl RigidTables {
             || GlobTables::new(gluing, subdomains.count(), kernel),
             || (points(0..contact), points(contact..gluing.nodal_rows())),
         );
-        let (nodal_pointers, nodal) = nodal_copies(map, &first, subdomains.count());
+        let nodal = nodal_copies(map, &first, subdomains.count());
         let mut out = Self {
             subdomains,
             arms,
             contact,
             supports,
             globs,
-            nodal_pointers,
             nodal,
             tasks: vec![],
-            pieces: pieces(&ranks),
+            pieces: pieces(&ranks, 6),
             ranks,
         };
-        let work = |s: usize| 4 * out.nodal_of(s).len() + out.globs.sides_of(s).len() + 4;
+        let work = |s: usize| 4 * out.nodal.of(s).len() + out.globs.sides_of(s).len() + 4;
         let work: Vec<u64> = (0..out.subdomains.count()).map(|s| work(s) as u64).collect();
         out.tasks = shares(&work, SUBDOMAIN_TASK, PARTS);
         out
-    }
-
-    fn nodal_of(&self, subdomain: usize) -> &[[u32; 2]] {
-        let pointers = &self.nodal_pointers;
-        &self.nodal[pointers[subdomain] as usize..pointers[subdomain + 1] as usize]
     }
 
     /// Length of the work memory of [`BoundaryMap::wrenches`].
@@ -91,7 +85,7 @@ impl RigidTables {
 }
 
 /// Copies with rows that are no interface rows by subdomain, in the order of the map, with their arms.
-fn nodal_copies(map: &BoundaryMap, first: &[usize], subdomains: usize) -> (Vec<u32>, Vec<[u32; 2]>) {
+fn nodal_copies(map: &BoundaryMap, first: &[usize], subdomains: usize) -> Lists<[u32; 2]> {
     let (mut owners, mut copies) = (Vec::new(), Vec::new());
     for panel in &map.panels {
         let members = &map.classes[panel.class].members[panel.columns.clone()];
@@ -102,9 +96,7 @@ fn nodal_copies(map: &BoundaryMap, first: &[usize], subdomains: usize) -> (Vec<u
             copies.push([k as u32, arm as u32]);
         }
     }
-    let (pointers, order) = buckets(subdomains, &owners);
-    let sorted = order.iter().map(|&k| copies[k as usize]).collect();
-    (pointers, sorted)
+    Lists::by_key(subdomains, &owners).map(|k| copies[k as usize])
 }
 
 impl RigidTables {
@@ -124,7 +116,7 @@ impl RigidTables {
         over_tasks(&self.tasks, out, &offset, parallel, &|task, out| {
             for (s, target) in task.clone().zip(out).filter(|(s, _)| self.is_here(map, *s)) {
                 let mut wrench = self.globs.wrench(s, sides);
-                for &[nodal, arm] in self.nodal_of(s) {
+                for &[nodal, arm] in self.nodal.of(s) {
                     let force = nodal_force(map, nodal as usize, x, weights);
                     add_wrench(&mut wrench, &self.arms[arm as usize], force);
                 }
@@ -186,16 +178,6 @@ impl RigidTables {
             || others(contact, dirichlet),
         );
     }
-}
-
-fn pieces(ranks: &[u32]) -> Vec<(usize, Range<usize>)> {
-    let mut at = 0;
-    let piece = |same: &[u32]| {
-        let start = at;
-        at += 6 * same.len();
-        (same[0] as usize, start..at)
-    };
-    ranks.chunk_by(|a, b| a == b).map(piece).collect()
 }
 
 /// Force of the rows that are no interface rows on one copy.

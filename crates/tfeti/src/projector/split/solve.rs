@@ -376,6 +376,6 @@ impl SplitBase {
             return;
         }
         let [own, behind, buffer] = [own, behind, buffer].map(|part| part.as_chunks_mut::<LANES>().0);
-        piece.steady.solve_lanes(tiles, own, behind, buffer, forward);
+        piece.steady.solve(tiles, own, behind, buffer, forward);
     }
 }
