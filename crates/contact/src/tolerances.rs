@@ -12,6 +12,9 @@ pub(crate) const ROUNDING: f64 = 1e-12;
 /// rounding errors, 1e-16 of that product.
 pub(crate) const ROUNDED: f64 = 1e-8;
 
+/// Rounding of forces over displacement times stiffness, below which no solver gets: what it is asked for is not smaller.
+pub(crate) const REACHED: f64 = 1e-14;
+
 /// Part of the earlier sizes that a vanishing quantity is measured against.
 pub(crate) const REST: f64 = 1e-3;
 
@@ -74,6 +77,12 @@ pub(crate) const COVERED: f64 = 1e-10;
 
 /// Second moment of a covered part below which it has no extent, over that along it.
 pub(crate) const FLAT: f64 = 1e-13;
+
+/// Distance of a mid-node from the middle of its edge, over the size of the facet, from which on the edge is bent.
+pub(crate) const BENT: f64 = 1e-9;
+
+/// Steps of Newton's method to a place in a facet with bent edges: quadratic, from an edge that is bent by a fifth.
+pub(crate) const BENT_STEPS: usize = 6;
 
 /// Weight of a node in a side that counts as none, over the largest.
 pub(crate) const NO_WEIGHT: f64 = 1e-13;

@@ -4,7 +4,7 @@
 //!
 //! | module | package | holds |
 //! |---|---|---|
-//! | [`fem_mesh`] | `signorini-fem-mesh` | tetrahedra, P1 elasticity, loads, decomposition, files |
+//! | [`fem_mesh`] | `signorini-fem-mesh` | tetrahedra of order 1 and 2, elasticity, loads, decomposition, files |
 //! | [`qp`] | `signorini-qp` | quadratic programming: KPRGP, SMALSE, active sets |
 //! | [`tfeti`] | `signorini-tfeti` | gluing, kernels, inverses, dual operator, projectors |
 //! | [`contact`] | `signorini-contact` | scenes, plans, time steps, Coulomb friction, certificates |

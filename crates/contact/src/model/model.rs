@@ -10,6 +10,7 @@ use crate::settings::Settings;
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti::internal::CopyStiffness;
 use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder, TiedRows};
+use std::ops::Range;
 use std::sync::OnceLock;
 
 /// Segment numbers of the feasible set.
@@ -35,27 +36,33 @@ pub(crate) struct Model {
     pub(crate) standing: Vec<Option<usize>>,
     /// Set with zero radii.
     pub(crate) set: ProductSet,
-    /// Stiffness of the support rows, made if supports move.
-    support_stiffness: OnceLock<Vec<f64>>,
+    /// Stiffness of the rows of supports and ties that move.
+    moved_stiffness: OnceLock<Vec<f64>>,
     /// Stiffness of the copies of each node, made with the first certificate.
     copies: OnceLock<CopyStiffness>,
 }
 
 impl Model {
     /// What prescribed displacements in `offset` (row units) would do to their nodes with all others held: for each
-    /// body the norm of these forces, N. Empty if no support moves.
+    /// body the norm of these forces, N. Empty if no support and no tie moves.
     pub(crate) fn prescribed_force(&self, offset: &[f64]) -> Vec<f64> {
-        if self.discrete.supports.motions.is_empty() {
+        let ranges = self.tfeti.gluing().ranges();
+        let supports = (!self.discrete.supports.motions.is_empty()).then(|| ranges.dirichlet.clone());
+        let ties = self.plan.effects.moving_ties.then(|| ranges.tied.clone());
+        let moved = [supports, ties].into_iter().flatten();
+        if moved.clone().next().is_none() {
             return Vec::new();
         }
-        let rows = self.tfeti.gluing().ranges().dirichlet.clone();
-        let stiffness = self.support_stiffness.get_or_init(|| {
-            let mut out = vec![0.0; rows.len()];
-            self.tfeti.row_stiffness(rows.clone(), &mut out);
-            out
+        let stiffness = self.moved_stiffness.get_or_init(|| {
+            let of = |rows: Range<usize>| {
+                let mut out = vec![0.0; rows.len()];
+                self.tfeti.row_stiffness(rows, &mut out);
+                out
+            };
+            moved.clone().flat_map(of).collect()
         });
         let mut out = vec![0.0; self.bodies.count().max(1)];
-        for (row, k) in rows.zip(stiffness) {
+        for (row, k) in moved.flatten().zip(stiffness) {
             out[self.bodies.of_row(row)] += (k * offset[row]).powi(2);
         }
         out.iter_mut().for_each(|v| *v = v.sqrt());
@@ -116,7 +123,7 @@ impl Model {
             handed_on: Vec::new(),
             points,
             set,
-            support_stiffness: OnceLock::new(),
+            moved_stiffness: OnceLock::new(),
             copies: OnceLock::new(),
         })
     }

@@ -4,9 +4,9 @@
 //! With `P` the L2 projection on linear functions on the covered part `C` of a facet with corners `x_j`, a multiplier
 //! takes of a function `f` the integral `int_C psi_j f = d_j (P f)(x_j)`, `d_j = int_C l_j` (docs/theory.md, section 5;
 //! A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34, 2012). On quadratic facets it is half the sum
-//! of that and of the shape function of the corner.
+//! of that and of the shape function of the corner; edges that are bent in the plane, as at the rim of a disc, count.
 
-use crate::tolerances::{COVERED, FLAT};
+use crate::tolerances::{BENT_STEPS, COVERED, FLAT};
 use signorini_fem_mesh::internal::{facet_shape, triangle};
 
 type Point = [f64; 2];
@@ -18,6 +18,8 @@ pub(super) struct Laid {
     pub(super) nodes: [u32; 3],
     /// Nodes on the edges 01, 12, 20 in a mesh of order 2.
     pub(super) mids: Option<[u32; 3]>,
+    /// How far they are from the middles of the corners; `None` if they are there.
+    pub(super) bend: Option<[Point; 3]>,
 }
 
 /// The covered part of a facet.
@@ -99,8 +101,12 @@ impl Piece {
 
 impl Cover {
     /// The cover of a facet by pieces that do not overlap; `None` without pieces. `own` are the nodes of the facet in a
-    /// mesh of order 2, corners first.
-    pub(super) fn new(facet: &[Point; 3], own: Option<&[u32; 6]>, pieces: &[Piece]) -> Option<Self> {
+    /// mesh of order 2, corners first, `bend` as of [`Laid`].
+    pub(super) fn new(
+        (facet, bend): (&[Point; 3], Option<&[Point; 3]>),
+        own: Option<&[u32; 6]>,
+        pieces: &[Piece],
+    ) -> Option<Self> {
         let (mut area, mut first) = (0.0, [0.0; 2]);
         for piece in pieces {
             piece.integrate(|p, w| {
@@ -174,9 +180,9 @@ impl Cover {
             let [[a, b, c], [ab, bc, ca]] = [piece.laid.nodes, piece.laid.mids?];
             let mut there = [[0.0; 3]; 6];
             piece.integrate_fifth(&rule, |p, w| {
-                moments_at(&mut here, &facet_shape(&barycentric(facet, p)), p, w);
-                let other = facet_shape(&barycentric(&piece.laid.corners, p));
-                moments_at(&mut there, &other, p, w);
+                moments_at(&mut here, &facet_shape(&place(facet, bend, p)), p, w);
+                let other = place(&piece.laid.corners, piece.laid.bend.as_ref(), p);
+                moments_at(&mut there, &facet_shape(&other), p, w);
             });
             for (node, moments) in [a, b, c, ab, bc, ca].into_iter().zip(&there) {
                 add(&mut out.weights, node, weights_of(moments));
@@ -210,6 +216,31 @@ pub(super) fn barycentric(corners: &[Point; 3], p: Point) -> [f64; 3] {
     let whole = cross(sub(b, a), sub(c, a));
     let [second, third] = [cross(sub(p, a), sub(c, a)), cross(sub(b, a), sub(p, a))].map(|v| v / whole);
     [1.0 - second - third, second, third]
+}
+
+/// Barycentric coordinates of a point in a triangle with bent edges 01, 12, 20: Newton's method for `x(l) = p`, `x` the
+/// quadratic interpolation of corners and mid-nodes.
+fn place(corners: &[Point; 3], bend: Option<&[Point; 3]>, p: Point) -> [f64; 3] {
+    let mut l = barycentric(corners, p);
+    let (Some([e, f, g]), [a, b, c]) = (bend, *corners) else {
+        return l;
+    };
+    let sum = |terms: [(f64, Point); 3]| [0, 1].map(|k| 4.0 * terms.iter().map(|(t, x)| t * x[k]).sum::<f64>());
+    let plus = |a: Point, b: Point| [a[0] + b[0], a[1] + b[1]];
+    for _ in 0..BENT_STEPS {
+        let bent = sum([(l[0] * l[1], *e), (l[1] * l[2], *f), (l[2] * l[0], *g)]);
+        let off = [0, 1].map(|k| p[k] - bent[k] - (0..3).map(|i| l[i] * corners[i][k]).sum::<f64>());
+        // derivatives along the second and the third coordinate
+        let u = plus(sub(b, a), sum([(l[0] - l[1], *e), (l[2], *f), (-l[2], *g)]));
+        let v = plus(sub(c, a), sum([(-l[1], *e), (l[1], *f), (l[0] - l[2], *g)]));
+        let det = cross(u, v);
+        let [s, t] = [cross(off, v) / det, cross(u, off) / det];
+        if !(s.is_finite() && t.is_finite()) {
+            break;
+        }
+        l = [l[0] - s - t, l[1] + s, l[2] + t];
+    }
+    l
 }
 
 /// Inverse of a symmetric matrix `[xx, xy, yy]` of second moments, without directions in which there is no extent.
@@ -255,6 +286,24 @@ mod tests {
             corners,
             nodes: [first, first + 1, first + 2],
             mids: None,
+            bend: None,
+        }
+    }
+
+    /// A place in a triangle with bent edges is where its shape functions put it.
+    #[test]
+    fn places_in_bent_triangles_are_found() {
+        let corners = [[0.0, 0.0], [1.0, 0.1], [0.2, 0.9]];
+        let bend = [[0.02, -0.09], [0.07, 0.06], [0.0, 0.03]];
+        let mid = |k: usize| {
+            let middle = mean(corners[k], corners[(k + 1) % 3]);
+            [0, 1].map(|c| middle[c] + bend[k][c])
+        };
+        let nodes = [corners[0], corners[1], corners[2], mid(0), mid(1), mid(2)];
+        for p in [[0.3, 0.3], [0.01, 0.0], [0.95, 0.1], [0.25, 0.85], [0.5, 0.05]] {
+            let shape = facet_shape(&place(&corners, Some(&bend), p));
+            let found = [0, 1].map(|c| (0..6).map(|k| shape[k] * nodes[k][c]).sum::<f64>());
+            assert!(sub(found, p).iter().all(|d| d.abs() < 1e-14), "{p:?}: {found:?}");
         }
     }
 
@@ -275,7 +324,7 @@ mod tests {
         for laid in covers {
             let pieces: Vec<Piece> = laid.iter().filter_map(|&l| Piece::new(&facet, l)).collect();
             assert_eq!(pieces.len(), laid.len());
-            let cover = Cover::new(&facet, None, &pieces).expect("covered");
+            let cover = Cover::new((&facet, None), None, &pieces).expect("covered");
             let sum: f64 = pieces.iter().map(|p| p.area).sum();
             assert!((cover.area - sum).abs() < 1e-15 && (cover.areas.iter().sum::<f64>() - sum).abs() < 1e-15);
             for (j, &corner) in facet.iter().enumerate() {

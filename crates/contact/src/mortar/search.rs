@@ -1,7 +1,7 @@
 //! Which facets of the other side cover a facet.
 
 use super::cover::{Cover, Laid, Piece, barycentric};
-use crate::tolerances::FACING;
+use crate::tolerances::{BENT, FACING};
 use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
@@ -31,6 +31,17 @@ impl Triangle {
     fn quadratic(&self) -> Option<[u32; 6]> {
         let ([a, b, c], [ab, bc, ca]) = (self.nodes, self.mids?);
         Some([a, b, c, ab, bc, ca])
+    }
+
+    /// How far its mid-nodes are from the middles of its corners in a plane; `None` if they are there.
+    fn bend(&self, mesh: &TetMesh, plane: &Plane, corners: &[[f64; 2]; 3]) -> Option<[[f64; 2]; 3]> {
+        let mids = self.mids?.map(|n| plane.lay(mesh.points()[n as usize]).0);
+        let bend = [0, 1, 2].map(|k| {
+            let ends = [corners[k], corners[(k + 1) % 3]];
+            [0, 1].map(|c| mids[k][c] - 0.5 * (ends[0][c] + ends[1][c]))
+        });
+        let is_bent = bend.iter().flatten().any(|d| d.abs() > BENT * plane.size);
+        is_bent.then_some(bend)
     }
 }
 
@@ -86,10 +97,12 @@ pub(super) fn covers(mesh: &TetMesh, triangles: &[Triangle], other: &Surface) ->
             .filter_map(|k| {
                 let plane = planes[k].as_ref()?;
                 // a steep facet may go on beyond
-                let pieces = other.pieces(plane, [reach, reach + FARTHER * plane.size]);
+                let pieces = other.pieces(mesh, plane, [reach, reach + FARTHER * plane.size]);
                 let farthest = pieces.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
                 let pieces: Vec<Piece> = pieces.into_iter().map(|p| p.0).collect();
-                let cover = Cover::new(&plane.corners, triangles[k].quadratic().as_ref(), &pieces);
+                let bend = triangles[k].bend(mesh, plane, &plane.corners);
+                let facet = (&plane.corners, bend.as_ref());
+                let cover = Cover::new(facet, triangles[k].quadratic().as_ref(), &pieces);
                 Some((k, cover, farthest))
             })
             .collect();
@@ -176,14 +189,17 @@ impl OtherSide {
 
     /// The parts of facets that lie over a facet within the distance `far`, with their signed distance, each place
     /// once; none where none is within `near`.
-    fn pieces(&self, plane: &Plane, [near, far]: [f64; 2]) -> Vec<(Piece, f64)> {
+    fn pieces(&self, mesh: &TetMesh, plane: &Plane, [near, far]: [f64; 2]) -> Vec<(Piece, f64)> {
         let own = plane.corners.map(|c| plane.space(c));
         let ways = [far, -far].map(|by| scale(by, plane.frame.normal));
         let swept: Vec<[f64; 3]> = ways.iter().flat_map(|&way| own.map(|c| add(c, way))).collect();
         let boxes = self.tree.locate_in_envelope_intersecting(&AABB::from_points(&swept));
         let mut numbers: Vec<u32> = boxes.map(|found| found.data).collect();
         numbers.sort_unstable();
-        let mut found: Vec<(Piece, f64)> = numbers.iter().filter_map(|&k| self.piece(plane, k, far)).collect();
+        let mut found: Vec<(Piece, f64)> = numbers
+            .iter()
+            .filter_map(|&k| self.piece(mesh, plane, k, far))
+            .collect();
         if found.iter().all(|(_, distance)| distance.abs() > near) {
             return Vec::new();
         }
@@ -202,7 +218,7 @@ impl OtherSide {
         found
     }
 
-    fn piece(&self, plane: &Plane, facet: u32, reach: f64) -> Option<(Piece, f64)> {
+    fn piece(&self, mesh: &TetMesh, plane: &Plane, facet: u32, reach: f64) -> Option<(Piece, f64)> {
         let facet = facet as usize;
         if -dot(self.normals[facet], plane.frame.normal) < FACING {
             return None;
@@ -211,11 +227,17 @@ impl OtherSide {
         let [a, b, c] = self.corners[facet];
         let seen = [a, c, b].map(|corner| plane.lay(corner));
         let [i, j, k] = self.triangles[facet].nodes;
-        let laid = Laid {
+        let mut laid = Laid {
             corners: seen.map(|s| s.0),
             nodes: [i, k, j],
             mids: self.triangles[facet].mids.map(|[ij, jk, ki]| [ki, jk, ij]),
+            bend: None,
         };
+        let seen_from = Triangle {
+            nodes: laid.nodes,
+            mids: laid.mids,
+        };
+        laid.bend = seen_from.bend(mesh, plane, &laid.corners);
         let piece = Piece::new(&plane.corners, laid)?;
         let shape = barycentric(&laid.corners, piece.middle());
         let distance: f64 = shape.iter().zip(&seen).map(|(l, s)| l * s.1).sum();

@@ -154,7 +154,7 @@ impl ActiveSetSolver {
             linear: linear.as_ref().unwrap_or(&problem.linear),
             rhs: &problem.rhs,
         };
-        let [least, least_contact] = problem.least();
+        let [least, least_contact] = problem.least(task.settings.tolerance);
         let least = least.max(vector::norm(&problem.handed_on));
         let contact = !model.points.is_empty();
         let tolerance = task.settings.tolerance * if contact { 1.0 } else { LINEAR_SLACK };

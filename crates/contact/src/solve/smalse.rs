@@ -191,7 +191,7 @@ impl SmalseSolver {
             x.copy_from_slice(&iterate.lambda[normal.clone()]);
             Ok(tolerances.is_full(tolerance))
         };
-        let least = problem.least()[1];
+        let least = problem.least(settings.tolerance)[1];
         let outcome = successive_approximations(&mut x, settings.tolerance, least, MAX_EVALUATIONS, map);
         let mut outcome = match outcome {
             Ok(outcome) => outcome,
@@ -232,7 +232,7 @@ impl SmalseSolver {
         let mut last_change = f64::INFINITY;
         // bounds of normal forces that vanish
         let coefficient = problem.coefficients.iter().fold(0.0_f64, |a, b| a.max(*b));
-        let least = coefficient * problem.least()[1];
+        let least = coefficient * problem.least(task.settings.tolerance)[1];
         let mut written = Ok(());
         let mut hook = |x: &[f64], set: &mut ProductSet| {
             let old = radii(set);

@@ -4,7 +4,7 @@ use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model};
 use crate::scene::{Contact, DifferenceFormula, Increment, Pose, Scene};
 use crate::state::{Peak, State};
-use crate::tolerances::{REST, ROUNDED};
+use crate::tolerances::{REACHED, REST, ROUNDED};
 use crate::vec3::dot;
 use signorini_qp::vector;
 use std::borrow::Cow;
@@ -201,21 +201,26 @@ impl StepProblem {
     /// What vanishing multipliers of a body are measured against, N: earlier ones, and the rounding errors of its
     /// motion.
     pub(crate) fn rest(&self, body: usize) -> f64 {
-        self.at_rest(body, |p| p.multipliers)
+        self.at_rest(body, ROUNDED, |p| p.multipliers)
     }
 
-    fn at_rest(&self, body: usize, size: fn(&Peak) -> f64) -> f64 {
+    fn at_rest(&self, body: usize, rounded: f64, size: fn(&Peak) -> f64) -> f64 {
         let earlier = self.peaks.get(body).map_or(0.0, |p| REST * size(p));
-        let rounding = self.prescribed_force.get(body).map_or(0.0, |f| ROUNDED * f);
+        let rounding = self.prescribed_force.get(body).map_or(0.0, |f| rounded * f);
         earlier.max(rounding)
     }
 
-    /// What vanishing multipliers are measured against, N: all, and those of contact.
-    pub(crate) fn least(&self) -> [f64; 2] {
+    /// What vanishing multipliers are measured against, N, where errors of this part of them are asked for: all, and
+    /// those of contact.
+    pub(crate) fn least(&self, tolerance: f64) -> [f64; 2] {
         let sizes: [fn(&Peak) -> f64; 2] = [|p| p.multipliers, |p| p.force];
+        let rounded = ROUNDED.max(REACHED / tolerance);
         sizes.map(|size| match self.peaks.len() {
-            0 | 1 => self.at_rest(0, size),
-            n => (0..n).map(|b| self.at_rest(b, size).powi(2)).sum::<f64>().sqrt(),
+            0 | 1 => self.at_rest(0, rounded, size),
+            n => (0..n)
+                .map(|b| self.at_rest(b, rounded, size).powi(2))
+                .sum::<f64>()
+                .sqrt(),
         })
     }
 

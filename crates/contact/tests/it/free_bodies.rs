@@ -1,7 +1,8 @@
 //! Bodies that nothing holds: what the messages say, and with which numbers.
 
 use crate::common::*;
-use signorini_qp::ActiveSetSettings;
+use signorini_qp::{ActiveSetSettings, EqualityProjector};
+use signorini_tfeti::ActiveSetProjector;
 
 fn free(mesh: TetMesh) -> Scene {
     Scene::new(mesh, steel())
@@ -302,4 +303,24 @@ fn plates_that_close_press_what_no_load_does() {
             );
         }
     }
+}
+
+/// Motions of a block along its smooth base have rows of exact zeros: not of rounding, as a turn about the normal has
+/// in a body without symmetry, which would ask contact forces for a balance that they cannot give.
+#[test]
+fn motions_along_a_smooth_plane_have_no_rows() {
+    let mesh = crate::mortar::blocks([3, 3, 2], [4, 2, 2], 1.0);
+    let skew = |[x, y, z]: [f64; 3]| [1.3 * x + 0.21 * y, 0.7 * y + 0.1 * x + 0.3 * z, z];
+    let scene = Scene::new(mesh.map_points(skew).expect("skew"), uniform(1e9, 0.3))
+        .with_support(Support::fixed(brick::Z_MIN))
+        .with_contact(Contact::between(second(brick::Z_MIN), brick::Z_MAX))
+        .with_boxes([1, 1, 2]);
+    let simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+    let system = simulation.tfeti();
+    let contact = system.gluing().ranges().contact().end;
+    let projector = ActiveSetProjector::new(system.coarse(), contact, None).expect("a projector");
+    let largest = |row: &[f64]| row.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+    let rows: Vec<f64> = projector.loose().iter().map(|mode| largest(&mode.row)).collect();
+    assert_eq!(rows.iter().filter(|c| **c == 0.0).count(), 3, "{rows:?}");
+    assert_eq!(rows.iter().filter(|c| **c > 1e-3).count(), 3, "{rows:?}");
 }

@@ -371,6 +371,35 @@ fn quadratic_bodies_meshed_apart_pass_uniform_pressure() {
     }
 }
 
+/// Sides with bent edges in their plane, as a disc has at its rim: a body tied there turns with the other one, and
+/// balances it, though no node of one side is one of the other.
+#[test]
+fn quadratic_sides_with_bent_edges_turn_together() {
+    let bulged = |[x, y, z]: [f64; 3]| {
+        let [u, v] = [2.0 * x - 1.0, 2.0 * y - 1.0];
+        [u * (1.1 - 0.1 * v * v), v * (1.1 - 0.1 * u * u), z]
+    };
+    let mesh = blocks([2, 2, 1], [3, 3, 1], 1.0).raise_order().expect("order 2");
+    let mesh = mesh.map_points(bulged).expect("bulged");
+    let turned = |[x, y, z]: [f64; 3]| [2.0 * z - 3.0 * y, 3.0 * x - z, y - 2.0 * x].map(|u| 1e-3 * u);
+    let held = mesh.nodes_on(brick::Z_MIN);
+    let turns = held.iter().map(|&n| turned(mesh.points()[n as usize])).collect();
+    let scene = Scene::new(mesh.clone(), uniform(YOUNG, POISSON))
+        .with_support(Support::fixed(held).with_motions(turns, History::constant(1.0)))
+        .with_contact(Contact::tied(second(brick::Z_MIN), brick::Z_MAX))
+        .with_boxes([1, 1, 2]);
+    let (_, results) = run(scene.clone(), Settings::default());
+    for (&x, u) in mesh.points().iter().zip(results[0].displacement.as_chunks::<3>().0) {
+        let error = turned(x).iter().zip(u).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(error < 1e-10, "{x:?}: {error:e}");
+    }
+    let pulled = scene.with_load(Load::traction(second(brick::X_MAX), [PRESSURE, 2.0 * PRESSURE, 0.0]));
+    let mut simulation = Simulation::new(pulled, tight()).expect("set-up");
+    let imbalance = simulation.step().expect("step").reactions().imbalance();
+    let parts = imbalance.force.iter().chain(&imbalance.moment);
+    assert!(parts.clone().all(|f| f.abs() < 1e-8 * PRESSURE), "{imbalance:?}");
+}
+
 /// Sides that do not face each other, a tag on both sides, bodies inside each other: refused as where meshes match. The
 /// plan says which side has the points: that with the larger facets, or the first of those that are alike.
 #[test]

@@ -10,7 +10,7 @@ use crate::projector::levels::Bases;
 use crate::projector::model::Model;
 use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
 use crate::projector::split::fronts::ContactWeights;
-use crate::tolerances::{ROUNDED_STEP, SHORT_ROWS, WORK};
+use crate::tolerances::{ROUNDED_MODE, ROUNDED_STEP, SHORT_ROWS, WORK};
 use signorini_qp::internal::{LineWeight, LooseMode};
 use signorini_qp::vector::{dot, norm};
 use signorini_qp::{EqualityProjector, QpError};
@@ -141,9 +141,14 @@ impl ActiveSetProjector {
         };
         let mut scratch = factor.scratch();
         let motions = factor.free_motions().iter();
-        let loose: Vec<_> = motions
+        let mut loose: Vec<_> = motions
             .map(|motion| coarse.loose_mode(&motion.amplitudes, contact_rows))
             .collect();
+        // what is rounding holds nothing and must not ask for a balance
+        let entries = loose.iter().flat_map(|mode| &mode.row);
+        let rounding = ROUNDED_MODE * entries.fold(0.0, |most: f64, c| most.max(c.abs()));
+        let entries = loose.iter_mut().flat_map(|mode| &mut mode.row);
+        entries.filter(|c| c.abs() <= rounding).for_each(|c| *c = 0.0);
         // weights that are added to those that hold every body leave the matrix better conditioned
         let large = coarse.rows() >= SHORT_ROWS;
         let single =
