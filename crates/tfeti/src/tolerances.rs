@@ -35,7 +35,7 @@ pub(crate) const LAYER: f64 = 1e-6;
 pub(crate) const MOVING: f64 = 1e-9;
 /// Work on a free motion, relative to the norms of both, above which a load is not in balance with it.
 pub(crate) const WORK: f64 = 1e-9;
-/// Entries of the row of a motion that only contact stops which are rounding, over the largest of all these motions.
+/// Largest entry of the row of a motion that is rounding, over that of all motions that only contact stops.
 pub(crate) const ROUNDED_MODE: f64 = 1e-13;
 /// Weight of support rows that leaves the question alone whether they hold the bodies.
 pub(crate) const SUPPORTED: f64 = 0.01;

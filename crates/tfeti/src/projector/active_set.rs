@@ -144,11 +144,11 @@ impl ActiveSetProjector {
         let mut loose: Vec<_> = motions
             .map(|motion| coarse.loose_mode(&motion.amplitudes, contact_rows))
             .collect();
-        // what is rounding holds nothing and must not ask for a balance
-        let entries = loose.iter().flat_map(|mode| &mode.row);
-        let rounding = ROUNDED_MODE * entries.fold(0.0, |most: f64, c| most.max(c.abs()));
-        let entries = loose.iter_mut().flat_map(|mode| &mut mode.row);
-        entries.filter(|c| c.abs() <= rounding).for_each(|c| *c = 0.0);
+        // a motion that no contact row holds must not ask for a balance by what rounding leaves of its row
+        let largest = |mode: &LooseMode| mode.row.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        let rounding = ROUNDED_MODE * loose.iter().map(largest).fold(0.0, f64::max);
+        let held_by_none = loose.iter_mut().filter(|mode| largest(mode) <= rounding);
+        held_by_none.for_each(|mode| mode.row.fill(0.0));
         // weights that are added to those that hold every body leave the matrix better conditioned
         let large = coarse.rows() >= SHORT_ROWS;
         let single =
