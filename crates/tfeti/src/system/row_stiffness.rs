@@ -122,15 +122,19 @@ impl Tfeti {
     }
 
     /// Weights of the rows for projectors where copies differ in stiffness: `1 / sum_d b_d² / K_dd`, relative to the
-    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one, and a row that
-    /// gives way itself in proportion to both together. `None` where all copies
-    /// [count alike](Self::copy_stiffness), no contact row gives way, and products with the factor matter: it follows
-    /// the contact, or is large.
+    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one, and a contact
+    /// row that gives way in proportion to both together. `None` where all copies
+    /// [count alike](Self::copy_stiffness) and no contact row gives way. Without contact that is so only where the factor
+    /// is not small (there weights save a product), and always on springs, whose small forces weights would hide.
     pub fn row_weights(&self) -> Option<Vec<f64>> {
-        let contact = !self.gluing().ranges().contact().is_empty();
-        let matters = contact || self.coarse().rows() >= SHORT_ROWS;
+        let (ranges, springs) = (self.gluing().ranges(), self.gluing().springs());
+        let contact = !ranges.contact().is_empty();
+        if !contact && !springs.is_empty() {
+            return None;
+        }
+        let saves = !contact && self.subdomains() > 1 && self.coarse().rows() < SHORT_ROWS;
         let (plain, given) = (
-            matters && self.copy_stiffness().is_plain(),
+            !saves && self.copy_stiffness().is_plain(),
             self.gluing().contact_compliance(),
         );
         if plain && given.is_empty() {
@@ -150,8 +154,8 @@ impl Tfeti {
             return Some(soft.chain(std::iter::repeat_n(1.0, rest)).collect());
         }
         let mut weights: Vec<f64> = (0..self.dual_dim()).map(weight).collect();
-        for (row, compliance) in self.gluing().compliance() {
-            weights[row] /= 1.0 + compliance * weights[row];
+        for (weight, compliance) in weights.iter_mut().zip(given) {
+            *weight /= 1.0 + compliance * *weight;
         }
         let largest = weights.iter().fold(0.0_f64, |m, w| m.max(*w));
         for w in &mut weights {
