@@ -86,8 +86,8 @@ pub(crate) const ACROSS: f64 = 100.0;
 pub(crate) const SMALL_PART: f64 = 1e-4;
 /// Largest `|x|` so far over the present one from which on `A x` is computed afresh.
 pub(crate) const SHRUNK: f64 = 1e5;
-/// Part of the tolerance that `x` may be off the equality after steps that round.
-pub(crate) const OFF_EQUALITY: f64 = 0.03;
+/// Part of the tolerance that `x` may be off the equality after steps that round, and `A x` off `x` at the end.
+pub(crate) const NEGLIGIBLE: f64 = 0.03;
 
 // Active set: conjugate gradients on one set
 

@@ -2,6 +2,7 @@
 
 use super::result::discretisation_error;
 use super::simulation::Simulation;
+use super::step::product;
 use crate::error::ContactError;
 use crate::estimate::Solved;
 use crate::report::{AccuracyReport, AlgebraicError, StepReport, relative};
@@ -82,6 +83,7 @@ impl Simulation {
                 return Ok((report, recovered));
             }
             before = Some(report);
+            self.iterate.f_lambda = product(&self.model, &self.problem, &recovered.rows, &self.iterate);
         }
     }
 

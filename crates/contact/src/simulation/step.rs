@@ -195,7 +195,7 @@ fn traces(model: &Model, problem: &StepProblem, rows: &[f64]) -> Vec<f64> {
 }
 
 /// `F lambda` afresh from the recovered displacement: rows, with what gives way, are `F lambda + B K+ f + Gᵀ alpha`.
-fn product(model: &Model, problem: &StepProblem, rows: &[f64], iterate: &Iterate) -> Vec<f64> {
+pub(super) fn product(model: &Model, problem: &StepProblem, rows: &[f64], iterate: &Iterate) -> Vec<f64> {
     let coarse = model.tfeti.coarse();
     let mut rigid = vec![0.0; rows.len()];
     coarse.apply_transpose(&iterate.alpha, &mut rigid, &mut coarse.scratch());

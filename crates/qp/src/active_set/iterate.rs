@@ -61,15 +61,20 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         vector::copy(self.x, &mut self.work.t);
     }
 
-    /// `ax += A (x - t)`: the product follows `x` from the [mark](Iterate::mark), if it has moved by more than `rounding`.
-    pub(crate) fn correct(&mut self, rounding: f64) {
-        let work = &mut *self.work;
-        vector::axpby(1.0, self.x, -1.0, &mut work.t);
-        let operator = self.problem.operator;
-        if operator.norm(&work.t) <= rounding {
-            return;
+    /// The product follows `x` from the [mark](Iterate::mark), if it has moved by more than `length`. Whether it does.
+    pub(crate) fn correct(&mut self, length: f64) -> bool {
+        vector::axpby(1.0, self.x, -1.0, &mut self.work.t);
+        let follows = self.problem.operator.norm(&self.work.t) > length;
+        if follows {
+            self.catch_up();
         }
-        operator.apply(&work.t, &mut work.ap, &mut work.operator);
+        follows
+    }
+
+    /// The same after a move that was too short: `ax += A t`, where `t` is that move.
+    pub(crate) fn catch_up(&mut self) {
+        let work = &mut *self.work;
+        self.problem.operator.apply(&work.t, &mut work.ap, &mut work.operator);
         vector::axpy(1.0, &work.ap, self.ax);
         self.report.corrections += 1;
     }

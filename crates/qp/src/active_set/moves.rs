@@ -2,7 +2,7 @@
 
 use crate::error::QpError;
 use crate::problem::{EqualityProjector, SymmetricOperator};
-use crate::tolerances::{BALANCE_ROUNDS, SHORT, SHORTEST, UNSURE, VERY_SHORT};
+use crate::tolerances::{BALANCE_ROUNDS, NEGLIGIBLE, SHORT, SHORTEST, UNSURE, VERY_SHORT};
 use crate::vector;
 
 use super::iterate::natural_map;
@@ -34,7 +34,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         }
         let at = &mut self.at;
         self.moved.jump = vector::distance(&at.x[..constrained], &at.work.before);
-        self.balance(joint);
+        self.balance(joint, place);
         self.descend();
         Ok(())
     }
@@ -110,8 +110,9 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         active.changed as f64 <= few
     }
 
-    /// Makes `G x = e` hold again, and the product exact.
-    fn balance(&mut self, joint: bool) {
+    /// Makes `G x = e` hold again, and the product exact; after what may be the last move, of next to nothing, only if
+    /// the solve goes on.
+    fn balance(&mut self, joint: bool, place: &Place) {
         let at = &mut self.at;
         if let Some(safeguard) = &mut self.safeguard {
             safeguard.current = self.moved.followed;
@@ -121,8 +122,19 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             self.moved.drifted = false;
         }
         if self.moved.jump > 0.0 || joint {
-            at.correct(0.0);
+            let length = if self.may_end(place) {
+                NEGLIGIBLE * place.limits.all
+            } else {
+                0.0
+            };
+            self.moved.behind = !self.at.correct(length) && length > 0.0;
         }
+    }
+
+    /// Whether the problem on the set is solved, and the move to the next one next to nothing.
+    fn may_end(&self, place: &Place) -> bool {
+        let short = self.moved.jump <= NEGLIGIBLE * place.limits.constrained;
+        short && self.moved.followed && self.left.within(place.limits) && self.safeguard.is_none()
     }
 
     /// With a safeguard, where the set stayed: shortens the move until the cost falls, and holds blocks that stop it.

@@ -6,7 +6,7 @@ use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, OFF_EQUALITY, PASSING_PART, PRESSED, PROGRESS, ROUNDED, SHRUNK,
+    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NEGLIGIBLE, PASSING_PART, PRESSED, PROGRESS, ROUNDED, SHRUNK,
     SINK_ROUNDS, SMALL_PART,
 };
 use crate::vector;
@@ -46,6 +46,8 @@ pub(crate) struct LastMove {
     pub(crate) followed: bool,
     /// Whether steps that round have been made since `G x = e` was restored.
     pub(crate) drifted: bool,
+    /// Whether the product has yet to follow.
+    pub(crate) behind: bool,
 }
 
 impl LastMove {
@@ -82,7 +84,7 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) progress: Progress,
     /// Estimated errors when the last set was left, that of the constrained part when it was entered, and the least
     /// with which a set was entered.
-    left: Lengths,
+    pub(crate) left: Lengths,
     first_error: f64,
     least_error: f64,
     /// Once predictions ran in circles.
@@ -127,6 +129,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
                 unbalanced: 0,
                 followed: false,
                 drifted: false,
+                behind: false,
             },
             progress: Progress {
                 best: f64::INFINITY,
@@ -276,6 +279,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let stale = self.peak > SHRUNK * place.x_norm;
         if stale {
             self.peak = place.x_norm;
+            self.moved.behind = false;
             self.at.multiply();
         }
         self.peak = self.peak.max(place.x_norm);
@@ -312,6 +316,15 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             && !at.work.active.contradicted(at.set, at.x, &map, limit)
     }
 
+    /// Lets the product follow the last move, if that is yet to be done. Whether it was.
+    pub(crate) fn catches_up(&mut self) -> bool {
+        let behind = std::mem::take(&mut self.moved.behind);
+        if behind {
+            self.at.catch_up();
+        }
+        behind
+    }
+
     /// Whether `G x = e` holds as exactly as `x` is known, after steps that round. It does afterwards.
     pub(crate) fn is_balanced(&mut self, place: &Place) -> bool {
         if !self.moved.drifted {
@@ -324,7 +337,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         vector::copy(at.x, &mut at.work.ap);
         vector::subtract(&at.work.t, &mut at.work.ap);
         let drift = at.problem.operator.norm(&at.work.ap);
-        if drift <= OFF_EQUALITY * place.limits.all {
+        if drift <= NEGLIGIBLE * place.limits.all {
             vector::copy(&at.work.t, at.x);
             return true;
         }

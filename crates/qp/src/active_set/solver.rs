@@ -16,7 +16,7 @@
 //!
 //! | local | meaning |
 //! |---|---|
-//! | `x`, `ax` | iterate and `A x`, kept exact by recurrence and one correction a set |
+//! | `x`, `ax` | iterate and `A x`, kept exact by recurrence and one correction a set but a last one of next to nothing |
 //! | `residual`, `restricted` | `P_Wᵀ (A x - b)`, and its constrained part on the active set |
 //! | `z` | preconditioned residual on the active set |
 //! | `constrained` | components up to the last constrained one; only these differ on the set |
@@ -33,7 +33,7 @@ use super::workspace::ActiveSetWorkspace;
 
 /// Solves the problem from the start `x`.
 ///
-/// `ax` holds `A x` if `ax_known`, else it is computed. On return both belong to the last iterate, and
+/// `ax` holds `A x` if `ax_known`, else it is computed. On return it is `A x` up to 3 % of the tolerance, and
 /// [`ActiveSetWorkspace::residual`] holds `P_Wᵀ (A x - b)`. `hook` couples the set to the solution (Coulomb
 /// friction); pass `&mut |_, _| {}` for a fixed set.
 ///
@@ -67,6 +67,9 @@ pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrecon
             if run.is_balanced(&place) && run.set_agrees(&place)? {
                 break Status::Converged;
             }
+            continue;
+        }
+        if run.catches_up() {
             continue;
         }
         run.note_progress(&place);
