@@ -5,7 +5,7 @@
 //! order 2 it is a mean around the node (`means`). What cannot be meant is refused here, before any stiffness is made
 //! (`scene`, `overflow`, `penetration`, `turn`). `side` says which nodes a contact point moves; all above asks it.
 //!
-//! Uses: `scene`. In: a scene. Out: a [`DiscreteScene`], borrowed by plan, model and reactions.
+//! Uses: `scene`, `mortar`. In: a scene. Out: a [`DiscreteScene`], borrowed by plan, model and reactions.
 
 mod creases;
 mod extents;

@@ -3,7 +3,7 @@
 //!
 //! All of it follows from the recovered displacement and the multipliers; nothing is taken from a solver's word.
 //!
-//! Uses: `step`, `model`, `discrete`, `state`, `report`.
+//! Uses: `step`, `model`, `discrete`, `state`, `scene`, `report`.
 //! In: multipliers, displacement, residual. Out: plain data for the user.
 
 mod certificate;

@@ -3,7 +3,7 @@
 //! `solver` chooses; each solver holds all its work memory. `scaling` gives every body a unit of force of its own,
 //! `release` ends what rows of one node contradict.
 //!
-//! Uses: `step`, `model`, `settings`, `report` (and `qp`, `tfeti`).
+//! Uses: `step`, `model`, `scene`, `settings`, `report` (and `qp`, `tfeti`).
 //! In: a [`StepProblem`](crate::step::StepProblem) and an [`Iterate`]. Out: multipliers and a report of the step.
 
 mod active_set;

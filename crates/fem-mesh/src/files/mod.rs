@@ -1,6 +1,6 @@
 //! Files: Gmsh meshes in, VTU pictures and PVD series out, and files that take the place of others at once.
 //!
-//! Uses: `decomposition`, `mesh`. In: bytes, or a mesh with fields. Out: a mesh, or files.
+//! Uses: `mesh`. In: bytes, or a mesh with fields. Out: a mesh, or files.
 
 #[cfg(feature = "gmsh")]
 pub mod gmsh;

@@ -3,7 +3,7 @@
 //! `density` says where a load acts, `history` how it changes in time, `function` is what a user gives for either,
 //! `assemble` turns it into consistent nodal forces.
 //!
-//! Uses: `decomposition`, `element`, `mesh`, `vec3`. In: a mesh, a decomposition, a load. Out: a force vector a
+//! Uses: `decomposition`, `mesh`, `vec3`. In: a mesh, a decomposition, a load. Out: a force vector a
 //! subdomain.
 
 mod assemble;

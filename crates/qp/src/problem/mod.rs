@@ -5,8 +5,8 @@
 //! which `block` has one shape each (interval, disc). `projector` is the equality as the active-set method sees it,
 //! `dense_projector` one of a matrix.
 //!
-//! Uses: `vector`, `report`, `settings`, `error`, `tolerances`. In: what a caller owns. Out: products, projections,
-//! steps to the boundary. No solver is known here.
+//! Uses: `vector`, `error`, `tolerances`. In: what a caller owns. Out: products, projections, steps to the boundary. No
+//! solver is known here.
 
 mod block;
 mod dense;

@@ -1,8 +1,8 @@
 //! The dual operator `F = B K+ B^T`.
 //!
-//! Uses `linalg`, `subdomain` and `rows`. In go gluing and classes, out come gather tables between dual vectors and
-//! boundary vectors (`boundary`, filled by `build`; `cut` for several ranks, of which each keeps a `part` of the dual
-//! vectors), the inverses of all classes (`inverses`) and the product with `F` (`operator`).
+//! Uses `linalg`, `processes`, `subdomain` and `rows`. In go gluing and classes, out come gather tables between dual
+//! vectors and boundary vectors (`boundary`, filled by `build`; `cut` for several ranks, of which each keeps a `part` of
+//! the dual vectors), the inverses of all classes (`inverses`) and the product with `F` (`operator`).
 
 pub(crate) mod boundary;
 pub(crate) mod build;
