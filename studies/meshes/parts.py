@@ -80,7 +80,7 @@ def bracket(size):
     head = occ.addDisk(40, 15, 20, 9, 9)
     occ.fragment([(3, body)], [(2, head)])
     occ.synchronize()
-    stray = [tag for _, tag in gmsh.model.getEntities(2) if gmsh.model.getAdjacencies(2, tag)[0].size == 0]
+    stray = [tag for _, tag in gmsh.model.getEntities(2) if len(gmsh.model.getAdjacencies(2, tag)[0]) == 0]
     occ.remove([(2, tag) for tag in stray], recursive=True)
     occ.synchronize()
     group(3, "body")

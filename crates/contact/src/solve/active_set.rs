@@ -43,7 +43,7 @@ pub(crate) struct ActiveSetSolver {
 }
 
 impl ActiveSetSolver {
-    pub(crate) fn new(model: &Model, settings: &Settings, own: &ActiveSetSettings) -> Result<Self, ContactError> {
+    pub(crate) fn new(model: &Model, settings: &Settings, own: ActiveSetSettings) -> Result<Self, ContactError> {
         let contact = model.tfeti.gluing().ranges().contact().end;
         let part = model.tfeti.part();
         let (dual, coarse) = match &part {
@@ -85,7 +85,7 @@ impl ActiveSetSolver {
             scale,
             part,
             exchanges: Exchanges::new(model),
-            settings: own.clone(),
+            settings: own,
             paper: None,
         })
     }
@@ -110,12 +110,13 @@ impl ActiveSetSolver {
 
     pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
         let mut report = StepReport::new();
-        report.counters.inequality_solves = usize::from(!task.model.points.is_empty());
+        let contact = !task.model.points.is_empty();
+        report.counters.inequality_solves = usize::from(contact);
         let start = iterate.lambda.clone();
         let status = self.active_sets(task, iterate, &mut report)?;
         report.status = step_status(status);
         task.model.tfeti.check_processes()?;
-        if !report.status.converged() && !task.model.points.is_empty() {
+        if contact && !report.status.converged() {
             return self.fall_back(task, iterate, start, report);
         }
         iterate.known = true;

@@ -30,15 +30,13 @@ impl std::fmt::Debug for Solver {
 
 impl Solver {
     pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
-        let active_set = |own: &ActiveSetSettings| -> Result<Self, ContactError> {
-            Ok(Self::ActiveSet(Box::new(ActiveSetSolver::new(model, settings, own)?)))
+        let active_set = match &settings.method {
+            Method::ActiveSet(own) => Some(own.clone()),
+            _ => model.points.is_empty().then(ActiveSetSettings::default),
         };
-        Ok(match &settings.method {
-            Method::ActiveSet(own) => active_set(own)?,
-            _ if model.points.is_empty() => active_set(&ActiveSetSettings::default())?,
-            Method::SuccessiveApproximations { .. } | Method::OneLoop { .. } => {
-                Self::Smalse(Box::new(SmalseSolver::new(model, settings)?))
-            }
+        Ok(match active_set {
+            Some(own) => Self::ActiveSet(Box::new(ActiveSetSolver::new(model, settings, own)?)),
+            None => Self::Smalse(Box::new(SmalseSolver::new(model, settings)?)),
         })
     }
 

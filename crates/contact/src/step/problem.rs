@@ -69,7 +69,7 @@ impl StepProblem {
             vector::axpy(*factor, &load.dual, &mut self.load);
             vector::axpy(*factor, &load.coarse, &mut self.rhs);
         }
-        self.handed_on = vec![0.0; if model.points.is_empty() { self.load.len() } else { 0 }];
+        self.handed_on = vec![0.0; if model.handed_on.is_empty() { 0 } else { self.load.len() }];
         for (factor, lambda) in self.factors.iter().zip(&model.handed_on) {
             vector::axpy(*factor, lambda, &mut self.handed_on);
         }
