@@ -113,6 +113,7 @@ pub use mesh::{Facet, FacetTag, MeshError, Surface, SurfaceError, SurfaceFrame, 
 /// What the crates of this workspace share beyond the interface.
 #[doc(hidden)]
 pub mod internal {
+    pub use crate::element::shape_gradients;
     pub use crate::loads::interpolate;
     pub use crate::mesh::{EDGES, facet_shape, tag_list};
     pub use crate::quadrature::triangle;

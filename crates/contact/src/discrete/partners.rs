@@ -58,8 +58,8 @@ impl Paired {
         matches!(self.partners, Partners::Mortar(_))
     }
 
-    /// Finds the sides of a contact. Where meshes match the first side has the points, else the coarser one: there they
-    /// are fewer, their rows farther from depending on one another, and their pressures smoother.
+    /// Finds the sides of a contact. Where meshes match the first side has the points, else the coarser one, of sides with
+    /// facets of one size that with fewer points: rows are farther from depending on one another, and pressures smoother.
     pub(super) fn new(mesh: &TetMesh, index: usize, contact: &Contact) -> Result<Self, ContactError> {
         let surface = Surface::new(mesh, &contact.tags)?;
         let fixed = fixed_frame(index, contact, &surface)?;
@@ -84,11 +84,21 @@ impl Paired {
             return Ok(paired);
         }
         let facet = |s: &Surface| s.total_area() / s.triangles().len() as f64;
-        paired.swapped = facet(&other.surface) > COARSER * facet(&paired.surface);
-        let mortar = match paired.swapped {
-            true => mortar_nodes(mesh, &other.surface, &paired.surface),
-            false => mortar_nodes(mesh, &paired.surface, &other.surface),
-        };
+        let [own, others] = [facet(&paired.surface), facet(&other.surface)];
+        let seen = |from: &Surface, to: &Surface| mortar_nodes(mesh, from, to, contact.tied);
+        let mut mortar = Vec::new();
+        paired.swapped = others > COARSER * own;
+        if !paired.swapped {
+            mortar = seen(&paired.surface, &other.surface);
+        }
+        if paired.swapped || own <= COARSER * others {
+            let count = |nodes: &[Option<MortarNode>]| nodes.iter().flatten().count();
+            let back = seen(&other.surface, &paired.surface);
+            paired.swapped |= count(&back) < count(&mortar);
+            if paired.swapped {
+                mortar = back;
+            }
+        }
         if mortar.iter().all(Option::is_none) {
             let distance = other.distance(&paired.surface);
             let contact = index;
@@ -133,6 +143,9 @@ fn nodes(
     let found: Vec<_> = surface.nodes().par_iter().enumerate().map(partner).collect();
     // of several errors the first, whichever thread has found one
     let found: Option<Vec<Partner>> = found.into_iter().collect::<Result<_, ContactError>>()?;
+    // tied nodes that are apart may turn (`mortar`)
+    let together = |found: &Vec<Partner>| !contact.tied || found.iter().all(|p| p.gap == 0.0);
+    let found = found.filter(together);
     Ok(found.filter(|found| match_facets(mesh, surface, found, &other.surface, rounding)))
 }
 

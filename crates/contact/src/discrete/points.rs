@@ -177,7 +177,7 @@ fn mortar_gap(
         weight * vector::dot(&way, normal)
     };
     let [partner, own] = [&seen.partner, &seen.own].map(|side| side.iter().map(along).sum::<f64>());
-    let gap = partner - own;
+    let gap = partner - own + seen.way;
     let (nodes, size) = ([node, seen.partner[0].0], surface.areas()[local].sqrt());
     check_overlap(contact, &scene.contacts[contact], nodes, gap, size)?;
     Ok(gap)

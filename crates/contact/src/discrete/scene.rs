@@ -10,7 +10,7 @@ use super::supports::Supports;
 use super::turn::check_turn;
 use crate::error::ContactError;
 use crate::scene::{Pose, Scene, check_laws};
-use signorini_fem_mesh::{Decomposition, Surface};
+use signorini_fem_mesh::{Decomposition, FacetTag, Surface};
 use signorini_tfeti::ContactConstraint;
 use signorini_tfeti::internal::prescribed_points;
 use std::collections::HashSet;
@@ -65,8 +65,13 @@ impl DiscreteScene {
         let mut conditions = conditions(scene, &paired, rounding)?;
         let ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
         if !ties.is_empty() {
-            // a bonded node does not move against the other body
-            let bonded: HashSet<u32> = ties.iter().flat_map(|t| t.sides.nodes()).map(|n| n.0).collect();
+            // a bonded node does not move against the other body; nodes behind its side do
+            let tied = scene.contacts.iter().filter(|c| c.tied);
+            let tags: HashSet<FacetTag> = tied.flat_map(|c| c.tags.iter().chain(&c.partner)).copied().collect();
+            let sides = scene.mesh.facets().iter().filter(|f| tags.contains(&f.tag));
+            let sides: HashSet<u32> = sides.flat_map(|f| f.nodes).collect();
+            let nodes = ties.iter().flat_map(|t| t.sides.nodes()).map(|n| n.0);
+            let bonded: HashSet<u32> = nodes.filter(|n| sides.contains(n)).collect();
             conditions.retain(|c| c.sides.partner.is_none() || !bonded.contains(&c.node()));
         }
         let surfaces: Vec<Surface> = paired.into_iter().map(|p| p.surface).collect();

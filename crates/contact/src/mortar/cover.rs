@@ -20,6 +20,45 @@ pub(super) struct Laid {
     pub(super) mids: Option<[u32; 3]>,
     /// How far they are from the middles of the corners; `None` if they are there.
     pub(super) bend: Option<[Point; 3]>,
+    /// Where a displacement is to be taken from its tetrahedron to the facet, the way there.
+    pub(super) way: Option<Way>,
+}
+
+/// The way from a triangle that is not in the plane of the facet to the facet, and what a displacement changes on it: as in
+/// the tetrahedron behind the triangle, linearly.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Way {
+    /// The other nodes of the tetrahedron: the one opposite, in a mesh of order 2 the mid-nodes of its edges, too.
+    pub(super) nodes: [u32; 4],
+    /// How high the nodes of the triangle are over the plane of the facet, m.
+    pub(super) heights: [f64; 6],
+    /// At each corner the derivatives of the shape functions along the normal of the facet, 1/m: those of the nodes of
+    /// the triangle, then of the others.
+    pub(super) slopes: [[f64; 10]; 3],
+}
+
+impl Way {
+    /// The shape functions of the triangle and of the other nodes of the tetrahedron at barycentric coordinates, where
+    /// the facet is `own` over its plane; and the way, m.
+    fn shape<const N: usize, const M: usize>(&self, l: &[f64; 3], plain: &[f64; N], own: f64) -> ([f64; M], f64) {
+        let height: f64 = plain.iter().zip(&self.heights).map(|(n, h)| n * h).sum();
+        let far = height - own;
+        let slope = |k: usize| (0..3).map(|c| l[c] * self.slopes[c][k]).sum::<f64>();
+        let shape = std::array::from_fn(|k| plain.get(k).copied().unwrap_or(0.0) - far * slope(k));
+        (shape, far)
+    }
+}
+
+/// A facet in its plane.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Flat {
+    pub(super) corners: [Point; 3],
+    /// Its nodes in a mesh of order 2, corners first.
+    pub(super) nodes: Option<[u32; 6]>,
+    /// As of [`Laid`].
+    pub(super) bend: Option<[Point; 3]>,
+    /// How high its mid-nodes are over the plane, m.
+    pub(super) heights: [f64; 3],
 }
 
 /// The covered part of a facet.
@@ -33,6 +72,8 @@ pub(super) struct Cover {
     pub(super) weights: Vec<(u32, [f64; 3])>,
     /// The same of the nodes of the facet in a mesh of order 2.
     pub(super) own: Vec<(u32, [f64; 3])>,
+    /// The same of the ways to triangles that are not in the plane of the facet, m³.
+    pub(super) ways: [f64; 3],
 }
 
 /// Adds to what a node has.
@@ -100,13 +141,9 @@ impl Piece {
 }
 
 impl Cover {
-    /// The cover of a facet by pieces that do not overlap; `None` without pieces. `own` are the nodes of the facet in a
-    /// mesh of order 2, corners first, `bend` as of [`Laid`].
-    pub(super) fn new(
-        (facet, bend): (&[Point; 3], Option<&[Point; 3]>),
-        own: Option<&[u32; 6]>,
-        pieces: &[Piece],
-    ) -> Option<Self> {
+    /// The cover of a facet by pieces that do not overlap; `None` without pieces.
+    pub(super) fn new(own: &Flat, pieces: &[Piece]) -> Option<Self> {
+        let (facet, bend) = (&own.corners, own.bend.as_ref());
         let (mut area, mut first) = (0.0, [0.0; 2]);
         for piece in pieces {
             piece.integrate(|p, w| {
@@ -154,15 +191,28 @@ impl Cover {
             areas,
             weights: Vec::new(),
             own: Vec::new(),
+            ways: [0.0; 3],
         };
-        let Some(own) = own else {
+        let mut ways = [[0.0; 3]];
+        let Some(nodes) = own.nodes else {
             for piece in pieces {
-                let mut there = [[0.0; 3]; 3];
-                piece.integrate(|p, w| moments_at(&mut there, &barycentric(&piece.laid.corners, p), p, w));
-                for (&node, moments) in piece.laid.nodes.iter().zip(&there) {
+                let mut there = [[0.0; 3]; 4];
+                let [a, b, c] = piece.laid.nodes;
+                piece.integrate(|p, w| {
+                    let l = barycentric(&piece.laid.corners, p);
+                    let Some(way) = &piece.laid.way else {
+                        return moments_at(&mut there, &l, p, w);
+                    };
+                    let (shape, far) = way.shape::<3, 4>(&l, &l, 0.0);
+                    moments_at(&mut there, &shape, p, w);
+                    moments_at(&mut ways, &[far], p, w);
+                });
+                let behind = piece.laid.way.map(|way| way.nodes[0]);
+                for (node, moments) in [a, b, c].into_iter().chain(behind).zip(&there) {
                     add(&mut out.weights, node, weights_of(moments));
                 }
             }
+            out.ways = weights_of(&ways[0]);
             return Some(out);
         };
         // shape functions about the centroid
@@ -178,17 +228,27 @@ impl Cover {
         let (rule, mut here) = (triangle(), [[0.0; 3]; 6]);
         for piece in pieces {
             let [[a, b, c], [ab, bc, ca]] = [piece.laid.nodes, piece.laid.mids?];
-            let mut there = [[0.0; 3]; 6];
+            let mut there = [[0.0; 3]; 10];
             piece.integrate_fifth(&rule, |p, w| {
-                moments_at(&mut here, &facet_shape(&place(facet, bend, p)), p, w);
+                let shape = facet_shape(&place(facet, bend, p));
+                moments_at(&mut here, &shape, p, w);
                 let other = place(&piece.laid.corners, piece.laid.bend.as_ref(), p);
-                moments_at(&mut there, &facet_shape(&other), p, w);
+                let plain = facet_shape(&other);
+                let Some(way) = &piece.laid.way else {
+                    return moments_at(&mut there, &plain, p, w);
+                };
+                let height = (0..3).map(|k| shape[3 + k] * own.heights[k]).sum();
+                let (shape, far) = way.shape::<6, 10>(&other, &plain, height);
+                moments_at(&mut there, &shape, p, w);
+                moments_at(&mut ways, &[far], p, w);
             });
-            for (node, moments) in [a, b, c, ab, bc, ca].into_iter().zip(&there) {
+            let behind = piece.laid.way.iter().flat_map(|way| way.nodes);
+            for (node, moments) in [a, b, c, ab, bc, ca].into_iter().chain(behind).zip(&there) {
                 add(&mut out.weights, node, weights_of(moments));
             }
         }
-        out.own = own.iter().copied().zip(here.iter().map(weights_of)).collect();
+        out.own = nodes.into_iter().zip(here.iter().map(weights_of)).collect();
+        out.ways = weights_of(&ways[0]);
         Some(out)
     }
 }
@@ -287,6 +347,7 @@ mod tests {
             nodes: [first, first + 1, first + 2],
             mids: None,
             bend: None,
+            way: None,
         }
     }
 
@@ -324,7 +385,13 @@ mod tests {
         for laid in covers {
             let pieces: Vec<Piece> = laid.iter().filter_map(|&l| Piece::new(&facet, l)).collect();
             assert_eq!(pieces.len(), laid.len());
-            let cover = Cover::new((&facet, None), None, &pieces).expect("covered");
+            let flat = Flat {
+                corners: facet,
+                nodes: None,
+                bend: None,
+                heights: [0.0; 3],
+            };
+            let cover = Cover::new(&flat, &pieces).expect("covered");
             let sum: f64 = pieces.iter().map(|p| p.area).sum();
             assert!((cover.area - sum).abs() < 1e-15 && (cover.areas.iter().sum::<f64>() - sum).abs() < 1e-15);
             for (j, &corner) in facet.iter().enumerate() {

@@ -11,8 +11,11 @@ use std::collections::BTreeMap;
 pub(crate) struct MortarNode {
     /// Nodes of its own side with weights that sum to one, the node itself first; in a mesh of order 1 nothing else.
     pub(crate) own: Vec<(u32, f64)>,
-    /// Nodes of the other side with weights that sum to one, the largest first.
+    /// Nodes of the other side with weights that sum to one, the largest first; of a tied one that is apart also nodes
+    /// behind it.
     pub(crate) partner: Vec<(u32, f64)>,
+    /// Mean distance between tied sides along the normal, m, as far as the nodes of the partner do not have it.
+    pub(crate) way: f64,
     /// Integral of the dual shape function of the node over what is covered: `D_jj`, m².
     pub(crate) area: f64,
     /// Normal of the covered facets, out of the first side, and tangents.
@@ -21,9 +24,13 @@ pub(crate) struct MortarNode {
 
 /// For each node of a surface what it sees of the other one; `None` where that is nothing, and at nodes on both sides, as
 /// the tip of a crack: their shape functions are shared out to the other corners of each facet.
-pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface) -> Vec<Option<MortarNode>> {
+///
+/// Where sides that are `tied` are apart, as facets of curved sides are, displacements of the other side go on to the
+/// first one as in the tetrahedra behind it: linear ones, rotations among them, are the same on both sides, and what
+/// passes from one to the other has no moment.
+pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface, tied: bool) -> Vec<Option<MortarNode>> {
     let triangles = in_order(mesh, surface);
-    let covers = covers(mesh, &triangles, other);
+    let covers = covers(mesh, &triangles, other, tied);
     let mut around: Vec<Vec<(u32, u8)>> = vec![Vec::new(); surface.nodes().len()];
     for (k, triangle) in triangles.iter().enumerate() {
         for (corner, &node) in triangle.nodes.iter().enumerate() {
@@ -38,7 +45,7 @@ pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface) -
         if is_tip(own) {
             return None;
         }
-        let (mut area, mut normal) = (0.0, [0.0; 3]);
+        let (mut area, mut way, mut normal) = (0.0, 0.0, [0.0; 3]);
         let mut weights: BTreeMap<u32, f64> = BTreeMap::new();
         let mut side: BTreeMap<u32, f64> = BTreeMap::new();
         for &(facet, corner) in facets {
@@ -52,6 +59,7 @@ pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface) -
                 of[corner as usize] + shared / (3 - tips.len()) as f64
             };
             area += share(&cover.areas);
+            way += share(&cover.ways);
             (0..3).for_each(|c| normal[c] += cover.area * direction[c]);
             for (node, weight) in &cover.weights {
                 *weights.entry(*node).or_insert(0.0) += share(weight);
@@ -96,6 +104,7 @@ pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface) -
         Some(MortarNode {
             own: side,
             partner,
+            way: way / area,
             area,
             frame: SurfaceFrame::from_normal(normal)?,
         })

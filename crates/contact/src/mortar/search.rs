@@ -1,10 +1,11 @@
 //! Which facets of the other side cover a facet.
 
-use super::cover::{Cover, Laid, Piece, barycentric};
+use super::cover::{Cover, Flat, Laid, Piece, Way, barycentric};
 use crate::tolerances::{BENT, FACING};
 use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
+use signorini_fem_mesh::internal::shape_gradients;
 use signorini_fem_mesh::vec3::{add, area_vector, centroid, dot, norm, scale, sub};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 
@@ -20,6 +21,8 @@ type Corners = [[f64; 3]; 3];
 pub(super) struct Triangle {
     pub(super) nodes: [u32; 3],
     mids: Option<[u32; 3]>,
+    /// The tetrahedron behind it.
+    tet: u32,
 }
 
 impl Triangle {
@@ -31,6 +34,54 @@ impl Triangle {
     fn quadratic(&self) -> Option<[u32; 6]> {
         let ([a, b, c], [ab, bc, ca]) = (self.nodes, self.mids?);
         Some([a, b, c, ab, bc, ca])
+    }
+
+    /// Itself in its own plane.
+    fn flat(&self, mesh: &TetMesh, plane: &Plane) -> Flat {
+        let height = |n: u32| plane.lay(mesh.points()[n as usize]).1;
+        Flat {
+            corners: plane.corners,
+            nodes: self.quadratic(),
+            bend: self.bend(mesh, plane, &plane.corners),
+            heights: self.mids.map_or([0.0; 3], |mids| mids.map(height)),
+        }
+    }
+
+    /// The way to a facet in a plane; `None` if both are in it.
+    fn way(&self, mesh: &TetMesh, plane: &Plane, own: &Flat) -> Option<Way> {
+        let mut nodes: Vec<u32> = self.nodes.into_iter().chain(self.mids.into_iter().flatten()).collect();
+        let mut heights = [0.0; 6];
+        for (height, node) in heights.iter_mut().zip(&nodes) {
+            *height = plane.lay(mesh.points()[*node as usize]).1;
+        }
+        if heights.iter().chain(&own.heights).all(|h| h.abs() <= BENT * plane.size) {
+            return None;
+        }
+        let tet = self.tet as usize;
+        let corners = mesh.tets()[tet];
+        let all: Vec<u32> = corners
+            .into_iter()
+            .chain(mesh.mids().get(tet).copied().into_iter().flatten())
+            .collect();
+        let behind: Vec<u32> = all.iter().copied().filter(|n| !nodes.contains(n)).collect();
+        let mut others = [0; 4];
+        others.iter_mut().zip(&behind).for_each(|(other, node)| *other = *node);
+        nodes.extend(behind);
+        let slopes = self.nodes.map(|corner| {
+            let at = corners.map(|n| f64::from(u8::from(n == corner)));
+            let gradients = shape_gradients(mesh, tet, &at);
+            let mut slopes = [0.0; 10];
+            for (slope, node) in slopes.iter_mut().zip(&nodes) {
+                let place = all.iter().position(|n| n == node).unwrap_or(0);
+                *slope = dot(gradients[place], plane.frame.normal);
+            }
+            slopes
+        });
+        Some(Way {
+            nodes: others,
+            heights,
+            slopes,
+        })
     }
 
     /// How far its mid-nodes are from the middles of its corners in a plane; `None` if they are there.
@@ -56,6 +107,7 @@ pub(super) fn in_order(mesh: &TetMesh, surface: &Surface) -> Vec<Triangle> {
         Triangle {
             nodes: turn(nodes),
             mids: quadratic.then(|| turn(mesh.facet_mids(facet as usize))),
+            tet: mesh.facet_owner(facet as usize) as u32,
         }
     });
     let mut triangles: Vec<Triangle> = turned.collect();
@@ -83,7 +135,13 @@ struct Plane {
 /// The cover of each facet of a surface, by the nodes of the other one; the normals of the facets beside it.
 ///
 /// What is farther away than four times the largest distance found anywhere is not looked for, unless nothing is found.
-pub(super) fn covers(mesh: &TetMesh, triangles: &[Triangle], other: &Surface) -> Vec<Option<(Cover, [f64; 3])>> {
+/// Displacements of the other side are those where they are, or [on the facet](Way) if it is `tied`.
+pub(super) fn covers(
+    mesh: &TetMesh,
+    triangles: &[Triangle],
+    other: &Surface,
+    tied: bool,
+) -> Vec<Option<(Cover, [f64; 3])>> {
     let other = OtherSide::new(mesh, other);
     let planes: Vec<Option<Plane>> = triangles.iter().map(|t| Plane::new(&t.corners(mesh))).collect();
     let size = planes.iter().flatten().map(|p| p.size).fold(0.0, f64::max);
@@ -96,14 +154,13 @@ pub(super) fn covers(mesh: &TetMesh, triangles: &[Triangle], other: &Surface) ->
             .filter(|&k| out[k].is_none())
             .filter_map(|k| {
                 let plane = planes[k].as_ref()?;
+                let own = triangles[k].flat(mesh, plane);
                 // a steep facet may go on beyond
-                let pieces = other.pieces(mesh, plane, [reach, reach + FARTHER * plane.size]);
+                let reaches = [reach, reach + FARTHER * plane.size];
+                let pieces = other.pieces(mesh, (plane, tied.then_some(&own)), reaches);
                 let farthest = pieces.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
                 let pieces: Vec<Piece> = pieces.into_iter().map(|p| p.0).collect();
-                let bend = triangles[k].bend(mesh, plane, &plane.corners);
-                let facet = (&plane.corners, bend.as_ref());
-                let cover = Cover::new(facet, triangles[k].quadratic().as_ref(), &pieces);
-                Some((k, cover, farthest))
+                Some((k, Cover::new(&own, &pieces), farthest))
             })
             .collect();
         let mut farthest = None::<f64>;
@@ -189,7 +246,12 @@ impl OtherSide {
 
     /// The parts of facets that lie over a facet within the distance `far`, with their signed distance, each place
     /// once; none where none is within `near`.
-    fn pieces(&self, mesh: &TetMesh, plane: &Plane, [near, far]: [f64; 2]) -> Vec<(Piece, f64)> {
+    fn pieces(
+        &self,
+        mesh: &TetMesh,
+        (plane, tied): (&Plane, Option<&Flat>),
+        [near, far]: [f64; 2],
+    ) -> Vec<(Piece, f64)> {
         let own = plane.corners.map(|c| plane.space(c));
         let ways = [far, -far].map(|by| scale(by, plane.frame.normal));
         let swept: Vec<[f64; 3]> = ways.iter().flat_map(|&way| own.map(|c| add(c, way))).collect();
@@ -198,7 +260,7 @@ impl OtherSide {
         numbers.sort_unstable();
         let mut found: Vec<(Piece, f64)> = numbers
             .iter()
-            .filter_map(|&k| self.piece(mesh, plane, k, far))
+            .filter_map(|&k| self.piece(mesh, (plane, tied), k, far))
             .collect();
         if found.iter().all(|(_, distance)| distance.abs() > near) {
             return Vec::new();
@@ -218,7 +280,13 @@ impl OtherSide {
         found
     }
 
-    fn piece(&self, mesh: &TetMesh, plane: &Plane, facet: u32, reach: f64) -> Option<(Piece, f64)> {
+    fn piece(
+        &self,
+        mesh: &TetMesh,
+        (plane, tied): (&Plane, Option<&Flat>),
+        facet: u32,
+        reach: f64,
+    ) -> Option<(Piece, f64)> {
         let facet = facet as usize;
         if -dot(self.normals[facet], plane.frame.normal) < FACING {
             return None;
@@ -232,12 +300,15 @@ impl OtherSide {
             nodes: [i, k, j],
             mids: self.triangles[facet].mids.map(|[ij, jk, ki]| [ki, jk, ij]),
             bend: None,
+            way: None,
         };
         let seen_from = Triangle {
             nodes: laid.nodes,
             mids: laid.mids,
+            tet: self.triangles[facet].tet,
         };
         laid.bend = seen_from.bend(mesh, plane, &laid.corners);
+        laid.way = tied.and_then(|own| seen_from.way(mesh, plane, own));
         let piece = Piece::new(&plane.corners, laid)?;
         let shape = barycentric(&laid.corners, piece.middle());
         let distance: f64 = shape.iter().zip(&seen).map(|(l, s)| l * s.1).sum();

@@ -115,9 +115,10 @@ impl Contact {
     }
 
     /// Bonds two bodies, or parts of one that are meshed apart: both sides move alike where they face each other, as
-    /// [between](Self::between) bodies but without contact and friction. A distance between them stays as it is, or
-    /// changes as [`with_motion`](Self::with_motion) says: so is a bolt tightened that is cut across and whose parts
-    /// are tied. Sides that lie in each other deeper than their facets are large are refused: they are hardly meant.
+    /// [between](Self::between) bodies but without contact and friction. A distance between them, or between facets of
+    /// curved sides, is bridged: displacements of one side go on to the other linearly, so that both may turn. It
+    /// changes as [`with_motion`](Self::with_motion) says: so is a bolt tightened that is cut across and whose parts are
+    /// tied. Sides that lie in each other deeper than their facets are large are refused: they are hardly meant.
     pub fn tied(tag: FacetTag, partner: FacetTag) -> Self {
         Self {
             partner: vec![partner],

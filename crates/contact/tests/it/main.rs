@@ -8,6 +8,7 @@ mod common;
 mod compliance;
 mod contact_stress;
 mod crack;
+mod curved_sides;
 mod determinism;
 mod edges;
 mod edges_apart;

@@ -376,3 +376,16 @@ fn obstacles_turn_past_the_nodes_of_a_point() {
         assert!((0..2).all(|c| (found[c] - way[c]).abs() < 1e-12), "{found:?} {way:?}");
     }
 }
+
+/// Without contact conjugate gradients have one set only, and do not begin anew: that took 4,789 products.
+#[test]
+fn a_thin_plate_of_tiny_parts_does_not_begin_anew() {
+    let mesh = block([12.0, 12.0, 0.05], [12, 12, 1]).raise_order().expect("order 2");
+    let scene = Scene::new(mesh, uniform(1e9, 0.3))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(Load::pressure(brick::Z_MAX, 1.0))
+        .with_subdomains(72);
+    let result = solve(scene, Settings::default());
+    let products = result.report.counters.products;
+    assert!(products < 4000, "{products}");
+}

@@ -14,6 +14,7 @@ mod piece;
 
 pub use columns::TetNodes;
 pub use p1::Element;
+pub use piece::shape_gradients;
 
 pub(crate) use p1::Block;
 pub(crate) use piece::{Piece, integral, over_quadratic};

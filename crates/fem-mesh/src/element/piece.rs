@@ -27,6 +27,15 @@ pub(crate) enum Piece {
     },
 }
 
+/// Gradients of the shape functions of a tetrahedron of a mesh at barycentric coordinates, 1/m: those of its corners, then
+/// those of its mid-nodes.
+pub fn shape_gradients(mesh: &TetMesh, tet: usize, l: &[f64; 4]) -> Vec<Vec3> {
+    match mesh.order() {
+        1 => Element::new(&mesh.tet_points(tet)).gradients.to_vec(),
+        _ => p2::gradients(&mesh.quadratic_points(tet), l).1.to_vec(),
+    }
+}
+
 impl Piece {
     /// Of the displacement `u` of the nodes of a mesh.
     pub(crate) fn new(mesh: &TetMesh, tet: usize, u: &[Vec3]) -> Self {

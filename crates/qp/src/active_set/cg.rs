@@ -57,7 +57,13 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             })
         };
         let mut enough = fallen(start);
-        let last = goal.max_products.min(self.report.products() + MOST_STEPS);
+        // without constraints there is no other set
+        let most = if self.constrained() == 0 {
+            usize::MAX
+        } else {
+            MOST_STEPS
+        };
+        let last = goal.max_products.min(self.report.products().saturating_add(most));
         self.first_direction();
         let (mut rho, mut steps, mut tamed) = (rho, 0, false);
         while self.report.products() < last && rho > 0.0 {

@@ -6,6 +6,7 @@
 //! SIGNORINI_SCENES=2000 cargo test --release -p signorini --test campaign        # any number, from SIGNORINI_SEED, _FROM
 //! SIGNORINI_SCENE=137 cargo test --release -p signorini --test campaign -- --nocapture    # one, with its levels
 //! SIGNORINI_APART=17, SIGNORINI_APARTS=500 ...                                    # the same of bodies meshed apart
+//! SIGNORINI_ROUND=17, SIGNORINI_ROUNDS=500 ...                                    # the same of discs, washers and sleeves
 //! SIGNORINI_RANKED=200 ...                                                       # so many of both on two ranks
 //! SIGNORINI_REPORT=folder ...                                                    # lists of all scenes, in files
 //! ```
@@ -30,6 +31,7 @@ use std::sync::{Arc, Mutex};
 /// Scenes of an ordinary run, and the seed of all numbers.
 const SCENES: u64 = 240;
 const APART: u64 = 120;
+const ROUND: u64 = 40;
 const SEED: u64 = 20_240_229;
 /// Scenes of each kind that several ranks solve.
 const RANKED: u64 = 12;
@@ -54,6 +56,16 @@ fn what_is_said_to_be_solved_is_solved() {
 fn bodies_meshed_apart_are_solved() {
     campaign("SIGNORINI_APART", APART, |seed, number| {
         let scene = generate::apart::apart(seed, number);
+        let outcome = run::run_apart(&scene);
+        (scene.recipe, outcome)
+    });
+}
+
+/// The same for discs and washers, whose rims are bent, and sleeves around one another.
+#[test]
+fn round_bodies_are_solved() {
+    campaign("SIGNORINI_ROUND", ROUND, |seed, number| {
+        let scene = generate::round::round(seed, number);
         let outcome = run::run_apart(&scene);
         (scene.recipe, outcome)
     });

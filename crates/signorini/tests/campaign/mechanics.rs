@@ -1,4 +1,4 @@
-//! Linear and straight quadratic tetrahedra and loads, computed anew: no formula, table or rule is the library's.
+//! Linear and quadratic tetrahedra and loads, computed anew: no formula, table or rule is the library's.
 
 use crate::recipe::{Density, Elastic, Poly, Recipe};
 use crate::vec3::{Vec3, add, at, cross, dot, norm, scale, sub};
@@ -6,11 +6,11 @@ use signorini::contact::StepResult;
 use signorini::fem_mesh::FacetTag;
 use std::collections::HashMap;
 
-/// A tetrahedron of four or ten nodes: the gradients of its functions at points of equal weight that integrate its
-/// stiffness exactly.
+/// A tetrahedron of four or ten nodes: the gradients of its functions at points, with volumes, that integrate its
+/// stiffness, exactly where edges are straight.
 struct Element {
     nodes: Vec<u32>,
-    gradients: Vec<Vec<Vec3>>,
+    gradients: Vec<(f64, Vec<Vec3>)>,
     volume: f64,
     law: usize,
 }
@@ -21,6 +21,8 @@ pub(crate) struct Side {
     pub(crate) nodes: [u32; 3],
     /// The nodes that take a third of a constant stress each: the corners, or the mid-nodes of a quadratic facet.
     pub(crate) loaded: [u32; 3],
+    /// Mid-nodes of a quadratic facet, on the edges 01, 12, 20.
+    mids: Option<[u32; 3]>,
     /// Outward, of the length of its area.
     pub(crate) vector: Vec3,
 }
@@ -49,11 +51,13 @@ impl Mechanics {
             .map(|(k, (nodes, region))| {
                 let (linear, volume) = shape(nodes.map(|n| points[n as usize]));
                 let mids = mesh.mids().get(k);
+                let nodes: Vec<u32> = nodes.iter().chain(mids.into_iter().flatten()).copied().collect();
+                let places: Vec<Vec3> = nodes.iter().map(|n| points[*n as usize]).collect();
                 Element {
-                    nodes: nodes.iter().chain(mids.into_iter().flatten()).copied().collect(),
+                    nodes,
                     gradients: match mids {
-                        None => vec![linear.to_vec()],
-                        Some(_) => (0..4).map(|corner| quadratic(&linear, corner)).collect(),
+                        None => vec![(volume, linear.to_vec())],
+                        Some(_) => (0..4).map(|corner| quadratic(&places, corner)).collect(),
                     },
                     volume,
                     law: if one { 0 } else { *region as usize },
@@ -79,11 +83,10 @@ impl Mechanics {
     pub(crate) fn strain(&self, element: usize, u: &[Vec3]) -> Vec<Vec3> {
         let e = &self.elements[element];
         let mut out = vec![[0.0; 3]; u.len()];
-        for gradients in &e.gradients {
+        for (part, gradients) in &e.gradients {
             let stress = self.stress(e.law, gradients, u);
-            let part = e.volume / e.gradients.len() as f64;
             for (force, g) in out.iter_mut().zip(gradients) {
-                *force = add(*force, stress.map(|row| part * dot(row, *g)));
+                *force = add(*force, stress.map(|row| *part * dot(row, *g)));
             }
         }
         out
@@ -131,6 +134,18 @@ impl Mechanics {
             start += own.len();
         }
         (whole, squares)
+    }
+
+    /// The nodes of all tetrahedra with a facet that has one of the tags, ascending.
+    pub(crate) fn behind(&self, tags: &[FacetTag]) -> Vec<u32> {
+        let sides: Vec<[u32; 3]> = (self.sides.iter().filter(|s| tags.contains(&s.tag)))
+            .map(|s| s.nodes)
+            .collect();
+        let has = |e: &&Element| sides.iter().any(|s| s.iter().all(|n| e.nodes[..4].contains(n)));
+        let mut nodes: Vec<u32> = self.elements.iter().filter(has).flat_map(|e| e.nodes.clone()).collect();
+        nodes.sort_unstable();
+        nodes.dedup();
+        nodes
     }
 
     /// Nodal forces of all loads.
@@ -184,8 +199,9 @@ impl Mechanics {
             Density::Nodes(forces) => forces.iter().for_each(|(node, force)| put(*node, *force)),
             Density::Traction(tag, value) => {
                 for side in self.sides.iter().filter(|s| s.tag == *tag) {
-                    let share = scale(norm(side.vector) / 3.0, *value);
-                    side.loaded.iter().for_each(|n| put(*n, share));
+                    for (node, share) in self.shares(side) {
+                        put(node, scale(share, *value));
+                    }
                 }
             }
             Density::Pressure(tag, value) => {
@@ -202,6 +218,36 @@ impl Mechanics {
                     for (node, force) in self.spread(side.nodes, 2.0 * area, value) {
                         put(node, force);
                     }
+                }
+            }
+        }
+        out
+    }
+
+    /// Areas that the functions of a side have, m²: a third each of straight ones.
+    fn shares(&self, side: &Side) -> Vec<(u32, f64)> {
+        let Some(mids) = side.mids else {
+            return side.nodes.iter().map(|n| (*n, norm(side.vector) / 3.0)).collect();
+        };
+        let nodes: Vec<u32> = side.nodes.into_iter().chain(mids).collect();
+        let places: Vec<Vec3> = nodes.iter().map(|n| self.points[*n as usize]).collect();
+        let mut out: Vec<(u32, f64)> = nodes.iter().map(|n| (*n, 0.0)).collect();
+        for (x, v) in GAUSS {
+            for (y, w) in GAUSS {
+                let l = [1.0 - x, x * (1.0 - y), x * y];
+                // derivatives of the place along the three coordinates
+                let mut tangents = [[0.0; 3]; 3];
+                for a in 0..3 {
+                    tangents[a] = add(tangents[a], scale(4.0 * l[a] - 1.0, places[a]));
+                    let b = (a + 1) % 3;
+                    tangents[a] = add(tangents[a], scale(4.0 * l[b], places[3 + a]));
+                    tangents[b] = add(tangents[b], scale(4.0 * l[a], places[3 + a]));
+                }
+                let [u, t] = [1, 2].map(|k| sub(tangents[k], tangents[0]));
+                let area = v * w * x * norm(cross(u, t));
+                for a in 0..3 {
+                    out[a].1 += area * l[a] * (2.0 * l[a] - 1.0);
+                    out[3 + a].1 += area * 4.0 * l[a] * l[(a + 1) % 3];
                 }
             }
         }
@@ -267,15 +313,22 @@ fn shape(x: [Vec3; 4]) -> ([Vec3; 4], f64) {
     (gradients, volume)
 }
 
-/// Gradients of the ten quadratic functions at the point of the rule of degree 2 that is nearest to a corner, from those
-/// of the barycentric coordinates.
-fn quadratic(linear: &[Vec3; 4], corner: usize) -> Vec<Vec3> {
+/// Gradients of the ten quadratic functions at the point of the rule of degree 2 that is nearest to a corner, and the
+/// quarter of the volume there.
+fn quadratic(places: &[Vec3], corner: usize) -> (f64, Vec<Vec3>) {
     let near = (5.0 + 3.0 * 5f64.sqrt()) / 20.0;
     let l = |k: usize| if k == corner { near } else { (1.0 - near) / 3.0 };
-    let corners = (0..4).map(|k| scale(4.0 * l(k) - 1.0, linear[k]));
     let edges = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
+    // the tetrahedron that is tangent to the element there
+    let mut tangents = [0, 1, 2, 3].map(|k| scale(4.0 * l(k) - 1.0, places[k]));
+    for ([a, b], mid) in edges.into_iter().zip(&places[4..]) {
+        tangents[a] = add(tangents[a], scale(4.0 * l(b), *mid));
+        tangents[b] = add(tangents[b], scale(4.0 * l(a), *mid));
+    }
+    let (linear, volume) = shape(tangents);
+    let corners = (0..4).map(|k| scale(4.0 * l(k) - 1.0, linear[k]));
     let mids = edges.map(|[a, b]| add(scale(4.0 * l(b), linear[a]), scale(4.0 * l(a), linear[b])));
-    corners.chain(mids).collect()
+    (0.25 * volume, corners.chain(mids).collect())
 }
 
 fn matrix(elastic: &Elastic) -> [[f64; 6]; 6] {
@@ -323,6 +376,7 @@ fn sides(recipe: &Recipe, points: &[Vec3]) -> Vec<Side> {
             } else {
                 facet.nodes
             },
+            mids: quadratic.then(|| recipe.mesh.facet_mids(k)),
             vector: scale(sign, vector),
         }
     };

@@ -23,6 +23,8 @@ pub(crate) struct Pair {
     /// Whether that is all of both.
     pub(crate) whole: bool,
     pub(crate) compliance: [f64; 2],
+    /// How the first side moves against the second where they are tied.
+    pub(crate) motion: Option<(Vec3, Course)>,
 }
 
 /// The shape of a rigid obstacle.
@@ -65,17 +67,33 @@ pub(crate) struct Apart {
 }
 
 /// A rotation and a translation of the whole.
-struct Turn {
+pub(super) struct Turn {
     axes: [Vec3; 3],
     by: Vec3,
 }
 
 impl Turn {
-    fn way(&self, v: Vec3) -> Vec3 {
+    pub(super) fn new(dice: &mut Dice, length: f64) -> Self {
+        if dice.chance(0.4) {
+            let z = unit(add([0.0, 0.0, 1.5], dice.vector()));
+            let x = unit(cross([0.3, 1.0, 0.0], z));
+            Self {
+                axes: [x, cross(z, x), z],
+                by: scale(length, dice.vector()),
+            }
+        } else {
+            Self {
+                axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+                by: [0.0; 3],
+            }
+        }
+    }
+
+    pub(super) fn way(&self, v: Vec3) -> Vec3 {
         (0..3).fold([0.0; 3], |s, k| add(s, scale(v[k], self.axes[k])))
     }
 
-    fn place(&self, x: Vec3) -> Vec3 {
+    pub(super) fn place(&self, x: Vec3) -> Vec3 {
         add(self.way(x), self.by)
     }
 }
@@ -125,7 +143,7 @@ impl Foot {
     }
 }
 
-fn law(dice: &mut Dice, stress: f64, way: f64, duration: f64) -> Law {
+pub(super) fn law(dice: &mut Dice, stress: f64, way: f64, duration: f64) -> Law {
     match dice.whole(0, 9) {
         0..=1 => Law::None,
         2 => Law::Given(dice.between(0.05, 0.5) * stress),
@@ -152,19 +170,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
         duration,
         static_: clock.times().len() == 1,
     };
-    let turn = if dice.chance(0.4) {
-        let z = unit(add([0.0, 0.0, 1.5], dice.vector()));
-        let x = unit(cross([0.3, 1.0, 0.0], z));
-        Turn {
-            axes: [x, cross(z, x), z],
-            by: scale(length, dice.vector()),
-        }
-    } else {
-        Turn {
-            axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-            by: [0.0; 3],
-        }
-    };
+    let turn = Turn::new(dice, length);
     let count = if dice.chance(0.7) { 2 } else { 3 };
     let mut words = vec![format!("apart={count}")];
     // with numbers of their own, so that scenes stay what they were without them
@@ -302,6 +308,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
             common: foot.common(&feet[below]),
             whole,
             compliance: if tied { [0.0; 2] } else { gives_way(&mut words) },
+            motion: None,
         });
     }
     let mesh = mesh.expect("a body");
@@ -471,7 +478,11 @@ impl Apart {
         for pair in &self.pairs {
             let [a, b] = pair.sides;
             scene = scene.with_contact(if pair.tied {
-                Contact::tied(a, b)
+                let tie = Contact::tied(a, b);
+                match &pair.motion {
+                    Some((way, course)) => tie.with_motion(*way, crate::say::history(course)?),
+                    None => tie,
+                }
             } else {
                 rough(Contact::between(a, b), &pair.law, &pair.axis, pair.compliance)
             });

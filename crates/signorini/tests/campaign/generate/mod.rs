@@ -8,6 +8,7 @@ mod contacts;
 mod laws;
 mod loads;
 mod material;
+pub(crate) mod round;
 mod settings;
 mod supports;
 
