@@ -8,14 +8,12 @@ use crate::tolerances::LARGEST;
 use signorini_fem_mesh::{Decomposition, assemble_load};
 use signorini_qp::vector;
 use signorini_tfeti::TfetiError;
-use std::collections::BTreeSet;
 
 /// Refuses materials of regions in use; the least and the largest stiffness of a region times the extent of the mesh,
 /// N/m.
 pub(super) fn check_materials(scene: &Scene) -> Result<[f64; 2], ContactError> {
-    let regions: BTreeSet<u32> = scene.mesh.regions().iter().copied().collect();
     let mut ends = [f64::INFINITY, 0.0_f64];
-    for region in regions {
+    for region in scene.mesh.distinct_regions() {
         let law = scene.materials.get(region).map_err(|source| {
             let element = scene.mesh.regions().iter().position(|r| *r == region);
             let element = element.unwrap_or(0);

@@ -22,14 +22,10 @@ pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> 
 
 /// The regions of the mesh, ascending; one of them where one law fills all.
 fn regions(scene: &Scene, listed: &[u32]) -> Vec<u32> {
-    let all = scene.mesh.regions();
-    if listed.is_empty() {
-        return all.first().copied().into_iter().collect();
+    match listed.is_empty() {
+        true => scene.mesh.regions().first().copied().into_iter().collect(),
+        false => scene.mesh.distinct_regions(),
     }
-    let mut present = all.to_vec();
-    present.sort_unstable();
-    present.dedup();
-    present
 }
 
 fn unused_materials(mut listed: Vec<u32>, present: &[u32]) -> Option<Warning> {

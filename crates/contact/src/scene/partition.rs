@@ -67,9 +67,7 @@ impl Partition {
 
 /// A label for each tetrahedron: the first region of the same material.
 fn same_material(mesh: &TetMesh, materials: &Materials) -> Result<Vec<u32>, ContactError> {
-    let mut regions = mesh.regions().to_vec();
-    regions.sort_unstable();
-    regions.dedup();
+    let regions = mesh.distinct_regions();
     let laws = materials.of_tets(&regions)?;
     let first: Vec<u32> = laws
         .iter()

@@ -80,7 +80,8 @@ impl Simulation {
                 return Ok((report, recovered));
             }
             before = Some(report);
-            self.iterate.f_lambda = product(&self.model, &self.problem, &recovered.rows, &self.iterate);
+            product(&self.model, &self.problem, &recovered.rows, &mut self.iterate);
+            self.spare = recovered;
         }
     }
 

@@ -7,7 +7,7 @@
 use crate::model::{ConstrainedPoint, Model};
 use crate::scene::{Analysis, DifferenceFormula};
 use crate::settings::Settings;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 /// Hashes of the parts. They depend on the bits of numbers only, not on threads, processor or byte order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -122,8 +122,7 @@ fn point(point: &ConstrainedPoint) -> impl Iterator<Item = u64> {
 pub(crate) fn operator_hash(origin: &Fingerprint, model: &Model, settings: &Settings) -> u64 {
     let (mesh, gluing) = (&model.scene.mesh, model.tfeti.gluing());
     let body = [origin.points, origin.tets, origin.parts, origin.contact];
-    let regions: BTreeSet<u32> = mesh.regions().iter().copied().collect();
-    let laws = regions.into_iter().flat_map(|region| {
+    let laws = mesh.distinct_regions().into_iter().flat_map(|region| {
         let law = model.scene.materials.get(region).ok();
         law.into_iter().flat_map(|law| law.voigt()).flatten()
     });

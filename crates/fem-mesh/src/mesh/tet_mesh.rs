@@ -141,6 +141,15 @@ impl TetMesh {
         &self.regions
     }
 
+    /// The material regions in use, ascending.
+    pub fn distinct_regions(&self) -> Vec<u32> {
+        let runs = self.regions.chunk_by(|a, b| a == b);
+        let mut regions: Vec<u32> = runs.map(|run| run[0]).collect();
+        regions.sort_unstable();
+        regions.dedup();
+        regions
+    }
+
     /// The tetrahedron that the tagged facet number `facet` bounds.
     pub fn facet_owner(&self, facet: usize) -> usize {
         self.owners[facet] as usize

@@ -5,7 +5,9 @@ use crate::coarse::mobility::Mobility;
 use crate::linalg::entry;
 use crate::subdomain::kernel::{Block, Kernel, displacement, mean, product, transposed};
 use crate::subdomain::matrices::Subdomains;
-use crate::tolerances::{CLUSTER, LAYER, TRANSLATE};
+use crate::tolerances::{BLOCKS, CLUSTER, LAYER, TRANSLATE};
+use rayon::prelude::*;
+use signorini_fem_mesh::internal::Lists;
 use signorini_fem_mesh::vec3::sub;
 use std::collections::{BTreeMap, HashMap};
 
@@ -13,6 +15,7 @@ use std::collections::{BTreeMap, HashMap};
 #[derive(Debug)]
 pub(crate) struct Clusters {
     of: Vec<u32>,
+    members: Lists<u32>,
     /// Amplitudes of each subdomain from the motion of its cluster, row-major.
     maps: Vec<Block>,
     centres: Vec<[f64; 3]>,
@@ -31,6 +34,7 @@ impl Clusters {
         let length = (0..at.len()).map(|s| subdomains.kernel(s).radius()).sum::<f64>() / count;
         let centre = |list: &Vec<u32>| mean(list.iter().map(|&s| at[s as usize]));
         let mut out = Self {
+            members: Lists::by_key(members.len(), &of),
             of,
             maps: Vec::new(),
             centres: members.iter().map(centre).collect(),
@@ -74,20 +78,32 @@ impl Clusters {
 
     /// Wrenches on the clusters from those on the subdomains.
     pub(crate) fn restrict(&self, y: &[f64], out: &mut [f64]) {
-        out.fill(0.0);
-        let (out, _) = out.as_chunks_mut::<6>();
-        let each = y.as_chunks::<6>().0.iter().zip(&self.maps).zip(&self.of);
-        each.for_each(|((y, map), &cluster)| add_restricted(map, y, &mut out[cluster as usize]));
+        let (y, _) = y.as_chunks::<6>();
+        let clusters = out
+            .as_chunks_mut::<6>()
+            .0
+            .par_iter_mut()
+            .with_min_len(BLOCKS / CLUSTER)
+            .enumerate();
+        clusters.for_each(|(cluster, sum)| {
+            *sum = [0.0; 6];
+            for &s in self.members.of(cluster) {
+                add_restricted(&self.maps[s as usize], &y[s as usize], sum);
+            }
+        });
     }
 
     /// Amplitudes of the subdomains from the motions of the clusters.
     pub(crate) fn prolong(&self, motions: &[f64], y: &mut [f64]) {
         let (motions, _) = motions.as_chunks::<6>();
-        let each = y.as_chunks_mut::<6>().0.iter_mut().zip(&self.maps).zip(&self.of);
-        for ((y, map), &cluster) in each {
-            let motion = &motions[cluster as usize];
-            *y = std::array::from_fn(|i| (0..6).map(|j| map[i][j] * motion[j]).sum());
-        }
+        let subdomains = y.as_chunks_mut::<6>().0.par_iter_mut().with_min_len(BLOCKS);
+        subdomains
+            .zip(&self.maps)
+            .zip(&self.of)
+            .for_each(|((y, map), &cluster)| {
+                let motion = &motions[cluster as usize];
+                *y = std::array::from_fn(|i| (0..6).map(|j| map[i][j] * motion[j]).sum());
+            });
     }
 
     /// The matrix of the clusters for these `values` of that of the subdomains.

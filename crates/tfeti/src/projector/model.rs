@@ -16,9 +16,11 @@ use crate::projector::split::order::grid_of;
 use crate::projector::split::tree::cheapest_tree;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::kernel::Block;
-use crate::tolerances::{RELAXED, SWEEPS};
+use crate::tolerances::{BLOCKS, RELAXED, SWEEPS};
 use nalgebra::Matrix6;
+use rayon::prelude::*;
 use signorini_qp::internal::LineWeight;
+use signorini_qp::vector;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -264,14 +266,13 @@ impl Model {
         self.subtract(factor, own.clone(), y, rest);
         for _ in 0..SWEEPS {
             self.relax(factor, own.clone(), rest, step);
-            let both = y[unknowns.clone()].iter_mut().zip(&step[unknowns.clone()]);
-            both.for_each(|(y, s)| *y += s);
+            vector::axpy(1.0, &step[unknowns.clone()], &mut y[unknowns.clone()]);
             self.spread.tell(step, message);
             self.subtract(factor, own.clone(), step, rest);
         }
         self.spread.complete([y, rest], message);
         cluster(rest, step, sums, work);
-        y.iter_mut().zip(&*step).for_each(|(y, s)| *y += s);
+        vector::axpy(1.0, step, y);
     }
 
     /// `y = y - G W G^T x` on some subdomains.
@@ -283,9 +284,9 @@ impl Model {
     /// `out = J rest` on some subdomains.
     fn relax(&self, factor: &ModelFactor, own: Range<usize>, rest: &[f64], out: &mut [f64]) {
         let (rest, (out, _)) = (rest.as_chunks::<6>().0, out.as_chunks_mut::<6>());
-        for s in own.clone() {
-            out[s] = times(&self.inverses[s], &rest[s]);
-        }
+        let all = out[own.clone()].par_iter_mut().with_min_len(BLOCKS);
+        let each = all.zip(&self.inverses[own.clone()]).zip(&rest[own.clone()]);
+        each.for_each(|((out, inverse), rest)| *out = times(inverse, rest));
         let touching = self.touching.iter().zip(&factor.inverses);
         for ((s, _), inverse) in touching.filter(|((s, _), _)| own.contains(&(*s as usize))) {
             out[*s as usize] = times(inverse, &rest[*s as usize]);

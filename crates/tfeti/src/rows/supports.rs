@@ -4,6 +4,7 @@ use crate::error::TfetiError;
 use crate::linalg::entry;
 use crate::tolerances::{AGREEING, FIXED};
 use signorini_fem_mesh::vec3::{dot, norm};
+use std::collections::BTreeMap;
 
 /// Directions fixed by a support.
 #[derive(Debug, Clone, PartialEq)]
@@ -195,7 +196,7 @@ impl MergedSupports {
     }
 
     pub(super) fn new(supports: &[NodeSupport], nodes: usize) -> Result<Self, TfetiError> {
-        let mut fixed: Vec<Option<FixedNode>> = vec![None; nodes];
+        let mut fixed: BTreeMap<u32, FixedNode> = BTreeMap::new();
         let mut merged = Self::default();
         for (s, support) in supports.iter().enumerate() {
             let directions = unit_directions(s, support)?;
@@ -213,13 +214,13 @@ impl MergedSupports {
                     node,
                     ..FixedNode::default()
                 };
-                let entry = fixed[node as usize].get_or_insert_with(new);
+                let entry = fixed.entry(node).or_insert_with(new);
                 for direction in &directions {
                     add_direction(entry, s, *direction, motion)?;
                 }
             }
         }
-        merged.nodes = fixed.into_iter().flatten().collect();
+        merged.nodes = fixed.into_values().collect();
         Ok(merged)
     }
 }

@@ -29,7 +29,10 @@ impl CopyStiffness {
             (0..base.diagonal.len() / 3).map(mean).collect()
         };
         let by_class: Vec<Vec<f64>> = subdomains.bases.iter().map(by_class).collect();
-        let (mut first, mut values) = (Vec::new(), Vec::new());
+        let copies = (0..subdomains.count())
+            .map(|s| by_class[subdomains.class(s)].len())
+            .sum();
+        let (mut first, mut values) = (Vec::with_capacity(subdomains.count()), Vec::with_capacity(copies));
         for s in 0..subdomains.count() {
             first.push(values.len());
             values.extend(&by_class[subdomains.class(s)]);
@@ -37,8 +40,8 @@ impl CopyStiffness {
         Self { first, values }
     }
 
-    /// The same, or all copies alike if those of no node differ much.
-    pub(crate) fn unless_alike(self, decomposition: &Decomposition) -> Self {
+    /// Whether the copies of some node differ much.
+    pub(crate) fn differs(&self, decomposition: &Decomposition) -> bool {
         let differ = |node: usize| {
             let copies = decomposition.copies(node);
             let (least, most) = copies
@@ -47,11 +50,7 @@ impl CopyStiffness {
                 .fold((f64::INFINITY, 0.0), |(a, b), v| (v.min(a), v.max(b)));
             most > ALIKE * least
         };
-        if (0..decomposition.nodes()).any(differ) {
-            self
-        } else {
-            Self::default()
-        }
+        (0..decomposition.nodes()).any(differ)
     }
 
     /// Whether all copies of a node count alike.

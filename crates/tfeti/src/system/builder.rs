@@ -181,10 +181,8 @@ impl<'a> TfetiBuilder<'a> {
     /// The rows, and the stiffness of copies by which they weigh these.
     fn glue(&self, subdomains: &Subdomains) -> Result<(Arc<Gluing>, CopyStiffness), TfetiError> {
         let all = CopyStiffness::new(subdomains);
-        let stiffness = match has_several_laws(self.mesh, self.materials) {
-            true => all.clone(),
-            false => all.clone().unless_alike(self.decomposition),
-        };
+        let counts = has_several_laws(self.mesh, self.materials) || all.differs(self.decomposition);
+        let stiffness = if counts { all.clone() } else { CopyStiffness::default() };
         let springs = (self.springs, &all);
         let gluing = Gluing::new(self.decomposition, self.supports, self.contact, &stiffness, springs)?;
         Ok((Arc::new(gluing), stiffness))
@@ -194,9 +192,6 @@ impl<'a> TfetiBuilder<'a> {
 /// Whether regions in use have different Hooke tensors.
 fn has_several_laws(mesh: &TetMesh, materials: &Materials) -> bool {
     let law = |region: u32| materials.get(region).ok().map(|h| *h.voigt());
-    let mut regions = mesh.regions().to_vec();
-    regions.dedup();
-    regions.sort_unstable();
-    regions.dedup();
+    let regions = mesh.distinct_regions();
     regions.windows(2).any(|pair| law(pair[0]) != law(pair[1]))
 }

@@ -36,6 +36,8 @@ pub(super) struct Bunch {
     pub(super) behind: usize,
     /// Its numbers in the work memory, with a buffer of the kernels.
     pub(super) numbers: Range<usize>,
+    /// Products of a number of the factor with an unknown in one direction of a solve.
+    reads: usize,
 }
 
 impl Bunch {
@@ -45,12 +47,12 @@ impl Bunch {
 }
 
 impl Bunches {
-    /// For a tree whose region `r` equals the region `first[r]`; `buffer` is the length of that of a region's kernels,
-    /// `rank` the process of a region.
+    /// For a tree whose region `r` equals the region `first[r]`; `need` are the length of the buffer of a region's
+    /// kernels and the numbers that they read, `rank` the process of a region.
     pub(crate) fn new(
         tree: &CoarseTree,
         first: &[usize],
-        buffer: impl Fn(usize) -> usize,
+        need: impl Fn(usize) -> [usize; 2],
         rank: impl Fn(usize) -> Option<u32>,
     ) -> Self {
         let count = tree.regions.len();
@@ -89,9 +91,11 @@ impl Bunches {
                             .zip(&regions)
                             .for_each(|(c, &r)| of[r as usize] = [all.len() as u32, c]);
                         let width = if together { LANES } else { 1 };
-                        let length = (own + behind + buffer(r)) * width;
+                        let [buffer, reads] = need(r);
+                        let length = (own + behind + buffer) * width;
                         all.push(Bunch {
                             rank: rank(regions[0] as usize),
+                            reads: reads * regions.len(),
                             regions,
                             width,
                             own,
@@ -134,7 +138,9 @@ impl Bunches {
         let (own, above) = rest.split_at_mut(end - start);
         let others = if up { &*below } else { &*above };
         let offset = |bunch: &Bunch| bunch.numbers.start;
-        over_tasks(bunches, own, &offset, end - start >= SOLVE_READS, &|bunch, part| {
+        // the outermost regions have few unknowns and most numbers
+        let reads: usize = bunches.iter().map(|bunch| bunch.reads).sum();
+        over_tasks(bunches, own, &offset, reads >= SOLVE_READS, &|bunch, part| {
             task(bunch, &mut part[..bunch.numbers.len()], others);
         });
     }

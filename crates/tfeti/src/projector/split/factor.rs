@@ -157,12 +157,13 @@ impl SplitBase {
 
     /// What is solved together where `first` is the first equal region of each.
     fn bunch(&self, first: &[usize]) -> Bunches {
-        let buffer = |r: usize| {
-            let piece = &self.pieces[r];
-            piece.steady.buffer().max(piece.changing.buffer())
+        let need = |r: usize| {
+            let Piece { steady, changing, .. } = &self.pieces[r];
+            let reads = Tile::NUMBERS * (steady.tiles() + changing.tiles());
+            [steady.buffer().max(changing.buffer()), reads]
         };
         let rank = |r: usize| self.branches.as_ref().and_then(|branches| branches.rank_of(r));
-        Bunches::new(&self.tree, first, buffer, rank)
+        Bunches::new(&self.tree, first, need, rank)
     }
 
     /// Whether [`half_solve`](Self::half_solve) does something.
