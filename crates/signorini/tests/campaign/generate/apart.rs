@@ -4,10 +4,10 @@
 //! body.
 
 use super::bodies::side;
-use super::{Shaft, bare, settings};
+use super::{Shaft, Turn, bare, settings};
 use crate::dice::Dice;
 use crate::recipe::{Course, Density, Elastic, Fixed, Hold, Law, Push, Recipe, Where};
-use crate::vec3::{Vec3, across, add, cross, dot, norm, scale, sub, unit};
+use crate::vec3::{Vec3, across, add, dot, norm, scale, sub, unit};
 use signorini::prelude::*;
 
 /// Two sides that face each other.
@@ -64,38 +64,6 @@ pub(crate) struct Apart {
     pub(crate) bumps: f64,
     /// Side and stiffness of an elastic foundation, N/m³.
     pub(crate) ground: Option<(FacetTag, Vec3)>,
-}
-
-/// A rotation and a translation of the whole.
-pub(super) struct Turn {
-    axes: [Vec3; 3],
-    by: Vec3,
-}
-
-impl Turn {
-    pub(super) fn new(dice: &mut Dice, length: f64) -> Self {
-        if dice.chance(0.4) {
-            let z = unit(add([0.0, 0.0, 1.5], dice.vector()));
-            let x = unit(cross([0.3, 1.0, 0.0], z));
-            Self {
-                axes: [x, cross(z, x), z],
-                by: scale(length, dice.vector()),
-            }
-        } else {
-            Self {
-                axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-                by: [0.0; 3],
-            }
-        }
-    }
-
-    pub(super) fn way(&self, v: Vec3) -> Vec3 {
-        (0..3).fold([0.0; 3], |s, k| add(s, scale(v[k], self.axes[k])))
-    }
-
-    pub(super) fn place(&self, x: Vec3) -> Vec3 {
-        add(self.way(x), self.by)
-    }
 }
 
 /// A rectangle of a body seen from above: centre, angle, lengths.

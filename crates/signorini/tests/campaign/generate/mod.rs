@@ -14,6 +14,7 @@ mod supports;
 
 use crate::dice::Dice;
 use crate::recipe::{Clock, Course, Elastic, Recipe};
+use crate::vec3::{Vec3, add, cross, scale, unit};
 use signorini::prelude::TetMesh;
 
 /// Known faults and limits that the generator stays clear of. An entry goes when its fault is mended.
@@ -67,6 +68,38 @@ pub(crate) fn recipe(seed: u64, number: u64) -> Recipe {
     loads::loads(dice, &world, &shaft, &mut recipe);
     settings::describe(&mut recipe);
     recipe
+}
+
+/// A rotation and a translation of the whole.
+struct Turn {
+    axes: [Vec3; 3],
+    by: Vec3,
+}
+
+impl Turn {
+    fn new(dice: &mut Dice, length: f64) -> Self {
+        if dice.chance(0.4) {
+            let z = unit(add([0.0, 0.0, 1.5], dice.vector()));
+            let x = unit(cross([0.3, 1.0, 0.0], z));
+            Self {
+                axes: [x, cross(z, x), z],
+                by: scale(length, dice.vector()),
+            }
+        } else {
+            Self {
+                axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+                by: [0.0; 3],
+            }
+        }
+    }
+
+    fn way(&self, v: Vec3) -> Vec3 {
+        (0..3).fold([0.0; 3], |s, k| add(s, scale(v[k], self.axes[k])))
+    }
+
+    fn place(&self, x: Vec3) -> Vec3 {
+        add(self.way(x), self.by)
+    }
 }
 
 /// How fast things go.

@@ -2,9 +2,9 @@
 //! around one another, whose sides are curved out of their plane. They are tied or touch, and may be carried along or
 //! turned as a whole.
 
-use super::apart::{Apart, Pair, Rock, Shape, Turn, law};
+use super::apart::{Apart, Pair, Rock, Shape, law};
 use super::bodies::side;
-use super::{Shaft, bare, settings};
+use super::{Shaft, Turn, bare, settings};
 use crate::dice::Dice;
 use crate::recipe::{Course, Density, Elastic, Fixed, Hold, Law, Push, Where};
 use crate::vec3::{Vec3, add, cross, scale};
