@@ -121,7 +121,7 @@ pub fn copy(x: &[f64], y: &mut [f64]) {
 }
 
 /// `z = x - y`.
-pub(crate) fn difference(x: &[f64], y: &[f64], z: &mut [f64]) {
+pub fn difference(x: &[f64], y: &[f64], z: &mut [f64]) {
     let part = |((z, x), y): ((&mut [f64], &[f64]), &[f64])| {
         z.iter_mut().zip(x).zip(y).for_each(|((z, x), y)| *z = x - y);
     };

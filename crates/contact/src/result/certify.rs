@@ -131,7 +131,6 @@ mod tests {
             lambda: &lambda,
             rows: &lambda,
             u: &u,
-            force: &zero,
             residual: &zero,
         };
         certify(&measured, &sizes(&measured)).gap
@@ -234,7 +233,6 @@ mod tests {
                 lambda: &lambda,
                 rows: &rows,
                 u: &vec![1e-3; torn],
-                force: &vec![0.0; torn],
                 residual: &residual,
             };
             let certificate = certify(&measured, &sizes(&measured));

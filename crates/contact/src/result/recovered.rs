@@ -31,17 +31,21 @@ pub(crate) struct Recovered {
 }
 
 impl Recovered {
-    /// From multipliers and rigid amplitudes; one product with F.
+    /// From multipliers and rigid amplitudes, in the memory of an `old` one; one product with F.
     pub(crate) fn new(
         model: &Model,
         problem: &StepProblem,
         lambda: &[f64],
         alpha: &[f64],
+        old: Self,
     ) -> Result<Self, ContactError> {
         let tfeti = &model.tfeti;
-        let force = problem.forces(model);
-        let [torn, residual] = tfeti.recover(&force, lambda, alpha)?;
-        let mut rows = vec![0.0; tfeti.dual_dim()];
+        let force = problem.forces_in(old.residual, model);
+        let [torn, residual] = tfeti.recover_in([old.torn, force], lambda, alpha)?;
+        let mut rows = match old.rows.len() == tfeti.dual_dim() {
+            true => old.rows,
+            false => vec![0.0; tfeti.dual_dim()],
+        };
         tfeti.rows_times(&torn, &mut rows);
         let mut gives_way = Vec::new();
         if tfeti.gluing().is_compliant() {
@@ -55,7 +59,6 @@ impl Recovered {
             lambda,
             rows: &rows,
             u: &torn,
-            force: &force,
             residual: &residual,
         };
         let sizes = sizes(&measured);

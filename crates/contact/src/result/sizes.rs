@@ -15,8 +15,6 @@ pub(super) struct Measured<'a> {
     pub(super) rows: &'a [f64],
     /// Torn displacement.
     pub(super) u: &'a [f64],
-    /// Torn load, N.
-    pub(super) force: &'a [f64],
     /// `K u - f - Bᵀ lambda`, N.
     pub(super) residual: &'a [f64],
 }
@@ -58,7 +56,8 @@ pub(super) fn sizes(m: &Measured<'_>) -> Vec<Sizes> {
     let copies = model.copies();
     let of_subdomains = model.tfeti.of_subdomains(|subdomain| {
         let range = model.tfeti.torn_range(subdomain);
-        let (u, force, residual) = (&m.u[range.clone()], &m.force[range.clone()], &m.residual[range.clone()]);
+        let (u, residual) = (&m.u[range.clone()], &m.residual[range.clone()]);
+        let force = m.problem.forces_on(model, subdomain);
         let (mut displacement, mut stiff) = (vector::max_abs(u), 0.0);
         let nodes = force.chunks_exact(3).zip(u.chunks_exact(3));
         for ((f, u), copy) in nodes.zip(range.start / 3..) {
@@ -66,7 +65,7 @@ pub(super) fn sizes(m: &Measured<'_>) -> Vec<Sizes> {
             displacement = displacement.max(vector::max_abs(f) / stiffness);
             stiff += stiffness * stiffness * vector::dot(u, u);
         }
-        let [residual, force] = [residual, force].map(|v| vector::dot(v, v));
+        let [residual, force] = [residual, &force].map(|v| vector::dot(v, v));
         [displacement, stiff, residual, force]
     });
     for (subdomain, [displacement, stiff, residual, force]) in of_subdomains.into_iter().enumerate() {

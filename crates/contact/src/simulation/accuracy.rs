@@ -82,6 +82,7 @@ impl Simulation {
                 return Ok((report, recovered));
             }
             before = Some(report);
+            self.spare = recovered;
         }
     }
 

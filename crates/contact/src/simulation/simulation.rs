@@ -6,6 +6,7 @@ use crate::estimate::Caches;
 use crate::model::{ConstrainedPoint, Model, check_equilibrium};
 use crate::plan::Plan;
 use crate::report::Counters;
+use crate::result::Recovered;
 use crate::scene::Scene;
 use crate::settings::Settings;
 use crate::solve::{Iterate, Solver};
@@ -32,6 +33,8 @@ pub struct Simulation {
     pub(super) controller: Controller,
     /// Of the last step, if it was solved.
     pub(super) result: Option<Arc<StepResult>>,
+    /// Memory for what the next step recovers.
+    pub(super) spare: Recovered,
     pub(super) total: Counters,
     pub(super) setup: Duration,
 }
@@ -84,6 +87,7 @@ impl Simulation {
             iterate: Iterate::default(),
             controller: Controller::default(),
             result: None,
+            spare: Recovered::default(),
             total: Counters::default(),
             setup: start.elapsed(),
         })

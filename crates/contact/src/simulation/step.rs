@@ -12,6 +12,7 @@ use crate::solve::{Iterate, Task};
 use crate::state::{Kept, Peak, State};
 use crate::step::StepProblem;
 use signorini_qp::vector;
+use signorini_tfeti::internal::zeros;
 use std::sync::Arc;
 
 impl Simulation {
@@ -20,7 +21,9 @@ impl Simulation {
     /// # Errors
     /// [`ContactError::Finished`] after the last step; a breakdown of a solver. The state is then unchanged.
     pub fn step(&mut self) -> Result<Arc<StepResult>, ContactError> {
-        self.result = None;
+        if let Some(last) = self.result.take().and_then(Arc::into_inner) {
+            self.spare = last.recovered;
+        }
         let result = Arc::new(on_pool(|| self.take_step())?);
         self.total += result.report.counters;
         self.result = Some(result.clone());
@@ -96,7 +99,9 @@ impl Simulation {
         let solved = self.solver.solve(task, iterate);
         model.tfeti.check_processes()?;
         let mut report = solved?;
-        let recovered = Recovered::new(model, problem, &problem.multipliers(&iterate.lambda), &iterate.alpha);
+        let old = std::mem::take(&mut self.spare);
+        let lambda = problem.multipliers(&iterate.lambda);
+        let recovered = Recovered::new(model, problem, &lambda, &iterate.alpha, old);
         model.tfeti.check_processes()?;
         let recovered = recovered?;
         report.counters.products += 1;
@@ -112,20 +117,17 @@ impl Simulation {
         let (rows, coarse) = (model.tfeti.dual_dim(), model.tfeti.coarse().rows());
         // before the first step everything is at rest: zero is known, too
         let from_rest = state.step() <= 1 && !lambda[0].is_empty() && lambda[1].is_empty();
-        let zero = vec![0.0; if from_rest { rows } else { 0 }];
-        let extrapolated = |[last, before]: &[Vec<f64>; 2]| {
-            let before = if from_rest { &zero } else { before };
-            start_vector(last, before, rows, along)
+        let extrapolate = |[last, before]: &[Vec<f64>; 2], x: &mut Vec<f64>| {
+            let before = (!from_rest).then_some(&before[..]);
+            start_vector(last, before, rows, along, x);
         };
-        iterate.lambda = extrapolated(lambda);
-        iterate.f_lambda = extrapolated(f_lambda);
+        extrapolate(lambda, &mut iterate.lambda);
+        extrapolate(f_lambda, &mut iterate.f_lambda);
         iterate.known = (0..2).all(|k| lambda[k].len() == f_lambda[k].len());
         let [last, before] = &state.multiplier;
-        iterate.multiplier = start_vector(last, before, coarse, along);
+        start_vector(last, Some(before), coarse, along, &mut iterate.multiplier);
         if state.sliding.iter().any(|s| *s) {
-            let old = iterate.lambda.clone();
-            self.problem.restore_sliding(model, &state.sliding, &mut iterate.lambda);
-            iterate.known &= old == iterate.lambda;
+            iterate.known &= !(self.problem).restore_sliding(model, &state.sliding, &mut iterate.lambda);
         }
     }
 
@@ -149,7 +151,8 @@ impl Simulation {
             result.report.counters.rate_updates += 1;
         }
         if model.plan.steps > 1 || kept.between {
-            kept.f_lambda = product(model, problem, &recovered.rows, &self.iterate);
+            product(model, problem, &recovered.rows, &mut self.iterate);
+            kept.f_lambda = std::mem::take(&mut self.iterate.f_lambda);
             kept.lambda = std::mem::take(&mut self.iterate.lambda);
             kept.multiplier = std::mem::take(&mut self.iterate.multiplier);
         }
@@ -160,7 +163,8 @@ impl Simulation {
         } else if history {
             state.note_unconverged();
         }
-        state.advance(self.settings.extrapolate, self.operator, kept);
+        let old = state.advance(self.settings.extrapolate, self.operator, kept);
+        [self.iterate.lambda, self.iterate.f_lambda] = old;
         if let Some(accuracy) = &result.report.accuracy {
             self.controller.errors = accuracy.accumulated;
             state.controller = self.controller;
@@ -168,16 +172,22 @@ impl Simulation {
     }
 }
 
-/// The last vector, or the line through the last two, so many of their distances on; zero before the first.
-fn start_vector(last: &[f64], before: &[f64], n: usize, along: Option<f64>) -> Vec<f64> {
+/// `x` becomes the last vector, or the line through the last two, so many of their distances on; zero before the first.
+/// The one before is zero if `None`.
+fn start_vector(last: &[f64], before: Option<&[f64]>, n: usize, along: Option<f64>, x: &mut Vec<f64>) {
     if last.is_empty() {
-        return vec![0.0; n];
+        *x = zeros(std::mem::take(x), n);
+        return;
     }
-    let mut x = last.to_vec();
-    if let Some(ratio) = along.filter(|_| before.len() == n) {
-        vector::extrapolate(last, before, ratio, &mut x);
+    if x.len() != last.len() {
+        *x = vec![0.0; last.len()];
     }
-    x
+    vector::copy(last, x);
+    match (along, before) {
+        (Some(ratio), Some(before)) if before.len() == n => vector::extrapolate(last, before, ratio, x),
+        (Some(ratio), None) => vector::axpy(ratio, last, x),
+        _ => {}
+    }
 }
 
 /// Tangential displacements relative to the obstacle or the other body, m, by tangential row; without elastic slip,
@@ -195,10 +205,9 @@ fn traces(model: &Model, problem: &StepProblem, rows: &[f64]) -> Vec<f64> {
 }
 
 /// `F lambda` afresh from the recovered displacement: rows, with what gives way, are `F lambda + B K+ f + Gᵀ alpha`.
-fn product(model: &Model, problem: &StepProblem, rows: &[f64], iterate: &Iterate) -> Vec<f64> {
-    let coarse = model.tfeti.coarse();
-    let mut rigid = vec![0.0; rows.len()];
-    coarse.apply_transpose(&iterate.alpha, &mut rigid, &mut coarse.scratch());
-    let parts = rows.iter().zip(&problem.load).zip(&rigid);
-    parts.map(|((u, load), rigid)| u - (load + rigid)).collect()
+fn product(model: &Model, problem: &StepProblem, rows: &[f64], iterate: &mut Iterate) {
+    let out = &mut iterate.f_lambda;
+    model.tfeti.coarse().transpose_times(&iterate.alpha, out);
+    vector::axpy(1.0, &problem.load, out);
+    vector::axpby(1.0, rows, -1.0, out);
 }

@@ -38,6 +38,8 @@ pub(crate) struct ActiveSetSolver {
     work: ActiveSetWorkspace<DualOperator, SelectedPreconditioner>,
     settings: ActiveSetSettings,
     exchanges: Exchanges,
+    /// The iterate at the start of a step, then the residual at its end.
+    start: Vec<f64>,
     /// Made when it is first needed.
     paper: Option<Box<SmalseSolver>>,
 }
@@ -86,6 +88,7 @@ impl ActiveSetSolver {
             part,
             exchanges: Exchanges::new(model),
             settings: own.clone(),
+            start: Vec::new(),
             paper: None,
         })
     }
@@ -111,12 +114,13 @@ impl ActiveSetSolver {
     pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
         let mut report = StepReport::new();
         report.counters.inequality_solves = usize::from(!task.model.points.is_empty());
-        let start = iterate.lambda.clone();
+        self.start.resize(iterate.lambda.len(), 0.0);
+        vector::copy(&iterate.lambda, &mut self.start);
         let status = self.active_sets(task, iterate, &mut report)?;
         report.status = step_status(status);
         task.model.tfeti.check_processes()?;
         if !report.status.converged() && !task.model.points.is_empty() {
-            return self.fall_back(task, iterate, start, report);
+            return self.fall_back(task, iterate, report);
         }
         iterate.known = true;
         self.amplitudes(task, iterate);
@@ -126,12 +130,11 @@ impl ActiveSetSolver {
     /// Rigid amplitudes that go with an iterate of which `F lambda` is known.
     fn amplitudes(&mut self, task: Task<'_>, iterate: &mut Iterate) {
         iterate.alpha.resize(task.problem.rhs.len(), 0.0);
-        let mut residual = iterate.f_lambda.clone();
-        vector::axpy(-1.0, &task.problem.linear, &mut residual);
-        if let Some(part) = &self.part {
-            residual = part.take(&residual);
-        }
-        self.space.amplitudes(&residual, &mut iterate.alpha);
+        let residual = &mut self.start;
+        vector::difference(&iterate.f_lambda, &task.problem.linear, residual);
+        let part = self.part.as_ref().map(|part| part.take(residual));
+        let residual = part.as_ref().unwrap_or(residual);
+        self.space.amplitudes(residual, &mut iterate.alpha);
     }
 
     /// Active sets with slip bounds that follow, again as long as rows of one node contradict each other.
@@ -226,13 +229,12 @@ impl ActiveSetSolver {
         &mut self,
         task: Task<'_>,
         iterate: &mut Iterate,
-        start: Vec<f64>,
         mut report: StepReport,
     ) -> Result<StepReport, ContactError> {
         if !iterate.lambda.iter().all(|v| v.is_finite())
             || matches!(report.status, StepStatus::Stagnated | StepStatus::NotHeld)
         {
-            iterate.lambda = start;
+            iterate.lambda.copy_from_slice(&self.start);
         }
         let paper = self
             .paper

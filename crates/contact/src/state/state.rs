@@ -131,17 +131,21 @@ impl State {
         (get(&self.trace[0]), get(&self.trace[1]))
     }
 
-    /// Takes over what a step leaves, whose products are those with this F.
-    pub(crate) fn advance(&mut self, keep_before: bool, operator: u64, new: Kept) {
+    /// Takes over what a step leaves, whose products are those with this F. Returns the multipliers and products that
+    /// are not needed any more, for their memory.
+    pub(crate) fn advance(&mut self, keep_before: bool, operator: u64, new: Kept) -> [Vec<f64>; 2] {
         let push = |pair: &mut [Vec<f64>; 2], new: Vec<f64>| {
             pair.swap(0, 1);
-            pair[0] = new;
-            if !keep_before {
-                pair[1] = Vec::new();
+            let old = std::mem::replace(&mut pair[0], new);
+            match keep_before {
+                true => old,
+                false => std::mem::take(&mut pair[1]),
             }
         };
-        push(&mut self.lambda, new.lambda);
-        push(&mut self.f_lambda, new.f_lambda);
+        let old = [
+            push(&mut self.lambda, new.lambda),
+            push(&mut self.f_lambda, new.f_lambda),
+        ];
         push(&mut self.multiplier, new.multiplier);
         self.seals = [seal(operator, &self.lambda[0], &self.f_lambda[0]), self.seals[0]];
         // old tangential displacements are part of the model, not of the extrapolation
@@ -150,13 +154,13 @@ impl State {
         self.rate = new.rate;
         self.sliding = new.sliding;
         self.halved = new.halved;
-        if new.between {
-            return;
+        if !new.between {
+            self.step += 1;
+            if let Some(origin) = &mut self.origin {
+                origin.pass(new.time);
+            }
         }
-        self.step += 1;
-        if let Some(origin) = &mut self.origin {
-            origin.pass(new.time);
-        }
+        old
     }
 
     /// Takes the sizes of a step into account, one a body.

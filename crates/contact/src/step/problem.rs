@@ -7,6 +7,7 @@ use crate::state::{Peak, State};
 use crate::tolerances::{REACHED, REST, ROUNDED};
 use crate::vec3::dot;
 use signorini_qp::vector;
+use signorini_tfeti::internal::zeros;
 use std::borrow::Cow;
 
 /// Data of one step.
@@ -63,19 +64,21 @@ impl StepProblem {
         self.peaks.resize(model.bodies.count().max(1), Peak::default());
         let loads = model.scene.loads.iter();
         self.factors = loads.map(|load| load.history.value(time)).collect();
-        self.load = vec![0.0; model.tfeti.dual_dim()];
-        self.rhs = vec![0.0; model.tfeti.coarse().rows()];
+        let (rows, take) = (model.tfeti.dual_dim(), std::mem::take::<Vec<f64>>);
+        self.load = zeros(take(&mut self.load), rows);
+        self.rhs = zeros(take(&mut self.rhs), model.tfeti.coarse().rows());
         for (factor, load) in self.factors.iter().zip(&model.loads) {
             vector::axpy(*factor, &load.dual, &mut self.load);
             vector::axpy(*factor, &load.coarse, &mut self.rhs);
         }
-        self.handed_on = vec![0.0; if model.points.is_empty() { self.load.len() } else { 0 }];
+        let handed_on = if model.points.is_empty() { rows } else { 0 };
+        self.handed_on = zeros(take(&mut self.handed_on), handed_on);
         for (factor, lambda) in self.factors.iter().zip(&model.handed_on) {
             vector::axpy(*factor, lambda, &mut self.handed_on);
         }
         let histories = model.discrete.supports.motions.iter();
         let cases: Vec<(usize, f64)> = histories.map(|h| h.value(time)).enumerate().collect();
-        self.offset = model.tfeti.prescribed_offsets(&cases);
+        self.offset = model.tfeti.prescribed_offsets_in(take(&mut self.offset), &cases);
         self.part_ties(model);
         self.prescribed_force = model.prescribed_force(&self.offset);
         self.prescribed.clear();
@@ -90,8 +93,8 @@ impl StepProblem {
         }
         self.find_obstacles(model, increment.start);
         self.add_offsets(model, state)?;
-        let offsets = self.offset.iter().zip(&self.load);
-        self.linear = offsets.map(|(c, load)| c - load).collect();
+        self.linear.resize(rows, 0.0);
+        vector::difference(&self.offset, &self.load, &mut self.linear);
         self.find_friction(model, state)
     }
 
@@ -236,8 +239,23 @@ impl StepProblem {
 
     /// The torn load, N.
     pub(crate) fn forces(&self, model: &Model) -> Vec<f64> {
+        self.forces_in(Vec::new(), model)
+    }
+
+    /// The same in old memory.
+    pub(crate) fn forces_in(&self, old: Vec<f64>, model: &Model) -> Vec<f64> {
         let loads: Vec<_> = self.factors.iter().copied().zip(&model.loads).collect();
-        model.tfeti.combine_forces(&loads)
+        model.tfeti.combine_forces_in(old, &loads)
+    }
+
+    /// The part of it on a subdomain.
+    pub(crate) fn forces_on(&self, model: &Model, subdomain: usize) -> Vec<f64> {
+        let range = model.tfeti.torn_range(subdomain);
+        let mut force = vec![0.0; range.len()];
+        for (factor, load) in self.factors.iter().zip(&model.loads) {
+            vector::axpy(*factor, &load.force[range.clone()], &mut force);
+        }
+        force
     }
 }
 

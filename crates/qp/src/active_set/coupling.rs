@@ -55,7 +55,10 @@ impl Coupling {
             return;
         }
         let n = set.dim();
-        self.step.resize(n, 0.0);
+        if self.step.len() != n {
+            // of which pages become real where several threads write them first
+            self.step = vec![0.0; n];
+        }
         self.growth.resize(constrained, 0.0);
         self.by_disc.clear();
         // slopes usually come in the order of the discs

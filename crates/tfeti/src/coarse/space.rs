@@ -164,11 +164,16 @@ impl Coarse {
         self.0.product_transpose(y, out, &mut s.motions);
     }
 
+    /// The same with work memory of its own.
+    #[doc(hidden)]
+    pub fn transpose_times(&self, y: &[f64], out: &mut [f64]) {
+        self.0.product_transpose(y, out, &mut vec![[0.0; 6]; self.rows() / 6]);
+    }
+
     /// A motion of bodies as a mode of the leading `contact` rows.
     pub(crate) fn loose_mode(&self, amplitudes: &[f64], contact: usize) -> LooseMode {
         let mut row = vec![0.0; self.dim()];
-        let mut scratch = self.scratch();
-        self.0.product_transpose(amplitudes, &mut row, &mut scratch.motions);
+        self.transpose_times(amplitudes, &mut row);
         row.truncate(contact);
         LooseMode::new(amplitudes.to_vec(), row)
     }

@@ -26,6 +26,17 @@ pub(crate) fn both<A: Send, B: Send>(
     if worth { rayon::join(a, b) } else { (a(), b()) }
 }
 
+/// Zeros, in old memory if there is enough: pages that are new cost more than all else that is done with them.
+pub fn zeros(mut old: Vec<f64>, length: usize) -> Vec<f64> {
+    if old.capacity() < length {
+        // of which only those that are written become real
+        return vec![0.0; length];
+    }
+    old.clear();
+    old.resize(length, 0.0);
+    old
+}
+
 /// The value of a key in a short list; `new` if it is not there yet.
 pub(crate) fn entry<K: PartialEq, V>(list: &mut Vec<(K, V)>, key: K, new: V) -> &mut V {
     let at = list.iter().position(|v| v.0 == key).unwrap_or(list.len());

@@ -1,6 +1,7 @@
 //! Loads, displacements and residuals: everything between torn and dual vectors that is not an iteration.
 
 use crate::error::TfetiError;
+use crate::linalg::zeros;
 use crate::rows::gluing::CopyEntry;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::BLOCKS;
@@ -22,10 +23,12 @@ pub struct LoadResponse {
 impl Tfeti {
     fn check(&self, what: &'static str, x: &[f64], expected: usize) -> Result<(), TfetiError> {
         TfetiError::check_length(what, x.len(), expected)?;
-        match x.iter().position(|v| !v.is_finite()) {
-            Some(index) => Err(TfetiError::NotFinite { what, index }),
-            None => Ok(()),
-        }
+        let bad = |part: &[f64]| part.iter().position(|v| !v.is_finite());
+        let first = x
+            .par_chunks(BLOCKS)
+            .enumerate()
+            .find_map_first(|(k, part)| Some(k * BLOCKS + bad(part)?));
+        first.map_or(Ok(()), |index| Err(TfetiError::NotFinite { what, index }))
     }
 
     /// Response to a load given by local vectors (as `signorini_fem_mesh::assemble_load` returns them).
@@ -49,8 +52,9 @@ impl Tfeti {
             self.check("local vector", part, self.torn_range(s).len())?;
         }
         let force = local.concat();
-        let wrench = |s: usize| self.kernel(s).transpose_times(&force[self.torn_range(s)]);
-        let coarse = (0..self.subdomains()).flat_map(|s| wrench(s).map(|v| -v)).collect();
+        let mut coarse = vec![0.0; 6 * self.subdomains()];
+        let all = coarse.as_chunks_mut().0.par_iter_mut().zip(local).enumerate();
+        all.for_each(|(s, out)| *out.0 = self.kernel(s).transpose_times(out.1).map(|v| -v));
         let dual = Vec::new();
         Ok(LoadResponse { dual, coarse, force })
     }
@@ -110,20 +114,38 @@ impl Tfeti {
         self.add_some_transposed(x, f, |_| true);
     }
 
-    /// The same on the subdomains that are told.
-    fn add_some_transposed(&self, x: &[f64], f: &mut [f64], is_told: impl Fn(u32) -> bool) {
+    /// The same on the subdomains that are told; halves of them on two threads.
+    fn add_some_transposed(&self, x: &[f64], f: &mut [f64], is_told: impl Fn(u32) -> bool + Sync) {
+        if !self.parts.map.is_large() {
+            return self.add_transposed(x, f, 0, is_told);
+        }
+        let middle = self.subdomains() as u32 / 2;
+        let start = self.torn_range(middle as usize).start;
+        let (low, high) = f.split_at_mut(start);
+        rayon::join(
+            || self.add_transposed(x, low, 0, |s| s < middle && is_told(s)),
+            || self.add_transposed(x, high, start, |s| s >= middle && is_told(s)),
+        );
+    }
+
+    /// The same where `f` begins at an entry of torn vectors.
+    fn add_transposed(&self, x: &[f64], f: &mut [f64], first: usize, is_told: impl Fn(u32) -> bool) {
+        let place = |subdomain: u32, local: u32| {
+            let place = self.place(subdomain, local);
+            place.start - first..place.end - first
+        };
         let gluing = self.gluing();
         let interface = &x[gluing.ranges().interface.clone()];
         for (block, value) in interface.chunks_exact(3).enumerate() {
             for e in gluing.block(block).iter().filter(|e| is_told(e.subdomain)) {
-                let target = &mut f[self.place(e.subdomain, e.local)];
+                let target = &mut f[place(e.subdomain, e.local)];
                 (0..3).for_each(|c| target[c] += e.coefficient * value[c]);
             }
         }
         for nodal in 0..gluing.nodal_rows() {
             let value = x[gluing.nodal_row(nodal)];
             for e in gluing.nodal(nodal).iter().filter(|e| is_told(e.subdomain)) {
-                let target = &mut f[self.place(e.subdomain, e.local)];
+                let target = &mut f[place(e.subdomain, e.local)];
                 (0..3).for_each(|c| target[c] += e.vector[c] * value);
             }
         }
@@ -131,7 +153,13 @@ impl Tfeti {
 
     /// Sum of loads: `sum factor * force`.
     pub fn combine_forces(&self, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
-        let mut force = vec![0.0; self.torn_dim()];
+        self.combine_forces_in(Vec::new(), loads)
+    }
+
+    /// The same in old memory.
+    #[doc(hidden)]
+    pub fn combine_forces_in(&self, old: Vec<f64>, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
+        let mut force = zeros(old, self.torn_dim());
         for (factor, load) in loads {
             signorini_qp::vector::axpy(*factor, &load.force, &mut force);
         }
@@ -147,21 +175,33 @@ impl Tfeti {
     /// # Errors
     /// [`TfetiError::Length`] and [`TfetiError::NotFinite`], also of a displacement that is not finite.
     pub fn recover(&self, force: &[f64], lambda: &[f64], alpha: &[f64]) -> Result<[Vec<f64>; 2], TfetiError> {
-        self.check("force", force, self.torn_dim())?;
+        self.recover_in([Vec::new(), force.to_vec()], lambda, alpha)
+    }
+
+    /// The same in old memory, the residual in that of the force.
+    ///
+    /// # Errors
+    /// As [`recover`](Self::recover).
+    #[doc(hidden)]
+    pub fn recover_in(
+        &self,
+        [old, mut force]: [Vec<f64>; 2],
+        lambda: &[f64],
+        alpha: &[f64],
+    ) -> Result<[Vec<f64>; 2], TfetiError> {
+        self.check("force", &force, self.torn_dim())?;
         self.check("multipliers", lambda, self.dual_dim())?;
         self.check("rigid amplitudes", alpha, 6 * self.subdomains())?;
-        let mut total = force.to_vec();
-        self.add_some_transposed(lambda, &mut total, |s| self.is_here(s as usize));
-        let mut u = vec![0.0; self.torn_dim()];
-        self.generalised_inverse(&total, &mut u);
-        for (s, amplitudes) in alpha.chunks_exact(6).enumerate() {
-            let range = self.torn_range(s);
-            self.kernel(s).add_motion(1.0, amplitudes, &mut u[range]);
-        }
+        self.add_some_transposed(lambda, &mut force, |s| self.is_here(s as usize));
+        let mut u = if old.len() == force.len() {
+            old
+        } else {
+            vec![0.0; force.len()]
+        };
+        self.displacement(&force, Some(alpha), &mut u);
         self.check("displacement", &u, self.torn_dim())?;
-        let mut residual = vec![0.0; u.len()];
-        self.stiffness_less(&u, Some(&total), &mut residual);
-        Ok([u, residual])
+        self.stiffness_less(&u, &mut force);
+        Ok([u, force])
     }
 
     /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies that differ count by
@@ -184,7 +224,13 @@ impl Tfeti {
 
     /// Row offsets `c` of prescribed displacements: `sum factor * offset` over `(case, factor)`.
     pub fn prescribed_offsets(&self, factors: &[(usize, f64)]) -> Vec<f64> {
-        let mut c = vec![0.0; self.dual_dim()];
+        self.prescribed_offsets_in(Vec::new(), factors)
+    }
+
+    /// The same in old memory.
+    #[doc(hidden)]
+    pub fn prescribed_offsets_in(&self, old: Vec<f64>, factors: &[(usize, f64)]) -> Vec<f64> {
+        let mut c = zeros(old, self.dual_dim());
         for &(case, factor) in factors {
             for &(row, value) in self.gluing().prescribed(case) {
                 c[row as usize] += factor * value;

@@ -10,18 +10,17 @@ use rayon::prelude::*;
 impl Tfeti {
     /// `y = K x` for torn vectors.
     pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
-        self.stiffness_less(x, None, y);
+        self.stiffness_product(x, y, |product, _| product);
     }
 
-    /// `y = K x - f`; of `f` only what belongs to subdomains of this process is read.
-    pub(super) fn stiffness_less(&self, x: &[f64], f: Option<&[f64]>, y: &mut [f64]) {
+    /// `y = K x - y`; of `y` only what belongs to subdomains of this process is read.
+    pub(super) fn stiffness_less(&self, x: &[f64], y: &mut [f64]) {
+        self.stiffness_product(x, y, |product, y| product - y);
+    }
+
+    /// `y = new(K x, y)`, entry by entry.
+    fn stiffness_product(&self, x: &[f64], y: &mut [f64], new: impl Fn(f64, f64) -> f64 + Sync) {
         let parts = &self.parts;
-        let less = |s: u32, y: &mut [f64]| {
-            if let Some(f) = f {
-                let own = &f[self.torn_range(s as usize)];
-                y.iter_mut().zip(own).for_each(|(y, f)| *y -= f);
-            }
-        };
         self.by_class(y, |class, members, columns| {
             let Some(base) = parts.subdomains.held(class) else {
                 return;
@@ -32,9 +31,8 @@ impl Tfeti {
                     for (j, target) in y.iter_mut().enumerate() {
                         // Symmetric: column j is row j.
                         let (rows, values) = base.stiffness.column(j);
-                        *target = rows.iter().zip(values).map(|(&i, v)| v * x[i]).sum();
+                        *target = new(rows.iter().zip(values).map(|(&i, v)| v * x[i]).sum(), *target);
                     }
-                    less(s, y);
                 }
                 return;
             }
@@ -47,16 +45,20 @@ impl Tfeti {
                 x.iter().enumerate().for_each(|(i, v)| panel[i * count + m] = *v);
             }
             blocks.apply(&panel, &mut product, count);
-            for ((m, &s), y) in members.iter().enumerate().zip(columns) {
+            for (m, y) in columns.into_iter().enumerate() {
                 let values = product.iter().skip(m).step_by(count);
-                y.iter_mut().zip(values).for_each(|(y, v)| *y = *v);
-                less(s, y);
+                y.iter_mut().zip(values).for_each(|(y, v)| *y = new(*v, *y));
             }
         });
     }
 
     /// `u = K+ f` for torn vectors.
     pub fn generalised_inverse(&self, f: &[f64], u: &mut [f64]) {
+        self.displacement(f, None, u);
+    }
+
+    /// `u = K+ f`, and `R alpha` if that is told.
+    pub(super) fn displacement(&self, f: &[f64], alpha: Option<&[f64]>, u: &mut [f64]) {
         let parts = &self.parts;
         self.by_class(u, |class, members, columns| {
             let base = &parts.subdomains.bases[class];
@@ -70,8 +72,12 @@ impl Tfeti {
                 column.copy_from_slice(&f[self.torn_range(s as usize)]);
             }
             inverse.apply(&base.kernel, &mut x, count, &mut memory);
-            for (column, target) in x.chunks_exact(dim).zip(columns) {
+            for ((&s, column), target) in members.iter().zip(x.chunks_exact(dim)).zip(columns) {
                 target.copy_from_slice(column);
+                if let Some(alpha) = alpha {
+                    self.kernel(s as usize)
+                        .add_motion(1.0, &alpha[6 * s as usize..][..6], target);
+                }
             }
         });
     }

@@ -6,6 +6,7 @@
 
 use crate::coarse::matrix::CoarseMatrix;
 use crate::linalg::supernodes::Supernodes;
+use crate::linalg::zeros;
 use crate::projector::split::front::{Front, extend, load_columns};
 use crate::projector::split::tiles::Tiles;
 use crate::projector::split::tree::{CoarseTree, TreeRegion};
@@ -109,17 +110,6 @@ fn grow(
     updates.iter_mut().for_each(Vec::shrink_to_fit);
     tiles.round();
     Ok((tiles, updates))
-}
-
-/// Zeros, in old memory if there is enough: pages that are new cost more than all else that is done with them.
-fn zeros(mut old: Vec<f64>, length: usize) -> Vec<f64> {
-    if old.capacity() < length {
-        // of which only those that are written become real
-        return vec![0.0; length];
-    }
-    old.clear();
-    old.resize(length, 0.0);
-    old
 }
 
 /// Appends what tells the entries of two blocks from those of others.
