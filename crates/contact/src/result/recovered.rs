@@ -18,7 +18,7 @@ pub(crate) struct Recovered {
     pub(crate) rows: Vec<f64>,
     /// What they give way of it; empty where nothing does.
     pub(crate) gives_way: Vec<f64>,
-    /// `K u - f - Bᵀ lambda`, torn, N.
+    /// `K u - f - Bᵀ lambda`, torn, N; of several processes that of the subdomains of this one.
     pub(crate) residual: Vec<f64>,
     /// Sizes of the bodies.
     pub(crate) sizes: Vec<Sizes>,
@@ -39,7 +39,7 @@ impl Recovered {
         alpha: &[f64],
     ) -> Result<Self, ContactError> {
         let tfeti = &model.tfeti;
-        let force = problem.forces(model);
+        let force = problem.forces_here(model);
         let [torn, residual] = tfeti.recover(&force, lambda, alpha)?;
         let mut rows = vec![0.0; tfeti.dual_dim()];
         tfeti.rows_times(&torn, &mut rows);

@@ -15,9 +15,9 @@ pub(super) struct Measured<'a> {
     pub(super) rows: &'a [f64],
     /// Torn displacement.
     pub(super) u: &'a [f64],
-    /// Torn load, N.
+    /// Torn load, N; of several processes that on the subdomains of this one.
     pub(super) force: &'a [f64],
-    /// `K u - f - Bᵀ lambda`, N.
+    /// `K u - f - Bᵀ lambda`, N, likewise.
     pub(super) residual: &'a [f64],
 }
 

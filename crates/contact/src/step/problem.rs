@@ -7,6 +7,7 @@ use crate::state::{Peak, State};
 use crate::tolerances::{REACHED, REST, ROUNDED};
 use crate::vec3::dot;
 use signorini_qp::vector;
+use signorini_tfeti::LoadResponse;
 use std::borrow::Cow;
 
 /// Data of one step.
@@ -236,8 +237,16 @@ impl StepProblem {
 
     /// The torn load, N.
     pub(crate) fn forces(&self, model: &Model) -> Vec<f64> {
-        let loads: Vec<_> = self.factors.iter().copied().zip(&model.loads).collect();
-        model.tfeti.combine_forces(&loads)
+        model.tfeti.combine_forces(&self.loads(model))
+    }
+
+    /// The same, of several processes what of it acts on the subdomains of this one.
+    pub(crate) fn forces_here(&self, model: &Model) -> Vec<f64> {
+        model.tfeti.combine_forces_here(&self.loads(model))
+    }
+
+    fn loads<'a>(&self, model: &'a Model) -> Vec<(f64, &'a LoadResponse)> {
+        self.factors.iter().copied().zip(&model.loads).collect()
     }
 }
 

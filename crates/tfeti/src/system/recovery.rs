@@ -5,6 +5,7 @@ use crate::rows::gluing::CopyEntry;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::BLOCKS;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Response of the torn body to one load: what a time step needs to combine.
 ///
@@ -76,7 +77,7 @@ impl Tfeti {
     }
 
     /// Place of the three components of a node copy in torn vectors.
-    fn place(&self, subdomain: u32, local: u32) -> std::ops::Range<usize> {
+    fn place(&self, subdomain: u32, local: u32) -> Range<usize> {
         let start = self.torn_range(subdomain as usize).start + 3 * local as usize;
         start..start + 3
     }
@@ -131,15 +132,28 @@ impl Tfeti {
 
     /// Sum of loads: `sum factor * force`.
     pub fn combine_forces(&self, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
+        self.combine_some(loads, std::iter::once(0..self.torn_dim()))
+    }
+
+    /// The same on the subdomains of this process, zero on the others'.
+    #[doc(hidden)]
+    pub fn combine_forces_here(&self, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
+        self.combine_some(loads, self.torn_here())
+    }
+
+    fn combine_some(&self, loads: &[(f64, &LoadResponse)], all: impl Iterator<Item = Range<usize>>) -> Vec<f64> {
         let mut force = vec![0.0; self.torn_dim()];
-        for (factor, load) in loads {
-            signorini_qp::vector::axpy(*factor, &load.force, &mut force);
+        for range in all {
+            for (factor, load) in loads {
+                signorini_qp::vector::axpy(*factor, &load.force[range.clone()], &mut force[range.clone()]);
+            }
         }
         force
     }
 
     /// The torn displacement `u = K+ (f + B^T lambda) + R alpha` (5.27), and the residual of equilibrium
-    /// `K u - f - B^T lambda`, a torn vector in newtons.
+    /// `K u - f - B^T lambda`, a torn vector in newtons. Of several processes each has the residual of its subdomains,
+    /// and of the force needs theirs only; [`complete_torn`](Self::complete_torn) tells it the others'.
     ///
     /// `force` is a torn vector in newtons, `alpha` the rigid amplitudes, for instance from
     /// [`CoarseFactor::amplitudes`](crate::CoarseFactor::amplitudes).
@@ -150,14 +164,17 @@ impl Tfeti {
         self.check("force", force, self.torn_dim())?;
         self.check("multipliers", lambda, self.dual_dim())?;
         self.check("rigid amplitudes", alpha, 6 * self.subdomains())?;
-        let mut total = force.to_vec();
+        let mut total = vec![0.0; force.len()];
+        self.torn_here()
+            .for_each(|own| total[own.clone()].copy_from_slice(&force[own]));
         self.add_some_transposed(lambda, &mut total, |s| self.is_here(s as usize));
         let mut u = vec![0.0; self.torn_dim()];
-        self.generalised_inverse(&total, &mut u);
-        for (s, amplitudes) in alpha.chunks_exact(6).enumerate() {
+        self.inverse_here(&total, &mut u);
+        for (s, amplitudes) in alpha.chunks_exact(6).enumerate().filter(|(s, _)| self.is_here(*s)) {
             let range = self.torn_range(s);
             self.kernel(s).add_motion(1.0, amplitudes, &mut u[range]);
         }
+        self.complete_torn(&mut u);
         self.check("displacement", &u, self.torn_dim())?;
         let mut residual = vec![0.0; u.len()];
         self.stiffness_less(&u, Some(&total), &mut residual);
