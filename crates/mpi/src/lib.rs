@@ -29,26 +29,22 @@
 //!
 //! This package stands outside the workspace, because it needs an MPI and libclang to build.
 
-use mpi::Count;
-use mpi::Threading;
-use mpi::datatype::PartitionMut;
 use mpi::topology::SimpleCommunicator;
-use mpi::traits::{Communicator as _, CommunicatorCollectives as _};
+use mpi::traits::{Communicator as _, Destination as _, Equivalence as _, Source as _};
+use mpi::{Count, Rank, Threading, request};
 use signorini_tfeti::{CommunicationError, Communicator};
 use std::fmt::Display;
 use std::io::Write;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::process::ExitCode;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 
 /// All ranks that `mpirun` has started.
 #[derive(Debug)]
 struct World {
     rank: usize,
     size: usize,
-    /// What this rank sends: MPI does not read where it writes.
-    sent: Mutex<Vec<f64>>,
 }
 
 impl Communicator for World {
@@ -61,17 +57,53 @@ impl Communicator for World {
     }
 
     fn gather(&self, values: &mut [f64], parts: &[Range<usize>]) -> Result<(), CommunicationError> {
+        self.gather_while(values, parts, &mut || ())
+    }
+
+    fn gather_while(
+        &self,
+        values: &mut [f64],
+        parts: &[Range<usize>],
+        work: &mut dyn FnMut(),
+    ) -> Result<(), CommunicationError> {
         let numbers = values.len();
-        let count = |n: usize| Count::try_from(n).map_err(|_| CommunicationError::TooLong { numbers });
-        count(numbers)?;
-        let counts: Vec<Count> = parts.iter().map(|part| count(part.len())).collect::<Result<_, _>>()?;
-        let starts: Vec<Count> = parts.iter().map(|part| count(part.start)).collect::<Result<_, _>>()?;
-        let mut sent = self.sent.lock().unwrap_or_else(PoisonError::into_inner);
-        sent.clear();
-        sent.extend_from_slice(&values[parts[self.rank].clone()]);
-        let mut received = PartitionMut::new(values, counts, starts);
-        SimpleCommunicator::world().all_gather_varcount_into(&sent[..], &mut received);
-        Ok(())
+        if Count::try_from(numbers).is_err() {
+            work();
+            return Err(CommunicationError::TooLong { numbers });
+        }
+        let (mut rest, mut at, mut own, mut others) = (values, 0, &[][..], Vec::with_capacity(parts.len()));
+        for (rank, part) in parts.iter().enumerate() {
+            let (_, tail) = std::mem::take(&mut rest).split_at_mut(part.start - at);
+            let (piece, tail) = tail.split_at_mut(part.len());
+            (rest, at) = (tail, part.end);
+            match rank == self.rank {
+                true => own = piece,
+                false => others.push((rank as Rank, piece)),
+            }
+        }
+        let world = SimpleCommunicator::world();
+        // straight from and to where the numbers stand: gathers of MPI copy what a rank sends, and own parts once more
+        request::scope(|scope| {
+            let to: Vec<_> = others.iter().map(|other| world.process_at_rank(other.0)).collect();
+            let mut received = Vec::with_capacity(others.len());
+            for ((rank, piece), from) in others.into_iter().zip(&to) {
+                received.push((rank, piece.len(), from.immediate_receive_into(scope, piece)));
+            }
+            let sent: Vec<_> = to.iter().map(|to| to.immediate_send(scope, own)).collect();
+            work();
+            let mut outcome = Ok(());
+            for (rank, expected, request) in received {
+                let found = request.wait().count(f64::equivalent_datatype()) as usize;
+                if found != expected {
+                    let rank = rank as usize;
+                    outcome = Err(CommunicationError::OutOfStep { rank, expected, found });
+                }
+            }
+            sent.into_iter().for_each(|request| {
+                request.wait();
+            });
+            outcome
+        })
     }
 }
 
@@ -94,7 +126,6 @@ pub fn run<E: Display>(work: impl FnOnce(Arc<dyn Communicator>) -> Result<(), E>
     let communicator = World {
         rank: rank as usize,
         size: world.size() as usize,
-        sent: Mutex::default(),
     };
     match catch_unwind(AssertUnwindSafe(|| work(Arc::new(communicator)))) {
         Ok(Ok(())) => ExitCode::SUCCESS,

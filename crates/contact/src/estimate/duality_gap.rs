@@ -151,7 +151,7 @@ impl Solved<'_> {
         });
         let (elastic, energy) = (energy(torn), energy(&difference));
         if balanced.is_none() && !self.is_balanced() {
-            terms += vector::norm(&self.recovered.residual) * vector::norm(&difference);
+            terms += vector::norm(&self.residual()) * vector::norm(&difference);
         }
         let distance = 0.5 * energy.max(0.0);
         let gap = distance + terms;
@@ -184,6 +184,13 @@ impl Solved<'_> {
         self.recovered.certificate.equilibrium.relative() < ROUNDING
     }
 
+    /// The residual of all processes.
+    fn residual(&self) -> Vec<f64> {
+        let mut residual = self.recovered.residual.clone();
+        self.model.tfeti.complete_torn(&mut residual);
+        residual
+    }
+
     /// The torn displacement with rigid forces balanced by gluing and supports; `None` if they are balanced already.
     fn balanced(&self, weights: &Weights) -> Option<Vec<f64>> {
         if self.is_balanced() {
@@ -192,8 +199,9 @@ impl Solved<'_> {
         let tfeti = &self.model.tfeti;
         let interior = weights.interior(tfeti)?;
         // Rᵀ (K u - f - Bᵀ lambda) = e - G lambda
-        let residual = |s: usize| &self.recovered.residual[tfeti.torn_range(s)];
-        let missing = (0..tfeti.subdomains()).map(|s| tfeti.kernel(s).transpose_times(residual(s)));
+        let residual = self.residual();
+        let own = |s: usize| &residual[tfeti.torn_range(s)];
+        let missing = (0..tfeti.subdomains()).map(|s| tfeti.kernel(s).transpose_times(own(s)));
         let missing: Vec<f64> = missing.flatten().collect();
         let mut lambda = vec![0.0; tfeti.dual_dim()];
         interior.particular(&missing, &mut lambda, &mut interior.scratch());

@@ -18,7 +18,7 @@ pub(crate) struct Recovered {
     pub(crate) rows: Vec<f64>,
     /// What they give way of it; empty where nothing does.
     pub(crate) gives_way: Vec<f64>,
-    /// `K u - f - Bᵀ lambda`, torn, N.
+    /// `K u - f - Bᵀ lambda`, torn, N; of several processes that of the subdomains of this one.
     pub(crate) residual: Vec<f64>,
     /// Sizes of the bodies.
     pub(crate) sizes: Vec<Sizes>,
@@ -40,7 +40,7 @@ impl Recovered {
         old: Self,
     ) -> Result<Self, ContactError> {
         let tfeti = &model.tfeti;
-        let force = problem.forces_in(old.residual, model);
+        let force = problem.forces_here(old.residual, model);
         let [torn, residual] = tfeti.recover_in([old.torn, force], lambda, alpha)?;
         let mut rows = match old.rows.len() == tfeti.dual_dim() {
             true => old.rows,

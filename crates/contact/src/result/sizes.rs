@@ -15,7 +15,7 @@ pub(super) struct Measured<'a> {
     pub(super) rows: &'a [f64],
     /// Torn displacement.
     pub(super) u: &'a [f64],
-    /// `K u - f - Bᵀ lambda`, N.
+    /// `K u - f - Bᵀ lambda`, N; of several processes that of the subdomains of this one.
     pub(super) residual: &'a [f64],
 }
 

@@ -7,6 +7,7 @@ use crate::state::{Peak, State};
 use crate::tolerances::{REACHED, REST, ROUNDED};
 use crate::vec3::dot;
 use signorini_qp::vector;
+use signorini_tfeti::LoadResponse;
 use signorini_tfeti::internal::zeros;
 use std::borrow::Cow;
 
@@ -239,13 +240,16 @@ impl StepProblem {
 
     /// The torn load, N.
     pub(crate) fn forces(&self, model: &Model) -> Vec<f64> {
-        self.forces_in(Vec::new(), model)
+        model.tfeti.combine_forces(&self.loads(model))
     }
 
-    /// The same in old memory.
-    pub(crate) fn forces_in(&self, old: Vec<f64>, model: &Model) -> Vec<f64> {
-        let loads: Vec<_> = self.factors.iter().copied().zip(&model.loads).collect();
-        model.tfeti.combine_forces_in(old, &loads)
+    /// The same in old memory, of several processes what of it acts on the subdomains of this one.
+    pub(crate) fn forces_here(&self, old: Vec<f64>, model: &Model) -> Vec<f64> {
+        model.tfeti.combine_forces_here(old, &self.loads(model))
+    }
+
+    fn loads<'a>(&self, model: &'a Model) -> Vec<(f64, &'a LoadResponse)> {
+        self.factors.iter().copied().zip(&model.loads).collect()
     }
 
     /// The part of it on a subdomain.

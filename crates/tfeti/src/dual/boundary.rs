@@ -202,14 +202,15 @@ impl BoundaryMap {
         for (place, values) in cut.copies[rank].iter().zip(copies.as_chunks_mut().0) {
             *values = place.read(y);
         }
-        self.collect_ranges(y, &cut.own, out);
-        self.exchange.gather(message, &cut.parts);
+        let own = || self.collect_ranges(y, &cut.own, out);
+        self.exchange.gather_while(message, &cut.parts, own);
         for (k, (runs, copies)) in cut.runs.iter().zip(&cut.copies).enumerate() {
             for run in runs {
                 out[run.rows.clone()].copy_from_slice(&message[run.at..][..run.rows.len()]);
             }
             let values = &message[cut.parts[k].end - 3 * copies.len()..cut.parts[k].end];
-            for (place, values) in copies.iter().zip(values.as_chunks().0) {
+            let others = copies.iter().filter(|_| k != rank);
+            for (place, values) in others.zip(values.as_chunks().0) {
                 place.write(*values, y);
             }
         }

@@ -36,6 +36,21 @@ pub trait Communicator: Debug + Send + Sync {
     /// # Errors
     /// [`CommunicationError`]; what is in the parts of other ranks is then undefined.
     fn gather(&self, values: &mut [f64], parts: &[Range<usize>]) -> Result<(), CommunicationError>;
+
+    /// The same, and `work` meanwhile, which needs none of the values: a rank that is early waits for the others that
+    /// much less. Without an own implementation the work is done first.
+    ///
+    /// # Errors
+    /// As [`gather`](Self::gather); the work is done in any case.
+    fn gather_while(
+        &self,
+        values: &mut [f64],
+        parts: &[Range<usize>],
+        work: &mut dyn FnMut(),
+    ) -> Result<(), CommunicationError> {
+        work();
+        self.gather(values, parts)
+    }
 }
 
 /// One process: nothing to gather.

@@ -68,8 +68,13 @@ impl Exchange {
     /// Completes `values`, of which this rank has set those in its part. After a failure all of them are NaN, so that
     /// solvers, which know nothing of ranks, end soon.
     pub(crate) fn gather(&self, values: &mut [f64], parts: &[Range<usize>]) {
+        self.gather_while(values, parts, || ());
+    }
+
+    /// The same, and `work` meanwhile.
+    pub(crate) fn gather_while(&self, values: &mut [f64], parts: &[Range<usize>], mut work: impl FnMut()) {
         if self.ranks() == 1 {
-            return;
+            return work();
         }
         let own = parts[self.rank()].len();
         let all: usize = parts.iter().map(Range::len).sum();
@@ -77,9 +82,9 @@ impl Exchange {
         count(&self.exchanges, 1);
         count(&self.sent, 8 * own);
         count(&self.received, 8 * (all - own));
-        if self.failure.get().is_none()
-            && let Err(error) = self.communicator.gather(values, parts)
-        {
+        if self.failure.get().is_some() {
+            work();
+        } else if let Err(error) = self.communicator.gather_while(values, parts, &mut work) {
             let _ = self.failure.set(error);
         }
         if self.failure.get().is_some() {
@@ -92,18 +97,23 @@ impl Exchange {
         if self.ranks() == 1 {
             return;
         }
-        let mut packed = Vec::with_capacity(pieces.iter().map(|(_, range)| range.len()).sum());
-        let mut parts = Vec::with_capacity(self.ranks());
-        let of = |rank: usize| {
-            pieces
-                .iter()
-                .filter(move |piece| piece.0 == rank)
-                .map(|piece| piece.1.clone())
+        if let Some(parts) = self.in_order(pieces) {
+            return self.gather(values, &parts);
+        }
+        let of = |rank: usize| pieces.iter().filter(move |piece| piece.0 == rank).map(|p| p.1.clone());
+        let mut at = 0;
+        let part = |rank: usize| {
+            let start = at;
+            at += of(rank).map(|range| range.len()).sum::<usize>();
+            start..at
         };
-        for rank in 0..self.ranks() {
-            let start = packed.len();
-            of(rank).for_each(|range| packed.extend_from_slice(&values[range]));
-            parts.push(start..packed.len());
+        let parts: Vec<Range<usize>> = (0..self.ranks()).map(part).collect();
+        let mut packed = vec![0.0; at];
+        let mut rest = &mut packed[parts[self.rank()].clone()];
+        for range in of(self.rank()) {
+            let (own, tail) = rest.split_at_mut(range.len());
+            own.copy_from_slice(&values[range]);
+            rest = tail;
         }
         self.gather(&mut packed, &parts);
         let mut rest = &packed[..];
@@ -112,5 +122,20 @@ impl Exchange {
             values[range].copy_from_slice(own);
             rest = tail;
         }
+    }
+
+    /// The part of each rank, where each has set consecutive numbers, in the order of the ranks: then nothing is packed.
+    fn in_order(&self, pieces: &[(usize, Range<usize>)]) -> Option<Vec<Range<usize>>> {
+        let (mut parts, mut end) = (Vec::with_capacity(self.ranks()), 0);
+        for (rank, range) in pieces {
+            if *rank + 1 < parts.len() || range.start != end {
+                return None;
+            }
+            parts.resize(rank + 1, end..end);
+            end = range.end;
+            parts[*rank].end = end;
+        }
+        parts.resize(self.ranks(), end..end);
+        Some(parts)
     }
 }

@@ -24,10 +24,22 @@ impl Communicator for ThreadRank {
     }
 
     fn gather(&self, values: &mut [f64], parts: &[Range<usize>]) -> Result<(), CommunicationError> {
+        self.gather_while(values, parts, &mut || ())
+    }
+
+    fn gather_while(
+        &self,
+        values: &mut [f64],
+        parts: &[Range<usize>],
+        work: &mut dyn FnMut(),
+    ) -> Result<(), CommunicationError> {
         let own = &values[parts[self.rank].clone()];
-        for (rank, to) in self.to.iter().enumerate().filter(|(rank, _)| *rank != self.rank) {
-            to.send(own.to_vec()).map_err(|_| CommunicationError::Lost { rank })?;
-        }
+        let others = self.to.iter().enumerate().filter(|(rank, _)| *rank != self.rank);
+        let sent: Result<Vec<()>, CommunicationError> = others
+            .map(|(rank, to)| to.send(own.to_vec()).map_err(|_| CommunicationError::Lost { rank }))
+            .collect();
+        work();
+        sent?;
         let from = self.from.lock().unwrap_or_else(PoisonError::into_inner);
         for (rank, from) in from.iter().enumerate().filter(|(rank, _)| *rank != self.rank) {
             let sent = from.recv().map_err(|_| CommunicationError::Lost { rank })?;

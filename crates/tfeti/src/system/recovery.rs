@@ -6,6 +6,7 @@ use crate::rows::gluing::CopyEntry;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::BLOCKS;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Response of the torn body to one load: what a time step needs to combine.
 ///
@@ -80,7 +81,7 @@ impl Tfeti {
     }
 
     /// Place of the three components of a node copy in torn vectors.
-    fn place(&self, subdomain: u32, local: u32) -> std::ops::Range<usize> {
+    fn place(&self, subdomain: u32, local: u32) -> Range<usize> {
         let start = self.torn_range(subdomain as usize).start + 3 * local as usize;
         start..start + 3
     }
@@ -153,21 +154,33 @@ impl Tfeti {
 
     /// Sum of loads: `sum factor * force`.
     pub fn combine_forces(&self, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
-        self.combine_forces_in(Vec::new(), loads)
+        self.combine_some(Vec::new(), loads, std::iter::once(0..self.torn_dim()))
     }
 
-    /// The same in old memory.
+    /// The same in old memory, on the subdomains of this process, zero on the others'.
     #[doc(hidden)]
-    pub fn combine_forces_in(&self, old: Vec<f64>, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
+    pub fn combine_forces_here(&self, old: Vec<f64>, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
+        self.combine_some(old, loads, self.torn_here())
+    }
+
+    fn combine_some(
+        &self,
+        old: Vec<f64>,
+        loads: &[(f64, &LoadResponse)],
+        all: impl Iterator<Item = Range<usize>>,
+    ) -> Vec<f64> {
         let mut force = zeros(old, self.torn_dim());
-        for (factor, load) in loads {
-            signorini_qp::vector::axpy(*factor, &load.force, &mut force);
+        for range in all {
+            for (factor, load) in loads {
+                signorini_qp::vector::axpy(*factor, &load.force[range.clone()], &mut force[range.clone()]);
+            }
         }
         force
     }
 
     /// The torn displacement `u = K+ (f + B^T lambda) + R alpha` (5.27), and the residual of equilibrium
-    /// `K u - f - B^T lambda`, a torn vector in newtons.
+    /// `K u - f - B^T lambda`, a torn vector in newtons. Of several processes each has the residual of its subdomains,
+    /// and of the force needs theirs only; [`complete_torn`](Self::complete_torn) tells it the others'.
     ///
     /// `force` is a torn vector in newtons, `alpha` the rigid amplitudes, for instance from
     /// [`CoarseFactor::amplitudes`](crate::CoarseFactor::amplitudes).
@@ -199,6 +212,7 @@ impl Tfeti {
             vec![0.0; force.len()]
         };
         self.displacement(&force, Some(alpha), &mut u);
+        self.complete_torn(&mut u);
         self.check("displacement", &u, self.torn_dim())?;
         self.stiffness_less(&u, &mut force);
         Ok([u, force])

@@ -43,6 +43,8 @@ pub struct Tfeti {
     stiffness: CopyStiffness,
     /// Rank that works on the part of torn vectors of each subdomain; empty of one process.
     pub(super) torn_ranks: Vec<u32>,
+    /// The ranks of consecutive numbers of torn vectors; none of one process.
+    pub(super) torn_pieces: Vec<(usize, Range<usize>)>,
     /// First unknown of each subdomain in torn vectors, and their length.
     offsets: Vec<usize>,
     /// Mesh node of each node copy, in torn order.
@@ -73,10 +75,15 @@ impl Tfeti {
             ownership.rank_of(class, member / PANEL * PANEL) as u32
         };
         let spread = ownership.exchange.ranks() > 1;
+        let torn_ranks: Vec<u32> = (0..if spread { parts.subdomains.count() } else { 0 })
+            .map(rank)
+            .collect();
+        let torn_pieces = pieces(&torn_ranks, 1).into_iter();
         Self {
-            torn_ranks: (0..if spread { parts.subdomains.count() } else { 0 })
-                .map(rank)
+            torn_pieces: torn_pieces
+                .map(|(rank, own)| (rank, offsets[own.start]..offsets[own.end]))
                 .collect(),
+            torn_ranks,
             parts,
             dual,
             coarse,
@@ -151,6 +158,20 @@ impl Tfeti {
         rank.is_none_or(|rank| *rank as usize == self.exchange().rank())
     }
 
+    /// The numbers of torn vectors that this process works on.
+    pub(super) fn torn_here(&self) -> impl Iterator<Item = Range<usize>> {
+        let all = (self.torn_pieces.is_empty()).then_some(0..self.torn_dim());
+        let (pieces, rank) = (self.torn_pieces.iter(), self.exchange().rank());
+        let own = pieces.filter(move |piece| piece.0 == rank).map(|piece| piece.1.clone());
+        all.into_iter().chain(own)
+    }
+
+    /// Brings what each process has set of a torn vector, that of its subdomains, to all; one exchange.
+    #[doc(hidden)]
+    pub fn complete_torn(&self, x: &mut [f64]) {
+        self.exchange().complete(x, &self.torn_pieces);
+    }
+
     /// What is measured of torn vectors, subdomain by subdomain, each by the process that works on it; one exchange.
     #[doc(hidden)]
     pub fn of_subdomains<const K: usize>(&self, measure: impl Fn(usize) -> [f64; K] + Sync) -> Vec<[f64; K]> {
@@ -189,7 +210,7 @@ impl Tfeti {
         Ok(values)
     }
 
-    fn exchange(&self) -> &Exchange {
+    pub(super) fn exchange(&self) -> &Exchange {
         &self.parts.subdomains.ownership.exchange
     }
 

@@ -1,4 +1,5 @@
-//! Stiffness and generalised inverse of the torn body: class by class, some members of a class at a time.
+//! Stiffness and generalised inverse of the torn body: class by class, some members of a class at a time, each rank on
+//! its subdomains.
 
 use crate::dual::inverses::ClassInverse;
 use crate::linalg::block_rows::BlockRows;
@@ -11,14 +12,15 @@ impl Tfeti {
     /// `y = K x` for torn vectors.
     pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
         self.stiffness_product(x, y, |product, _| product);
+        self.complete_torn(y);
     }
 
-    /// `y = K x - y`; of `y` only what belongs to subdomains of this process is read.
+    /// `y = K x - y` on the subdomains of this process, the others' are left alone.
     pub(super) fn stiffness_less(&self, x: &[f64], y: &mut [f64]) {
         self.stiffness_product(x, y, |product, y| product - y);
     }
 
-    /// `y = new(K x, y)`, entry by entry.
+    /// `y = new(K x, y)`, entry by entry, likewise.
     fn stiffness_product(&self, x: &[f64], y: &mut [f64], new: impl Fn(f64, f64) -> f64 + Sync) {
         let parts = &self.parts;
         self.by_class(y, |class, members, columns| {
@@ -55,9 +57,10 @@ impl Tfeti {
     /// `u = K+ f` for torn vectors.
     pub fn generalised_inverse(&self, f: &[f64], u: &mut [f64]) {
         self.displacement(f, None, u);
+        self.complete_torn(u);
     }
 
-    /// `u = K+ f`, and `R alpha` if that is told.
+    /// `u = K+ f`, and `R alpha` if that is told, on the subdomains of this process, the others' are left alone.
     pub(super) fn displacement(&self, f: &[f64], alpha: Option<&[f64]>, u: &mut [f64]) {
         let parts = &self.parts;
         self.by_class(u, |class, members, columns| {
@@ -82,32 +85,28 @@ impl Tfeti {
         });
     }
 
-    /// Hands some members of a class at a time to `work`, with their parts of the torn vector `out`. Each rank does
-    /// those that it holds, one exchange brings the others.
+    /// Hands some members of a class at a time to `work`, with their parts of the torn vector `out`: those that this
+    /// process works on.
     fn by_class(&self, out: &mut [f64], work: impl Fn(usize, &[u32], Vec<&mut [f64]>) + Sync) {
         let mut targets: Vec<Option<&mut [f64]>> = Vec::with_capacity(self.subdomains());
-        let ownership = &self.parts.subdomains.ownership;
         let mut rest = &mut *out;
         for s in 0..self.subdomains() {
             let (own, tail) = std::mem::take(&mut rest).split_at_mut(self.torn_range(s).len());
             targets.push(Some(own));
             rest = tail;
         }
-        let (mut list, mut pieces) = (Vec::new(), Vec::new());
+        let mut list = Vec::new();
         for (class, own) in self.classes().classes().iter().enumerate() {
-            for members in own.members.chunks(PANEL) {
-                let first = members[0] as usize;
-                let rank = self.torn_ranks.get(first).map_or(0, |rank| *rank as usize);
-                pieces.extend(members.iter().map(|&s| (rank, self.torn_range(s as usize))));
-                if !self.is_here(first) {
-                    continue;
-                }
+            for members in own
+                .members
+                .chunks(PANEL)
+                .filter(|members| self.is_here(members[0] as usize))
+            {
                 let columns: Vec<&mut [f64]> = members.iter().filter_map(|&s| targets[s as usize].take()).collect();
                 list.push((class, members, columns));
             }
         }
         list.into_par_iter()
             .for_each(|(class, members, columns)| work(class, members, columns));
-        ownership.exchange.complete(out, &pieces);
     }
 }
