@@ -181,7 +181,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         self.at.projector.repair(self.at.x, self.at.problem.rhs);
         self.peak = self.at.problem.operator.norm(self.at.x);
         if ax_known {
-            self.at.correct(ROUNDED * self.peak);
+            // without constraints nothing but rounding may have moved
+            let moves = self.at.constrained() > 0;
+            self.at.correct(if moves { 0.0 } else { ROUNDED * self.peak });
         } else {
             self.at.multiply();
         }
