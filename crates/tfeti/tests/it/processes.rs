@@ -44,7 +44,7 @@ fn all_bits(system: &Tfeti) -> Vec<u64> {
         .map(|s| force[system.torn_range(s)].to_vec())
         .collect();
     let load = system.load_response(&locals).unwrap();
-    let mut sum = system.combine_forces_here(&[(2.0, &load), (0.5, &load)]);
+    let mut sum = system.combine_forces_here(Vec::new(), &[(2.0, &load), (0.5, &load)]);
     system.complete_torn(&mut sum);
     assert_eq!(sum, system.combine_forces(&[(2.0, &load), (0.5, &load)]));
     all.extend([sum, load.dual, load.coarse].concat());
