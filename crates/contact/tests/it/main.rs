@@ -20,7 +20,6 @@ mod halving;
 mod invariance;
 mod levels;
 mod manufactured;
-mod memory;
 mod methods;
 mod mortar;
 mod moving_field;
