@@ -108,7 +108,7 @@ impl Supernodes {
     }
 
     /// [`forward`](Self::forward) or [`backward`](Self::backward).
-    pub(crate) fn solve<T: Stored, X: Unknown>(
+    fn solve<T: Stored, X: Unknown>(
         &self,
         tiles: &[T],
         x: &mut [X],

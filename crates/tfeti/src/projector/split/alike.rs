@@ -12,7 +12,7 @@ use crate::tolerances::{SOLVE_READS, TOGETHER};
 use std::ops::Range;
 
 /// Which regions are solved together, from the innermost to the outermost.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Bunches {
     pub(super) all: Vec<Bunch>,
     /// Bunches of each height.
@@ -43,6 +43,13 @@ pub(super) struct Bunch {
 impl Bunch {
     pub(super) fn rows(&self) -> usize {
         self.own + self.behind
+    }
+
+    /// The own unknowns among its numbers, those behind them, and the buffer.
+    pub(super) fn divide<'a>(&self, numbers: &'a mut [f64]) -> [&'a mut [f64]; 3] {
+        let (own, rest) = numbers.split_at_mut(self.own * self.width);
+        let (behind, buffer) = rest.split_at_mut(self.behind * self.width);
+        [own, behind, buffer]
     }
 }
 

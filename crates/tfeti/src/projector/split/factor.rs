@@ -31,8 +31,8 @@ pub(crate) struct SplitBase {
     /// Steady part of the columns of each node that changes; empty for the others.
     base: Vec<Vec<f64>>,
     contact: ContactTerms,
-    /// Regions that are solved together, if equal ones are looked for.
-    pub(super) bunches: Option<Bunches>,
+    /// Regions that are solved together.
+    pub(super) bunches: Bunches,
     /// Of several processes, if each has a branch.
     pub(super) branches: Option<Branches>,
     /// Numbers stored, by all processes together.
@@ -51,12 +51,6 @@ pub(crate) struct Piece {
     pub(crate) changing: Supernodes,
     /// Whether nothing changes in the region and those within.
     pub(crate) is_steady: bool,
-    /// Length of its own work memory, behind that of the regions within.
-    pub(crate) slot: usize,
-    /// Length of the work memory with that of the regions within.
-    pub(crate) work: usize,
-    /// Numbers that a solve reads in the region and those within.
-    pub(crate) reads: usize,
     /// Operations of a change of the active set in the region and those within.
     operations: f64,
 }
@@ -102,7 +96,7 @@ impl SplitBase {
             base: Vec::new(),
             pieces,
             contact: ContactTerms::new(tree.nodes.len(), contact, &|a, b| tree.front(a, b), write),
-            bunches: None,
+            bunches: Bunches::default(),
             branches: exchange.and_then(|exchange| Branches::new(&tree, exchange)),
             stored: 0,
             rows: contact,
@@ -114,7 +108,7 @@ impl SplitBase {
             for (piece, tiles) in out.pieces.iter_mut().zip(tiles) {
                 piece.tiles = tiles;
             }
-            out.bunches = Some(out.bunch(&first));
+            out.bunches = out.bunch(&first);
             out.stored = out.count_stored();
             let branches = out.branches.as_ref();
             let elsewhere = |r: usize| branches.is_some_and(|branches| !branches.is_here(r));
@@ -144,13 +138,14 @@ impl SplitBase {
         }
         let diagonal = matrix.diagonal(values).fold(0.0_f64, f64::max);
         out.threshold = SINGULAR * diagonal;
-        if shares {
-            let first = share(&mut out.tree, graph, &bits(matrix, values));
-            for (r, &equal) in first.iter().enumerate() {
-                out.pieces[r] = out.pieces[equal].clone();
-            }
-            out.bunches = Some(out.bunch(&first));
+        let first = match shares {
+            true => share(&mut out.tree, graph, &bits(matrix, values)),
+            false => first,
+        };
+        for (r, &equal) in first.iter().enumerate().filter(|(r, equal)| r != *equal) {
+            out.pieces[r] = out.pieces[equal].clone();
         }
+        out.bunches = out.bunch(&first);
         out.stored = out.count_stored();
         Ok(out)
     }
@@ -168,17 +163,13 @@ impl SplitBase {
 
     /// Whether [`half_solve`](Self::half_solve) does something.
     pub(crate) fn has_halves(&self) -> bool {
-        self.bunches.is_some() && self.rows == 0
+        self.rows == 0
     }
 
     /// Length of the work memory of a solve.
     pub(crate) fn work(&self) -> usize {
         let message = self.branches.as_ref().map_or(0, Branches::message);
-        message
-            + match &self.bunches {
-                Some(bunches) => bunches.work(),
-                None => self.tree.dim() + self.pieces.last().map_or(0, |p| p.work),
-            }
+        message + self.bunches.work()
     }
 
     /// Leading rows whose weights change: others do not lead to blocks that change.
@@ -223,12 +214,12 @@ impl SplitBase {
     }
 
     /// Whether regions of a pass are within this one, and whether it is one.
-    pub(super) fn enters(&self, r: usize, pass: Option<Pass>) -> bool {
+    fn enters(&self, r: usize, pass: Option<Pass>) -> bool {
         let both = self.branches.as_ref().zip(pass);
         both.is_none_or(|(branches, pass)| branches.is_entered(r, pass))
     }
 
-    pub(super) fn does(&self, r: usize, pass: Option<Pass>) -> bool {
+    fn does(&self, r: usize, pass: Option<Pass>) -> bool {
         let both = self.branches.as_ref().zip(pass);
         both.is_none_or(|(branches, pass)| branches.is_done(branches.rank_of(r), pass))
     }
@@ -276,13 +267,9 @@ impl Piece {
         };
         let (steady, changing) = (group(region.steady.clone()), group(region.changing.clone()));
         let children = || region.region.children.into_iter().flatten().map(|k| &before[k]);
-        let slot = 6 * region.behind.len() + steady.buffer().max(changing.buffer());
         let own = tree.nodes[region.changing.clone()].iter();
         Self {
             is_steady: region.changing.is_empty() && children().all(|c| c.is_steady),
-            slot,
-            work: slot + children().map(|c| c.work).sum::<usize>(),
-            reads: Tile::NUMBERS * (steady.tiles() + changing.tiles()) + children().map(|c| c.reads).sum::<usize>(),
             operations: own.map(|n| n.operations()).sum::<f64>() + children().map(|c| c.operations).sum::<f64>(),
             tiles: Arc::default(),
             steady: Arc::new(steady),

@@ -152,11 +152,6 @@ impl CoarseTree {
         Ok(out)
     }
 
-    /// Unknowns.
-    pub(crate) fn dim(&self) -> usize {
-        6 * self.blocks.len()
-    }
-
     /// Numbers that a factor stores: exact and rounded tiles, and what is steady in the columns that change. Steady
     /// columns count in regions with tiles of their `own`.
     pub(crate) fn stored(&self, own: impl Iterator<Item = bool>) -> usize {
