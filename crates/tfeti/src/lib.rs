@@ -89,7 +89,7 @@ pub use system::tfeti::Tfeti;
 pub mod internal {
     pub use crate::coarse::space::CoarseScratch;
     pub use crate::dual::boundary::PanelScratch;
-    pub use crate::linalg::zeros;
+    pub use crate::linalg::{of_length, zeros};
     pub use crate::preconditioner::operator::DualPreconditionerScratch;
     pub use crate::processes::threads::on_ranks;
     pub use crate::projector::active_set::ActiveSetFactor;

@@ -8,6 +8,7 @@ use crate::error::ContactError;
 use crate::model::Model;
 use crate::step::StepProblem;
 use signorini_qp::vector;
+use signorini_tfeti::internal::of_length;
 
 /// Displacement, states of points, and how well all conditions hold.
 #[derive(Debug, Clone, Default)]
@@ -42,10 +43,7 @@ impl Recovered {
         let tfeti = &model.tfeti;
         let force = problem.forces_here(old.residual, model);
         let [torn, residual] = tfeti.recover_in([old.torn, force], lambda, alpha)?;
-        let mut rows = match old.rows.len() == tfeti.dual_dim() {
-            true => old.rows,
-            false => vec![0.0; tfeti.dual_dim()],
-        };
+        let mut rows = of_length(old.rows, tfeti.dual_dim());
         tfeti.rows_times(&torn, &mut rows);
         let mut gives_way = Vec::new();
         if tfeti.gluing().is_compliant() {

@@ -12,7 +12,7 @@ use crate::solve::{Iterate, Task};
 use crate::state::{Kept, Peak, State};
 use crate::step::StepProblem;
 use signorini_qp::vector;
-use signorini_tfeti::internal::zeros;
+use signorini_tfeti::internal::{of_length, zeros};
 use std::sync::Arc;
 
 impl Simulation {
@@ -179,9 +179,7 @@ fn start_vector(last: &[f64], before: Option<&[f64]>, n: usize, along: Option<f6
         *x = zeros(std::mem::take(x), n);
         return;
     }
-    if x.len() != last.len() {
-        *x = vec![0.0; last.len()];
-    }
+    *x = of_length(std::mem::take(x), last.len());
     vector::copy(last, x);
     match (along, before) {
         (Some(ratio), Some(before)) if before.len() == n => vector::extrapolate(last, before, ratio, x),

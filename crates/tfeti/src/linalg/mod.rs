@@ -37,6 +37,11 @@ pub fn zeros(mut old: Vec<f64>, length: usize) -> Vec<f64> {
     old
 }
 
+/// An old vector as it is, to be overwritten, if it has this length, else a new one.
+pub fn of_length(old: Vec<f64>, length: usize) -> Vec<f64> {
+    if old.len() == length { old } else { vec![0.0; length] }
+}
+
 /// The value of a key in a short list; `new` if it is not there yet.
 pub(crate) fn entry<K: PartialEq, V>(list: &mut Vec<(K, V)>, key: K, new: V) -> &mut V {
     let at = list.iter().position(|v| v.0 == key).unwrap_or(list.len());

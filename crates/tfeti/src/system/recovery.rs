@@ -1,7 +1,7 @@
 //! Loads, displacements and residuals: everything between torn and dual vectors that is not an iteration.
 
 use crate::error::TfetiError;
-use crate::linalg::zeros;
+use crate::linalg::{of_length, zeros};
 use crate::rows::gluing::CopyEntry;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::BLOCKS;
@@ -206,11 +206,7 @@ impl Tfeti {
         self.check("multipliers", lambda, self.dual_dim())?;
         self.check("rigid amplitudes", alpha, 6 * self.subdomains())?;
         self.add_some_transposed(lambda, &mut force, |s| self.is_here(s as usize));
-        let mut u = if old.len() == force.len() {
-            old
-        } else {
-            vec![0.0; force.len()]
-        };
+        let mut u = of_length(old, force.len());
         self.displacement(&force, Some(alpha), &mut u);
         self.complete_torn(&mut u);
         self.check("displacement", &u, self.torn_dim())?;
