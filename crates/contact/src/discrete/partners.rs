@@ -86,26 +86,28 @@ impl Paired {
         let facet = |s: &Surface| s.total_area() / s.triangles().len() as f64;
         let [own, others] = [facet(&paired.surface), facet(&other.surface)];
         let seen = |from: &Surface, to: &Surface| mortar_nodes(mesh, from, to, contact.tied);
-        let mut mortar = Vec::new();
-        paired.swapped = others > COARSER * own;
-        if !paired.swapped {
-            mortar = seen(&paired.surface, &other.surface);
-        }
-        if paired.swapped || own <= COARSER * others {
+        let there = || seen(&paired.surface, &other.surface);
+        let back = || seen(&other.surface, &paired.surface);
+        let (mortar, swapped) = if others > COARSER * own {
+            (back(), true)
+        } else if own > COARSER * others {
+            (there(), false)
+        } else {
             let count = |nodes: &[Option<MortarNode>]| nodes.iter().flatten().count();
-            let back = seen(&other.surface, &paired.surface);
-            paired.swapped |= count(&back) < count(&mortar);
-            if paired.swapped {
-                mortar = back;
+            let (there, back) = (there(), back());
+            match count(&back) < count(&there) {
+                true => (back, true),
+                false => (there, false),
             }
-        }
+        };
         if mortar.iter().all(Option::is_none) {
             let distance = other.distance(&paired.surface);
             let contact = index;
             return Err(ContactError::NoPartner { contact, distance });
         }
         paired.partners = Partners::Mortar(mortar);
-        if paired.swapped {
+        paired.swapped = swapped;
+        if swapped {
             paired.surface = other.surface;
             paired.fixed = fixed.and_then(|frame| SurfaceFrame::from_normal(frame.normal.map(|c| -c)));
         }
