@@ -4,7 +4,7 @@
 //! body.
 
 use super::bodies::side;
-use super::{Shaft, Turn, bare, settings};
+use super::{Frame, bare, settings};
 use crate::dice::Dice;
 use crate::recipe::{Course, Density, Elastic, Fixed, Hold, Law, Push, Recipe, Where};
 use crate::vec3::{Vec3, across, add, dot, norm, scale, sub, unit};
@@ -111,48 +111,25 @@ impl Foot {
     }
 }
 
-pub(super) fn law(dice: &mut Dice, stress: f64, way: f64, duration: f64) -> Law {
-    match dice.whole(0, 9) {
-        0..=1 => Law::None,
-        2 => Law::Given(dice.between(0.05, 0.5) * stress),
-        3 => Law::Exponential {
-            fixed: dice.between(0.3, 0.6),
-            kinetic: dice.between(0.1, 0.3),
-            decay: dice.decades(0.1, 10.0) * way / duration,
-        },
-        _ => Law::Coulomb(dice.between(0.05, 0.8)),
-    }
-}
-
 /// The scene with a number.
 pub(crate) fn apart(seed: u64, number: u64) -> Apart {
     let mut dice = Dice::new(seed ^ 0xa9a7, number);
     let dice = &mut dice;
-    let length = if dice.chance(0.7) { 1.0 } else { dice.decades(1e-3, 1e2) };
-    let young = if dice.chance(0.5) { 1e9 } else { dice.decades(1e4, 1e12) };
-    let strain = dice.decades(1e-4, 1e-2);
-    let (stress, way) = (young * strain, strain * length);
-    let clock = settings::clock(dice);
-    let duration = clock.times().last().copied().unwrap_or(1.0);
-    let shaft = Shaft {
-        duration,
-        static_: clock.times().len() == 1,
-    };
-    let turn = Turn::new(dice, length);
+    let frame = Frame::new(dice);
     let count = if dice.chance(0.7) { 2 } else { 3 };
     let mut words = vec![format!("apart={count}")];
     // with numbers of their own, so that scenes stay what they were without them
     let mut more = Dice::new(seed ^ 0xc0de, number);
     let bumps = if more.chance(0.25) {
-        length * more.decades(1e-3, 0.1)
+        frame.length * more.decades(1e-3, 0.1)
     } else {
         0.0
     };
     if bumps > 0.0 {
-        words.push(format!("bumps {:.1e}", bumps / length));
+        words.push(format!("bumps {:.1e}", bumps / frame.length));
     }
     let mut alike = Dice::new(seed ^ 0xd1a6, number);
-    let soft = way / stress;
+    let soft = frame.way / frame.stress;
     let mut gives_way = |words: &mut Vec<String>| {
         let mut one = || {
             if more.chance(0.7) {
@@ -172,7 +149,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
 
     // the bodies: one on the other, or two on the first
     let cells = [dice.whole(2, 5), dice.whole(2, 4), dice.whole(1, 3)];
-    let lengths = [dice.between(0.8, 2.5), dice.between(0.7, 1.5), dice.between(0.4, 1.2)].map(|l| l * length);
+    let lengths = [dice.between(0.8, 2.5), dice.between(0.7, 1.5), dice.between(0.4, 1.2)].map(|l| l * frame.length);
     let twins = count == 3 && dice.chance(0.5);
     let mut feet = vec![Foot {
         centre: [0.0; 2],
@@ -232,21 +209,14 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
             // flat below, and above the first body by so much higher everywhere
             let [s, t] = [x / lengths[0], y / lengths[1]];
             let lift = bumps * (s * s - 0.7 * s * t - 0.5 * t * t) * (z / lengths[2]).min(1.0);
-            turn.place([x, y, z + lift])
+            frame.turn.place([x, y, z + lift])
         };
         let brick = brick.build().expect("brick").map_tags(|t| side(body, t));
         let tets = brick.tets().len();
         let brick = brick.with_regions(vec![body as u32; tets]).expect("regions");
         let brick = brick.map_points(place).expect("places");
         mesh = Some(mesh.map_or_else(|| brick.clone(), |m| m.append(&brick).expect("bodies")));
-        let stiff = match dice.whole(0, 3) {
-            _ if body == 0 => 1.0,
-            0 | 1 => 1.0,
-            2 => dice.decades(0.1, 10.0),
-            _ => dice.decades(1e-3, 1e3),
-        };
-        words.push(format!("stiffness {stiff:.1e}"));
-        elastic.push(Elastic::Isotropic(stiff * young, dice.between(0.0, 0.45)));
+        elastic.push(frame.elastic(dice, body, 0.45, &mut words));
         if body == 0 {
             continue;
         }
@@ -255,14 +225,10 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
             sides.swap(0, 1);
         }
         let tied = dice.chance(0.25);
-        let law = if tied {
-            Law::None
-        } else {
-            law(dice, stress, way, duration)
-        };
+        let law = if tied { Law::None } else { frame.law(dice) };
         let axis = (law.is_some() && dice.chance(0.3)).then(|| {
             let angle = dice.between(0.0, 3.0);
-            (turn.way([angle.cos(), angle.sin(), 0.0]), dice.decades(0.3, 3.0))
+            (frame.turn.way([angle.cos(), angle.sin(), 0.0]), dice.decades(0.3, 3.0))
         });
         words.push(if tied { "tied" } else { "touching" }.into());
         if axis.is_some() {
@@ -282,12 +248,12 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
     let mesh = mesh.expect("a body");
 
     // the first body is held below, or lies on a plane or in a hollow of its own
-    let mut recipe = bare(dice, (mesh, elastic), clock, words);
+    let mut recipe = bare(dice, (mesh, elastic), frame.clock.clone(), words);
     let mut rocks = Vec::new();
     let tag = |body: usize, tag: FacetTag| Where::Tag(side(body, tag));
     let rough = |dice: &mut Dice, law: Law| {
         let angle = dice.between(0.0, 3.0);
-        let axis = (turn.way([angle.cos(), angle.sin(), 0.0]), dice.decades(0.3, 3.0));
+        let axis = (frame.turn.way([angle.cos(), angle.sin(), 0.0]), dice.decades(0.3, 3.0));
         (law.is_some() && dice.chance(0.3)).then_some(axis)
     };
     if dice.chance(0.7) {
@@ -300,7 +266,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
         let law = Law::Coulomb(dice.between(0.2, 0.8));
         rocks.push(Rock {
             side: side(0, brick::Z_MIN),
-            shape: Shape::Plane(turn.place([0.0; 3]), turn.way([0.0, 0.0, 1.0])),
+            shape: Shape::Plane(frame.turn.place([0.0; 3]), frame.turn.way([0.0, 0.0, 1.0])),
             motion: None,
             turn: None,
             axis: rough(dice, law.clone()),
@@ -315,41 +281,25 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
             continue;
         }
         let sides = side(body, brick::Z_MAX);
-        let down = turn.way([0.6 * dice.either(), 0.6 * dice.either(), -1.0]);
+        let down = frame.turn.way([0.6 * dice.either(), 0.6 * dice.either(), -1.0]);
         match dice.whole(0, 9) {
-            0..=3 => {
-                recipe.words.push("moved".into());
-                recipe.holds.push(Hold {
-                    place: Where::Tag(sides),
-                    fixed: Fixed::All,
-                    motion: Some((vec![scale(way, down)], shaft.course(dice))),
-                });
-            }
-            4..=6 => {
-                recipe.words.push("loose, loaded".into());
-                let course = if dice.chance(0.5) {
-                    Course::Constant(1.0)
-                } else {
-                    shaft.course(dice)
-                };
-                let density = Density::Traction(sides, scale(dice.between(0.2, 1.0) * stress, down));
-                recipe.pushes.push(Push { density, course });
-            }
+            0..=3 => frame.moved(dice, sides, down, &mut recipe),
+            4..=6 => frame.loaded(dice, sides, down, &mut recipe),
             _ => {
                 recipe.words.push("loose, obstacle".into());
-                let radius = length * dice.decades(0.5, 10.0);
+                let radius = frame.length * dice.decades(0.5, 10.0);
                 let foot = feet[body].centre;
-                let over = turn.place([foot[0], foot[1], top[body] + radius]);
+                let over = frame.turn.place([foot[0], foot[1], top[body] + radius]);
                 let shape = if dice.chance(0.5) {
                     Shape::Ball(over, radius)
                 } else {
-                    Shape::Roll(over, turn.way(unit([1.0, dice.either(), 0.0])), radius)
+                    Shape::Roll(over, frame.turn.way(unit([1.0, dice.either(), 0.0])), radius)
                 };
-                let law = law(dice, stress, way, duration);
+                let law = frame.law(dice);
                 rocks.push(Rock {
                     side: sides,
                     shape,
-                    motion: Some((scale(3.0 * way, down), shaft.course(dice))),
+                    motion: Some((scale(3.0 * frame.way, down), frame.shaft.course(dice))),
                     turn: None,
                     axis: rough(dice, law.clone()),
                     law,
@@ -359,8 +309,8 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
         }
         if dice.chance(0.25) {
             recipe.words.push("pull".into());
-            let density = Density::Traction(side(body, brick::X_MAX), scale(0.3 * stress, dice.vector()));
-            let course = shaft.course(dice);
+            let density = Density::Traction(side(body, brick::X_MAX), scale(0.3 * frame.stress, dice.vector()));
+            let course = frame.shaft.course(dice);
             recipe.pushes.push(Push { density, course });
         }
     }
@@ -369,7 +319,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
         if !more.chance(0.3) {
             continue;
         }
-        let way = way / length;
+        let way = frame.way / frame.length;
         let (axis, angle) = match rock.shape {
             Shape::Plane(_, outward) if more.chance(0.5) => (outward, 3.0 * way),
             Shape::Plane(_, outward) => (unit(across(more.vector(), outward)), 0.3 * way),
@@ -377,7 +327,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
             Shape::Roll(_, axis, _) => (axis, 3.0 * way),
         };
         let (Shape::Plane(point, _) | Shape::Ball(point, _) | Shape::Roll(point, ..)) = rock.shape;
-        let course = shaft.course(&mut more).times(angle * more.between(0.2, 1.0));
+        let course = frame.shaft.course(&mut more).times(angle * more.between(0.2, 1.0));
         rock.turn = Some((point, axis, course));
         recipe.words.push("turns".into());
         // one motion at a time: a ball is pressed in from the start
@@ -388,7 +338,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
         }
     }
     let ground = more.chance(0.2).then(|| {
-        let stiffness = young / length * more.decades(1e-3, 1e2);
+        let stiffness = frame.young / frame.length * more.decades(1e-3, 1e2);
         recipe.words.push("foundation".into());
         let body = more.whole(0, count - 1);
         let tag = side(body, if more.chance(0.5) { brick::Y_MIN } else { brick::X_MIN });

@@ -13,9 +13,9 @@ mod settings;
 mod supports;
 
 use crate::dice::Dice;
-use crate::recipe::{Clock, Course, Elastic, Recipe};
+use crate::recipe::{Clock, Course, Density, Elastic, Fixed, Hold, Law, Push, Recipe, Where};
 use crate::vec3::{Vec3, add, cross, scale, unit};
-use signorini::prelude::TetMesh;
+use signorini::prelude::{FacetTag, TetMesh};
 
 /// Known faults and limits that the generator stays clear of. An entry goes when its fault is mended.
 pub(crate) const KNOWN: [(&str, &str); 3] = [
@@ -55,14 +55,10 @@ pub(crate) fn recipe(seed: u64, number: u64) -> Recipe {
     let dice = &mut dice;
     let world = bodies::world(dice);
     let clock = settings::clock(dice);
-    let duration = clock.times().last().copied().unwrap_or(1.0);
     let (mesh, elastic, material) = material::materials(dice, &world);
     let mut recipe = bare(dice, (mesh, elastic), clock, world.words.clone());
     recipe.words.push(material);
-    let shaft = Shaft {
-        duration,
-        static_: recipe.clock.times().len() == 1,
-    };
+    let shaft = Shaft::new(&recipe.clock);
     contacts::contacts(dice, &world, &shaft, &mut recipe);
     supports::supports(dice, &world, &shaft, &mut recipe);
     loads::loads(dice, &world, &shaft, &mut recipe);
@@ -109,6 +105,14 @@ pub(crate) struct Shaft {
 }
 
 impl Shaft {
+    fn new(clock: &Clock) -> Self {
+        let times = clock.times();
+        Self {
+            duration: times.last().copied().unwrap_or(1.0),
+            static_: times.len() == 1,
+        }
+    }
+
     /// A factor in time of about one at most.
     pub(crate) fn course(&self, dice: &mut Dice) -> Course {
         let end = self.duration;
@@ -133,5 +137,84 @@ impl Shaft {
                 phase: dice.between(0.0, 1.0),
             },
         }
+    }
+}
+
+/// Sizes and times of a scene of bodies meshed apart.
+struct Frame {
+    length: f64,
+    young: f64,
+    strain: f64,
+    stress: f64,
+    /// How far things move, m.
+    way: f64,
+    clock: Clock,
+    shaft: Shaft,
+    turn: Turn,
+}
+
+impl Frame {
+    fn new(dice: &mut Dice) -> Self {
+        let length = if dice.chance(0.7) { 1.0 } else { dice.decades(1e-3, 1e2) };
+        let young = if dice.chance(0.5) { 1e9 } else { dice.decades(1e4, 1e12) };
+        let strain = dice.decades(1e-4, 1e-2);
+        let clock = settings::clock(dice);
+        Self {
+            length,
+            young,
+            strain,
+            stress: young * strain,
+            way: strain * length,
+            shaft: Shaft::new(&clock),
+            clock,
+            turn: Turn::new(dice, length),
+        }
+    }
+
+    /// The material of a body, with Poisson's ratio up to `poisson`.
+    fn elastic(&self, dice: &mut Dice, body: usize, poisson: f64, words: &mut Vec<String>) -> Elastic {
+        let stiff = match dice.whole(0, 3) {
+            _ if body == 0 => 1.0,
+            0 | 1 => 1.0,
+            2 => dice.decades(0.1, 10.0),
+            _ => dice.decades(1e-3, 1e3),
+        };
+        words.push(format!("stiffness {stiff:.1e}"));
+        Elastic::Isotropic(stiff * self.young, dice.between(0.0, poisson))
+    }
+
+    fn law(&self, dice: &mut Dice) -> Law {
+        match dice.whole(0, 9) {
+            0..=1 => Law::None,
+            2 => Law::Given(dice.between(0.05, 0.5) * self.stress),
+            3 => Law::Exponential {
+                fixed: dice.between(0.3, 0.6),
+                kinetic: dice.between(0.1, 0.3),
+                decay: dice.decades(0.1, 10.0) * self.way / self.shaft.duration,
+            },
+            _ => Law::Coulomb(dice.between(0.05, 0.8)),
+        }
+    }
+
+    /// Moves a side as a whole.
+    fn moved(&self, dice: &mut Dice, side: FacetTag, down: Vec3, recipe: &mut Recipe) {
+        recipe.words.push("moved".into());
+        recipe.holds.push(Hold {
+            place: Where::Tag(side),
+            fixed: Fixed::All,
+            motion: Some((vec![scale(self.way, down)], self.shaft.course(dice))),
+        });
+    }
+
+    /// Presses on a side of a body that nothing holds.
+    fn loaded(&self, dice: &mut Dice, side: FacetTag, down: Vec3, recipe: &mut Recipe) {
+        recipe.words.push("loose, loaded".into());
+        let course = if dice.chance(0.5) {
+            Course::Constant(1.0)
+        } else {
+            self.shaft.course(dice)
+        };
+        let density = Density::Traction(side, scale(dice.between(0.2, 1.0) * self.stress, down));
+        recipe.pushes.push(Push { density, course });
     }
 }

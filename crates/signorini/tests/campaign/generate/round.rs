@@ -2,11 +2,11 @@
 //! around one another, whose sides are curved out of their plane. They are tied or touch, and may be carried along or
 //! turned as a whole.
 
-use super::apart::{Apart, Pair, Rock, Shape, law};
+use super::apart::{Apart, Pair, Rock, Shape};
 use super::bodies::side;
-use super::{Shaft, Turn, bare, settings};
+use super::{Frame, bare, settings};
 use crate::dice::Dice;
-use crate::recipe::{Course, Density, Elastic, Fixed, Hold, Law, Push, Where};
+use crate::recipe::{Fixed, Hold, Law, Where};
 use crate::vec3::{Vec3, add, cross, scale};
 use signorini::fem_mesh::mesh::{drop_unused_nodes, merge_nodes};
 use signorini::prelude::*;
@@ -77,16 +77,7 @@ fn area(mesh: &TetMesh, tag: FacetTag) -> f64 {
 pub(crate) fn round(seed: u64, number: u64) -> Apart {
     let mut dice = Dice::new(seed ^ 0x0f1e, number);
     let dice = &mut dice;
-    let length = if dice.chance(0.7) { 1.0 } else { dice.decades(1e-3, 1e2) };
-    let young = if dice.chance(0.5) { 1e9 } else { dice.decades(1e4, 1e12) };
-    let strain = dice.decades(1e-4, 1e-2);
-    let (stress, way) = (young * strain, strain * length);
-    let clock = settings::clock(dice);
-    let shaft = Shaft {
-        duration: clock.times().last().copied().unwrap_or(1.0),
-        static_: clock.times().len() == 1,
-    };
-    let turn = Turn::new(dice, length);
+    let frame = Frame::new(dice);
     let form = [Form::Discs, Form::Washers, Form::Sleeves][dice.whole(0, 2)];
     let order = if dice.chance(0.4) { 2 } else { 1 };
     let mut words = vec![
@@ -94,12 +85,12 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
         format!("order {order}"),
     ];
     let count = if dice.chance(0.75) { 2 } else { 3 };
-    let soft = way / stress;
+    let soft = frame.way / frame.stress;
 
-    let outer = length * dice.between(0.5, 1.0);
+    let outer = frame.length * dice.between(0.5, 1.0);
     let mut bodies = vec![Round {
         radii: [outer * dice.between(0.3, 0.7), outer],
-        heights: [0.0, length * dice.between(0.2, 0.8)],
+        heights: [0.0, frame.length * dice.between(0.2, 0.8)],
         centre: [0.0; 2],
         phase: 0.0,
     }];
@@ -119,7 +110,10 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
                 own.heights = [dice.between(-0.2, 0.3), dice.between(0.6, 1.2)].map(|h| under.heights[0] + h * height);
             }
         } else {
-            own.heights = [under.heights[1], under.heights[1] + length * dice.between(0.2, 0.6)];
+            own.heights = [
+                under.heights[1],
+                under.heights[1] + frame.length * dice.between(0.2, 0.6),
+            ];
             if !same {
                 own.radii[0] *= dice.between(0.7, 1.1);
                 own.radii[1] = (own.radii[1] * dice.between(0.7, 1.2)).max(1.2 * own.radii[0].max(under.radii[0]));
@@ -150,24 +144,17 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
         } else {
             own
         };
-        let place = |p| turn.place(round.place(form, p));
+        let place = |p| frame.turn.place(round.place(form, p));
         let own = match form {
             Form::Discs => own.map_points(place).expect("places"),
-            _ => close(&own, place, 1e-9 * length),
+            _ => close(&own, place, 1e-9 * frame.length),
         };
         let own = own.map_tags(|t| side(body, t));
         let tets = own.tets().len();
         let own = own.with_regions(vec![body as u32; tets]).expect("regions");
         mesh = Some(mesh.map_or_else(|| own.clone(), |m| m.append(&own).expect("bodies")));
         meshes.push(own);
-        let stiff = match dice.whole(0, 3) {
-            _ if body == 0 => 1.0,
-            0 | 1 => 1.0,
-            2 => dice.decades(0.1, 10.0),
-            _ => dice.decades(1e-3, 1e3),
-        };
-        words.push(format!("stiffness {stiff:.1e}"));
-        elastic.push(Elastic::Isotropic(stiff * young, dice.between(0.0, 0.4)));
+        elastic.push(frame.elastic(dice, body, 0.4, &mut words));
     }
     let gives_way = |dice: &mut Dice, words: &mut Vec<String>| {
         if !dice.chance(0.2) {
@@ -196,11 +183,7 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
         }
         let tied = dice.chance(0.4);
         words.push(if tied { "tied" } else { "touching" }.into());
-        let law = if tied {
-            Law::None
-        } else {
-            law(dice, stress, way, shaft.duration)
-        };
+        let law = if tied { Law::None } else { frame.law(dice) };
         pairs.push(Pair {
             sides,
             tied,
@@ -212,12 +195,12 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
             compliance: if tied { [0.0; 2] } else { gives_way(dice, &mut words) },
             motion: (tied && dice.chance(0.4)).then(|| {
                 words.push("moving tie".into());
-                (scale(0.3 * way, dice.vector()), shaft.course(dice))
+                (scale(0.3 * frame.way, dice.vector()), frame.shaft.course(dice))
             }),
         });
     }
     let mesh = mesh.expect("a body");
-    let mut recipe = bare(dice, (mesh, elastic), clock, words);
+    let mut recipe = bare(dice, (mesh, elastic), frame.clock.clone(), words);
     let mut rocks = Vec::new();
     // the first body is held below, which may carry it along or turn it, or lies on a plane
     let tag = |body: usize, tag: FacetTag| Where::Tag(side(body, tag));
@@ -237,8 +220,8 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
         };
         if dice.chance(0.4) {
             let (by, spin) = (
-                scale(way * dice.decades(0.1, 30.0), dice.vector()),
-                scale(strain * dice.decades(0.1, 30.0), dice.vector()),
+                scale(frame.way * dice.decades(0.1, 30.0), dice.vector()),
+                scale(frame.strain * dice.decades(0.1, 30.0), dice.vector()),
             );
             let places = hold
                 .nodes(&recipe.mesh)
@@ -251,7 +234,7 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
                 recipe.words.push("carried".into());
                 vec![by]
             };
-            hold.motion = Some((values, shaft.course(dice)));
+            hold.motion = Some((values, frame.shaft.course(dice)));
         }
         recipe.holds.push(hold);
     } else {
@@ -270,7 +253,7 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
         );
         rocks.push(Rock {
             side: side(0, brick::Z_MIN),
-            shape: Shape::Plane(turn.place([0.0; 3]), turn.way([0.0, 0.0, 1.0])),
+            shape: Shape::Plane(frame.turn.place([0.0; 3]), frame.turn.way([0.0, 0.0, 1.0])),
             motion: None,
             turn: None,
             axis: None,
@@ -281,36 +264,20 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
     let last = count - 1;
     let top = side(last, brick::Z_MAX);
     let slant = if dice.chance(0.4) { 0.0 } else { 0.4 };
-    let down = turn.way([slant * dice.either(), slant * dice.either(), -1.0]);
+    let down = frame.turn.way([slant * dice.either(), slant * dice.either(), -1.0]);
     match dice.whole(0, 9) {
-        0..=2 => {
-            recipe.words.push("moved".into());
-            recipe.holds.push(Hold {
-                place: Where::Tag(top),
-                fixed: Fixed::All,
-                motion: Some((vec![scale(way, down)], shaft.course(dice))),
-            });
-        }
-        3..=6 => {
-            recipe.words.push("loose, loaded".into());
-            let course = if dice.chance(0.5) {
-                Course::Constant(1.0)
-            } else {
-                shaft.course(dice)
-            };
-            let density = Density::Traction(top, scale(dice.between(0.2, 1.0) * stress, down));
-            recipe.pushes.push(Push { density, course });
-        }
+        0..=2 => frame.moved(dice, top, down, &mut recipe),
+        3..=6 => frame.loaded(dice, top, down, &mut recipe),
         _ => {
             recipe.words.push("loose, plane above".into());
-            let place = turn.place([0.0, 0.0, bodies[last].heights[1]]);
+            let place = frame.turn.place([0.0, 0.0, bodies[last].heights[1]]);
             rocks.push(Rock {
                 side: top,
-                shape: Shape::Plane(place, turn.way([0.0, 0.0, -1.0])),
-                motion: Some((scale(way, down), shaft.course(dice))),
+                shape: Shape::Plane(place, frame.turn.way([0.0, 0.0, -1.0])),
+                motion: Some((scale(frame.way, down), frame.shaft.course(dice))),
                 turn: None,
                 axis: None,
-                law: law(dice, stress, way, shaft.duration),
+                law: frame.law(dice),
                 compliance: gives_way(dice, &mut recipe.words),
             });
         }
