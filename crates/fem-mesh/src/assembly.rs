@@ -6,7 +6,7 @@
 
 use crate::element::{Block, TetNodes};
 use crate::material::Hooke;
-use crate::tables::Lists;
+use crate::tables::{Lists, distinct};
 use rayon::prelude::*;
 use sprs::CsMat;
 
@@ -97,11 +97,7 @@ impl Pattern {
             .into_par_iter()
             .map(|node| {
                 let own = around.of(node);
-                let mut column = vec![node as u32];
-                column.extend(own.iter().flat_map(|&t| tets[t as usize]));
-                column.sort_unstable();
-                column.dedup();
-                column
+                distinct(own.iter().flat_map(|&t| tets[t as usize]).chain([node as u32]))
             })
             .collect();
         let mut start = vec![0; nodes + 1];

@@ -117,5 +117,5 @@ pub mod internal {
     pub use crate::loads::interpolate;
     pub use crate::mesh::{EDGES, facet_shape, tag_list};
     pub use crate::quadrature::triangle;
-    pub use crate::tables::{DisjointSets, Lists};
+    pub use crate::tables::{DisjointSets, Lists, distinct};
 }

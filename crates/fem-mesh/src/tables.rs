@@ -67,6 +67,14 @@ impl<T> Lists<T> {
     }
 }
 
+/// The different ones among some things, ascending.
+pub fn distinct<T: Ord>(things: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut out: Vec<T> = things.into_iter().collect();
+    out.sort_unstable();
+    out.dedup();
+    out
+}
+
 /// A partition of the numbers below a count: numbers that are joined, directly or by others, are in one set.
 #[derive(Debug, Clone)]
 pub struct DisjointSets {

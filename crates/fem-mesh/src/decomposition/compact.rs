@@ -7,7 +7,7 @@
 use rayon::prelude::*;
 
 use crate::mesh::{TetMesh, connected_sets};
-use crate::tables::Lists;
+use crate::tables::{Lists, distinct};
 use crate::tolerances::{SETTLED, SWEEPS};
 use crate::vec3::{self, Vec3};
 
@@ -56,12 +56,9 @@ pub(crate) fn compact(mesh: &TetMesh, groups: &[u32], parts: &[u32]) -> Vec<u32>
 
 /// One number for each part of a group, without gaps.
 fn within_groups(groups: &[u32], parts: &[u32]) -> Vec<u32> {
-    let mut pairs: Vec<(u32, u32)> = groups.iter().copied().zip(parts.iter().copied()).collect();
-    let all = pairs.clone();
-    pairs.sort_unstable();
-    pairs.dedup();
-    let place = |pair| pairs.partition_point(|p| *p < pair) as u32;
-    all.into_iter().map(place).collect()
+    let all = || groups.iter().zip(parts);
+    let pairs = distinct(all());
+    all().map(|pair| pairs.partition_point(|p| *p < pair) as u32).collect()
 }
 
 /// The nearest of the own part and those of the same group that touch it, for every tetrahedron.
@@ -114,11 +111,7 @@ fn touching(mesh: &TetMesh, parts: &[u32], count: usize, group: &[u32]) -> Vec<V
             out[a as usize].extend(here.iter().filter(same));
         }
     }
-    for list in &mut out {
-        list.sort_unstable();
-        list.dedup();
-    }
-    out
+    out.into_iter().map(distinct).collect()
 }
 
 /// Gives all but the largest piece of each part to the neighbours that share most faces with them.

@@ -1,6 +1,7 @@
 //! Subdomains by part numbers of the tetrahedra.
 
 use crate::mesh::{NONE, TetMesh, connected_sets};
+use crate::tables::distinct;
 
 use super::subdomains::{Decomposition, DecompositionError};
 
@@ -28,12 +29,9 @@ impl Decomposition {
                 start[part as usize] = (piece, tet);
             } else if begun != piece {
                 let of_part = pieces.iter().zip(parts).filter(|(_, p)| **p == part);
-                let mut distinct: Vec<u32> = of_part.map(|(piece, _)| *piece).collect();
-                distinct.sort_unstable();
-                distinct.dedup();
                 return Err(DecompositionError::DisconnectedPart {
                     part: part as usize,
-                    pieces: distinct.len(),
+                    pieces: distinct(of_part.map(|(piece, _)| piece)).len(),
                     first,
                     second: tet,
                 });

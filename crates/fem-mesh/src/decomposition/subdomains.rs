@@ -1,7 +1,7 @@
 //! Decomposition into subdomains that are torn apart at their common nodes.
 
 use crate::mesh::{TetMesh, quadratic_tets};
-use crate::tables::Lists;
+use crate::tables::{Lists, distinct};
 use crate::tolerances::TABLES;
 use rayon::prelude::*;
 
@@ -100,10 +100,8 @@ impl Decomposition {
                     let elements = tets.of(part).to_vec();
                     let global = |&tet: &u32| mesh.tets()[tet as usize];
                     let own_mids = || elements.iter().filter_map(|&tet| mesh.mids().get(tet as usize));
-                    let mut nodes: Vec<u32> = elements.iter().flat_map(global).collect();
-                    nodes.extend(own_mids().flatten());
-                    nodes.sort_unstable();
-                    nodes.dedup();
+                    let corners = elements.iter().flat_map(global);
+                    let nodes = distinct(corners.chain(own_mids().flatten().copied()));
                     for (number, &node) in nodes.iter().enumerate() {
                         local[node as usize] = number as u32;
                     }

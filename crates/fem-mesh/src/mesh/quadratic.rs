@@ -1,5 +1,6 @@
 //! Meshes of order 2: tables of mid-nodes.
 
+use crate::tables::distinct;
 use crate::vec3::{add, scale};
 
 use super::curved::EDGES;
@@ -40,9 +41,7 @@ impl TetMesh {
             return Ok(self.clone());
         }
         let ends = |tet: &[u32; 4]| EDGES.map(|[a, b]| [tet[a].min(tet[b]), tet[a].max(tet[b])]);
-        let mut edges: Vec<[u32; 2]> = self.tets.iter().flat_map(ends).collect();
-        edges.sort_unstable();
-        edges.dedup();
+        let edges = distinct(self.tets.iter().flat_map(ends));
         let nodes = self.points.len();
         super::check::numbered("nodes", nodes + edges.len())?;
         let mut out = self.clone();

@@ -1,6 +1,7 @@
 //! Surfaces with nodal normals, frames and areas, flat or curved.
 
 use crate::quadrature;
+use crate::tables::distinct;
 use crate::tolerances::{NEARLY_PARALLEL, NO_NORMAL, NO_WEIGHT};
 use crate::vec3::{self, Vec3, add, cross, dot, norm, scale, sub};
 
@@ -154,9 +155,7 @@ impl Surface {
             .filter(|&f| tags.contains(&mesh.facets()[f as usize].tag))
             .collect();
         let global = |&f: &u32| mesh.facets()[f as usize].nodes;
-        let mut nodes: Vec<u32> = facets.iter().flat_map(global).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
+        let nodes = distinct(facets.iter().flat_map(global));
         let local = |n: u32| nodes.partition_point(|&m| m < n) as u32;
         let triangles: Vec<_> = facets.iter().map(|f| global(f).map(local)).collect();
 

@@ -1,5 +1,6 @@
 //! The mesh: tetrahedra with tagged boundary facets and material regions.
 
+use crate::tables::distinct;
 use crate::vec3::{self, Vec3};
 
 use super::check;
@@ -144,10 +145,7 @@ impl TetMesh {
     /// The material regions in use, ascending.
     pub fn distinct_regions(&self) -> Vec<u32> {
         let runs = self.regions.chunk_by(|a, b| a == b);
-        let mut regions: Vec<u32> = runs.map(|run| run[0]).collect();
-        regions.sort_unstable();
-        regions.dedup();
-        regions
+        distinct(runs.map(|run| run[0]))
     }
 
     /// The tetrahedron that the tagged facet number `facet` bounds.
@@ -157,10 +155,7 @@ impl TetMesh {
 
     /// The tags in use, ascending.
     pub fn tags(&self) -> Vec<FacetTag> {
-        let mut tags: Vec<_> = self.facets.iter().map(|f| f.tag).collect();
-        tags.sort_unstable();
-        tags.dedup();
-        tags
+        distinct(self.facets.iter().map(|f| f.tag))
     }
 
     /// Nodes on the facets of a tag, mid-nodes too, ascending; empty if the tag is absent.
@@ -171,9 +166,7 @@ impl TetMesh {
             let on_tag = (0..self.facets.len()).filter(|&f| self.facets[f].tag == tag);
             nodes.extend(on_tag.flat_map(|f| self.facet_mids(f)));
         }
-        nodes.sort_unstable();
-        nodes.dedup();
-        nodes
+        distinct(nodes)
     }
 
     /// Coordinates of the four corners of a tetrahedron.

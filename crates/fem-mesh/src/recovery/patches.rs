@@ -7,7 +7,7 @@ use nalgebra::{Matrix4, Vector4};
 use rayon::prelude::*;
 
 use crate::mesh::TetMesh;
-use crate::tables::Lists;
+use crate::tables::{Lists, distinct};
 use crate::tolerances::{PIVOT, SMALL_PATCH};
 use crate::vec3::{centroid, sub};
 
@@ -78,16 +78,9 @@ impl Around {
 
     /// A patch and those of its neighbours, ascending.
     fn wide(&self, mesh: &TetMesh, k: usize) -> Vec<u32> {
-        let mut wide: Vec<u32> = self
-            .patch(k)
-            .iter()
-            .flat_map(|&tet| mesh.tets()[tet as usize].map(|node| self.place(mesh, node, tet)))
-            .flat_map(|k| self.patch(k))
-            .copied()
-            .collect();
-        wide.sort_unstable();
-        wide.dedup();
-        wide
+        let around = |&tet: &u32| mesh.tets()[tet as usize].map(|node| self.place(mesh, node, tet));
+        let patches = self.patch(k).iter().flat_map(around);
+        distinct(patches.flat_map(|k| self.patch(k)).copied())
     }
 
     /// Patches of the corners of each tetrahedron.

@@ -6,6 +6,7 @@
 
 use crate::processes::exchange::Exchange;
 use crate::rows::gluing::{Glob, Gluing};
+use signorini_fem_mesh::internal::distinct;
 use signorini_qp::vector::{CHUNK_LENGTH, dot, join};
 use std::ops::Range;
 use std::sync::Arc;
@@ -44,12 +45,7 @@ impl Unit {
 
 /// The contact rows, the globs and the other rows, in the order of the rows.
 fn units(gluing: &Gluing, ranks: usize, rank_of: &dyn Fn(u32) -> usize) -> Vec<Unit> {
-    let touched = |subdomains: &mut dyn Iterator<Item = u32>| {
-        let mut ranks: Vec<usize> = subdomains.map(rank_of).collect();
-        ranks.sort_unstable();
-        ranks.dedup();
-        ranks
-    };
+    let touched = |subdomains: &mut dyn Iterator<Item = u32>| distinct(subdomains.map(rank_of));
     let interface = gluing.ranges().interface.clone();
     let contact = Unit {
         rows: 0..interface.start,

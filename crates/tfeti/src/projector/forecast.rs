@@ -12,7 +12,7 @@ use crate::projector::split::tree::{CoarseTree, cheapest_tree};
 use crate::subdomain::forecast::{CoarseForecast, Forecast, coarse_graph};
 use crate::subdomain::kernel::mean;
 use crate::tolerances::LAYER;
-use signorini_fem_mesh::internal::DisjointSets;
+use signorini_fem_mesh::internal::{DisjointSets, distinct};
 use signorini_fem_mesh::vec3::sub;
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -126,11 +126,7 @@ fn neighbours(higher: &[Vec<u32>]) -> Vec<Vec<u32>> {
             out[b as usize].push(a as u32);
         }
     }
-    for list in &mut out {
-        list.sort_unstable();
-        list.dedup();
-    }
-    out
+    out.into_iter().map(distinct).collect()
 }
 
 fn hash(value: &impl Hash) -> u64 {

@@ -19,6 +19,7 @@ pub use names::GroupNames;
 pub use sizes::write_sizes;
 
 use crate::mesh::{Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets};
+use crate::tables::distinct;
 
 errors! {
     /// A Gmsh file that cannot be read or written.
@@ -208,10 +209,7 @@ impl Tags {
         let mut group_of = HashMap::new();
         for &(entity, ref groups) in entities {
             // The sign of a group is an orientation.
-            let mut distinct: Vec<u32> = groups.iter().map(|g| g.unsigned_abs()).collect();
-            distinct.sort_unstable();
-            distinct.dedup();
-            match distinct[..] {
+            match distinct(groups.iter().map(|g| g.unsigned_abs()))[..] {
                 [] => {}
                 [group] => {
                     group_of.insert(entity, group);

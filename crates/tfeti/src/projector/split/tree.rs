@@ -6,6 +6,7 @@ use crate::linalg::supernodes::Supernodes;
 use crate::linalg::tiles::Tile;
 use crate::projector::split::order::{Dissection, Region};
 use crate::tolerances::{BORDER, CUTS, NODE, OPERATION, READ, SOLVES};
+use signorini_fem_mesh::internal::distinct;
 use std::ops::Range;
 
 /// Groups of blocks (*nodes*) in the order of elimination, each with the later blocks (its *border*) that it changes.
@@ -279,9 +280,7 @@ impl CoarseTree {
         let inner = region.children.iter().flatten().flat_map(|&k| &self.regions[k].behind);
         let borders = self.nodes[first_own..].iter().flat_map(|n| &n.border);
         let later = |p: &u32| *p as usize >= region.own.end;
-        let mut behind: Vec<u32> = borders.chain(inner).copied().filter(later).collect();
-        behind.sort_unstable();
-        behind.dedup();
+        let behind = distinct(borders.chain(inner).copied().filter(later));
         let region = TreeRegion {
             first_region,
             first_node,
