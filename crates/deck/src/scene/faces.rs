@@ -6,6 +6,7 @@
 
 use std::collections::HashMap;
 
+use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::{Facet, FacetTag, vec3};
 
 use super::mesh::Raw;
@@ -80,7 +81,7 @@ impl FaceTable {
         word: &Word,
     ) -> Result<Vec<u32>, DeckError> {
         let mut faces = Vec::new();
-        for element in known.sets.elements(target, word)? {
+        for element in known.sets.elements.find(target, word)? {
             let Some(tet) = known.raw.tet(element) else {
                 return Err(word.cannot("a pressure on a rigid body acts on nothing; load elastic elements"));
             };
@@ -96,7 +97,7 @@ impl FaceTable {
             let (mut all, mut rigid) = (Vec::new(), Vec::new());
             for faces in faces {
                 let word = &faces.word;
-                for element in known.sets.elements(&faces.target, word)? {
+                for element in known.sets.elements.find(&faces.target, word)? {
                     let Some(tet) = known.raw.tet(element) else {
                         let side = (element, faces.side);
                         rigid.push(known.bodies.face(known.sets, side, word)?);
@@ -144,9 +145,7 @@ impl FaceTable {
     /// The nodes of a surface: their numbers in the deck and places.
     pub(super) fn nodes_of(&self, raw: &Raw, surface: u32) -> Vec<(u32, [f64; 3])> {
         let on = self.list.iter().filter(|f| f.surfaces.contains(&surface));
-        let mut nodes: Vec<u32> = on.flat_map(|face| face.nodes).collect();
-        nodes.sort_unstable();
-        nodes.dedup();
+        let nodes = distinct(on.flat_map(|face| face.nodes));
         let place = |n: u32| (raw.node_labels[n as usize], raw.points[n as usize]);
         nodes.into_iter().map(place).collect()
     }
@@ -180,10 +179,8 @@ impl FaceTable {
             }
         }
         let mut names = Names::default();
-        for (name, mut list) in model.surfaces.names().into_iter().zip(lists) {
-            list.sort_unstable();
-            list.dedup();
-            names.add(name, list);
+        for (name, list) in model.surfaces.names().into_iter().zip(lists) {
+            names.add(name, distinct(list));
         }
         names
     }

@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 
 use signorini_contact::Load;
+use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::{FacetTag, LoadDensity};
 
 use super::faces::{FaceTable, Known};
@@ -147,7 +148,7 @@ impl Loads {
         }
         for ((target, gravity, history), (order, value, track)) in groups {
             let Known { sets, raw, .. } = known;
-            let elements = sets.elements(&target, &track.word)?;
+            let elements = sets.elements.find(&target, &track.word)?;
             // rigid ones are held, whatever pulls them
             let elements: Vec<u32> = elements.into_iter().filter_map(|e| raw.tet(e)).collect();
             if elements.is_empty() {
@@ -189,9 +190,7 @@ impl Loads {
         for (number, (value, history, order)) in (0..).zip(&self.pressures) {
             let with = faces.list.iter().zip(tags);
             let with = with.filter(|(face, _)| face.pressure == Some(number));
-            let mut tags: Vec<FacetTag> = with.map(|(_, tag)| *tag).collect();
-            tags.sort_unstable();
-            tags.dedup();
+            let tags = distinct(with.map(|(_, tag)| *tag));
             let pressure = |tag| (*order, LoadDensity::pressure(tag, *value), *history);
             out.extend(tags.into_iter().map(pressure));
         }
@@ -221,7 +220,7 @@ impl Known<'_> {
         }
         for line in &given.lines {
             *order += 1;
-            for node in self.sets.nodes(&line.target, &line.word)? {
+            for node in self.sets.nodes.find(&line.target, &line.word)? {
                 let Some(node) = self.raw.in_mesh(node) else {
                     return Err(line.word.cannot(format!(
                         "no elastic element uses node {}, so that a force there acts on nothing; load nodes of the body",
@@ -262,7 +261,7 @@ impl Known<'_> {
             }
             DistributedKind::Gravity(direction) => {
                 // so that an unknown set is refused here
-                self.sets.elements(&line.target, word)?;
+                self.sets.elements.find(&line.target, word)?;
                 let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
                 for (c, d) in direction.iter().enumerate() {
                     let key = (line.target.clone(), true, c);
@@ -272,7 +271,7 @@ impl Known<'_> {
                 return Ok(());
             }
             DistributedKind::Body(component) => {
-                self.sets.elements(&line.target, word)?;
+                self.sets.elements.find(&line.target, word)?;
                 let key = (line.target.clone(), false, *component);
                 return bodies.set(key, when, given, word);
             }

@@ -9,7 +9,7 @@ use signorini_fem_mesh::{Facet, TetMesh};
 use super::numbers::{Numbers, Sets};
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Fault};
-use crate::model::{Kind, Names};
+use crate::model::Kind;
 
 /// The mesh before its facets are known: elastic tetrahedra, without nodes that none of them uses.
 #[derive(Debug)]
@@ -97,18 +97,6 @@ impl Raw {
     /// The number in the mesh of a node of the deck, by its position; `None` if no elastic element uses it.
     pub(super) fn in_mesh(&self, node: u32) -> Option<u32> {
         self.of_node[node as usize]
-    }
-
-    /// The sets of nodes and of elements by name, in the numbers of the mesh.
-    pub(super) fn names(&self, sets: Sets) -> (Names<Vec<u32>>, Names<Vec<u32>>) {
-        let [mut nodes, mut elements] = [Names::default(), Names::default()];
-        for (name, set) in sets.model.nsets.names().into_iter().zip(sets.nodes) {
-            nodes.add(name, set.into_iter().filter_map(|n| self.in_mesh(n)).collect());
-        }
-        for (name, set) in sets.model.elsets.names().into_iter().zip(sets.elements) {
-            elements.add(name, set.into_iter().filter_map(|e| self.tet(e)).collect());
-        }
-        (nodes, elements)
     }
 
     /// Nodes of the mesh by their numbers in the deck.

@@ -74,16 +74,15 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         let scene = loads.into_iter().fold(scene, Scene::with_load);
         contacts.into_iter().fold(scene, Scene::with_contact)
     });
-    let (node_sets, element_sets) = raw.names(sets);
     Ok(Translated {
         mesh,
         scene,
         nodes: raw.mesh_numbers(),
+        node_sets: sets.nodes.named(|n| raw.in_mesh(n)),
+        element_sets: sets.elements.named(|e| raw.tet(e)),
         node_labels: raw.node_labels,
         element_labels: raw.element_labels,
         surfaces,
-        node_sets,
-        element_sets,
         support_names: supports.names,
         ignored: supports.ignored,
     })

@@ -37,54 +37,141 @@ impl Numbers {
     }
 }
 
-/// All numbers and sets, as positions in the tables of nodes and elements of the deck.
+/// Nodes or elements by numbers and sets, as positions in their table of the deck.
+#[derive(Debug)]
+pub(super) struct Table<'a> {
+    what: &'static str,
+    what_set: &'static str,
+    names: &'a Names<Set>,
+    numbers: Numbers,
+    /// Members of each set, ascending.
+    sets: Vec<Vec<u32>>,
+}
+
+/// All numbers and sets.
 #[derive(Debug)]
 pub(super) struct Sets<'a> {
     pub(super) model: &'a Model,
-    node_numbers: Numbers,
-    element_numbers: Numbers,
-    pub(super) nodes: Vec<Vec<u32>>,
-    pub(super) elements: Vec<Vec<u32>>,
+    pub(super) nodes: Table<'a>,
+    pub(super) elements: Table<'a>,
+}
+
+impl<'a> Table<'a> {
+    /// `at` tells number and place of each of `count` things.
+    fn new(
+        [what, what_set, remedy]: [&'static str; 3],
+        count: usize,
+        at: impl Fn(usize) -> (u32, &'a Location),
+        names: &'a Names<Set>,
+    ) -> Result<Self, DeckError> {
+        let pairs = (0..count).map(|position| (at(position).0, position as u32));
+        let numbers = Numbers::new(pairs.collect()).map_err(|[first, second]| {
+            let (label, location) = at(second as usize);
+            let first = at(first as usize).1.line;
+            Word::new(location, label.to_string()).fault(Fault::Repeated { first, remedy })
+        })?;
+        Ok(Self {
+            what,
+            what_set,
+            names,
+            numbers,
+            sets: Vec::new(),
+        })
+    }
+
+    /// Positions of a target.
+    pub(super) fn find(&self, target: &Target, word: &Word) -> Result<Vec<u32>, DeckError> {
+        match target {
+            Target::Number(number) => {
+                let found = self.numbers.get(*number);
+                Ok(vec![found.ok_or_else(|| word.fault(Fault::UnknownNumber(self.what)))?])
+            }
+            Target::Name(name) => match &self.sets[self.names.find(self.what_set, name, word)?][..] {
+                [] => Err(word.cannot("the set is empty; fill it, or remove this line")),
+                set => Ok(set.to_vec()),
+            },
+        }
+    }
+
+    /// Finds the members of each set; `room` is left for them.
+    fn resolve(&mut self, room: &mut u64) -> Result<(), DeckError> {
+        const NOT_YET: u32 = u32::MAX;
+        let what = self.what;
+        let unknown = |location: &Location, word: String| Word::new(location, word).fault(Fault::UnknownNumber(what));
+        let mut last = vec![NOT_YET; self.numbers.0.len()];
+        for (index, (_, set)) in self.names.iter().enumerate() {
+            let mut members = Vec::new();
+            let mut add = |position: u32| {
+                if std::mem::replace(&mut last[position as usize], index as u32) != index as u32 {
+                    members.push(position);
+                }
+            };
+            let mut taken = HashSet::new();
+            for (member, location) in set {
+                match member {
+                    Member::One(number) => match self.numbers.get(*number) {
+                        Some(position) => add(position),
+                        None => return Err(unknown(location, number.to_string())),
+                    },
+                    Member::Range { from, to, step } => {
+                        let mut inside = self.numbers.range(*from, *to, *step).peekable();
+                        if inside.peek().is_none() {
+                            return Err(unknown(location, format!("{from}, {to}, {step}")));
+                        }
+                        inside.for_each(&mut add);
+                    }
+                    Member::Set(name) => {
+                        let word = Word::new(location, name);
+                        let other = self.names.find("set", name, &word)?;
+                        if other >= index {
+                            let why = "a set may name only sets that are defined before it; move the other one up";
+                            return Err(word.cannot(why));
+                        }
+                        if taken.insert(other) {
+                            self.sets[other].iter().copied().for_each(&mut add);
+                        }
+                    }
+                }
+            }
+            members.sort_unstable();
+            match room.checked_sub(members.len() as u64) {
+                Some(left) => *room = left,
+                None => {
+                    let (member, location) = &set[0];
+                    return Err(Word::new(location, format!("{member:?}")).fault(Fault::TooMany {
+                        what: "members of sets",
+                        most: MEMBERS,
+                        remedy: "remove sets that are not needed",
+                    }));
+                }
+            }
+            self.sets.push(members);
+        }
+        Ok(())
+    }
+
+    /// The sets by name, with what each position is to be taken for.
+    pub(super) fn named(self, new: impl Fn(u32) -> Option<u32>) -> Names<Vec<u32>> {
+        let mut named = Names::default();
+        for (name, set) in self.names.names().into_iter().zip(self.sets) {
+            named.add(name, set.into_iter().filter_map(&new).collect());
+        }
+        named
+    }
 }
 
 impl<'a> Sets<'a> {
     pub(super) fn new(model: &'a Model) -> Result<Self, DeckError> {
+        let what = ["node", "node set", "give each node a number of its own"];
         let at = |n: usize| (model.nodes[n].label, &model.nodes[n].location);
-        let remedy = "give each node a number of its own";
-        let node_numbers = numbers(model.nodes.len(), at, remedy)?;
+        let mut nodes = Table::new(what, model.nodes.len(), at, &model.nsets)?;
+        let what = ["element", "element set", "give each element a number of its own"];
         let at = |e: usize| (model.elements[e].label, &model.elements[e].location);
-        let remedy = "give each element a number of its own";
-        let element_numbers = numbers(model.elements.len(), at, remedy)?;
+        let mut elements = Table::new(what, model.elements.len(), at, &model.elsets)?;
         let mut room = MEMBERS;
-        let nodes = resolve("node", &model.nsets, &node_numbers, model.nodes.len(), &mut room)?;
-        let count = model.elements.len();
-        let elements = resolve("element", &model.elsets, &element_numbers, count, &mut room)?;
-        Ok(Self {
-            model,
-            node_numbers,
-            element_numbers,
-            nodes,
-            elements,
-        })
-    }
-
-    /// Positions of the nodes of a target.
-    pub(super) fn nodes(&self, target: &Target, word: &Word) -> Result<Vec<u32>, DeckError> {
-        let what = ("node", "node set");
-        find(what, target, &self.node_numbers, &self.model.nsets, &self.nodes, word)
-    }
-
-    /// Positions of the elements of a target.
-    pub(super) fn elements(&self, target: &Target, word: &Word) -> Result<Vec<u32>, DeckError> {
-        let what = ("element", "element set");
-        find(
-            what,
-            target,
-            &self.element_numbers,
-            &self.model.elsets,
-            &self.elements,
-            word,
-        )
+        nodes.resolve(&mut room)?;
+        elements.resolve(&mut room)?;
+        Ok(Self { model, nodes, elements })
     }
 
     /// Positions of the corners of an element.
@@ -102,110 +189,13 @@ impl<'a> Sets<'a> {
         let mut nodes = [0; N];
         for (position, label) in nodes.iter_mut().zip(labels) {
             let unknown = || Word::new(&element.location, label.to_string()).fault(Fault::UnknownNumber("node"));
-            *position = self.node_numbers.get(label).ok_or_else(unknown)?;
+            *position = self.nodes.numbers.get(label).ok_or_else(unknown)?;
         }
         Ok(nodes)
     }
 
     /// Positions of the elements of a set.
     pub(super) fn elements_of(&self, set: &Named) -> Result<Vec<u32>, DeckError> {
-        self.elements(&Target::Name(set.name.clone()), &set.word)
+        self.elements.find(&Target::Name(set.name.clone()), &set.word)
     }
-}
-
-/// The positions of so many things by number; `at` tells number and place of each.
-fn numbers<'a>(
-    count: usize,
-    at: impl Fn(usize) -> (u32, &'a Location),
-    remedy: &'static str,
-) -> Result<Numbers, DeckError> {
-    let pairs = (0..count).map(|position| (at(position).0, position as u32));
-    Numbers::new(pairs.collect()).map_err(|[first, second]| {
-        let (label, location) = at(second as usize);
-        let first = at(first as usize).1.line;
-        Word::new(location, label.to_string()).fault(Fault::Repeated { first, remedy })
-    })
-}
-
-fn find(
-    (what, what_set): (&'static str, &'static str),
-    target: &Target,
-    numbers: &Numbers,
-    names: &Names<Set>,
-    sets: &[Vec<u32>],
-    word: &Word,
-) -> Result<Vec<u32>, DeckError> {
-    match target {
-        Target::Number(number) => {
-            let found = numbers.get(*number);
-            Ok(vec![found.ok_or_else(|| word.fault(Fault::UnknownNumber(what)))?])
-        }
-        Target::Name(name) => match &sets[names.find(what_set, name, word)?][..] {
-            [] => Err(word.cannot("the set is empty; fill it, or remove this line")),
-            set => Ok(set.to_vec()),
-        },
-    }
-}
-
-/// The members of each set, ascending.
-fn resolve(
-    what: &'static str,
-    names: &Names<Set>,
-    numbers: &Numbers,
-    count: usize,
-    room: &mut u64,
-) -> Result<Vec<Vec<u32>>, DeckError> {
-    const NOT_YET: u32 = u32::MAX;
-    let unknown = |location: &Location, word: String| Word::new(location, word).fault(Fault::UnknownNumber(what));
-    let mut sets: Vec<Vec<u32>> = Vec::new();
-    let mut last = vec![NOT_YET; count];
-    for (index, (_, set)) in names.iter().enumerate() {
-        let mut members = Vec::new();
-        let mut add = |position: u32| {
-            if std::mem::replace(&mut last[position as usize], index as u32) != index as u32 {
-                members.push(position);
-            }
-        };
-        let mut taken = HashSet::new();
-        for (member, location) in set {
-            match member {
-                Member::One(number) => match numbers.get(*number) {
-                    Some(position) => add(position),
-                    None => return Err(unknown(location, number.to_string())),
-                },
-                Member::Range { from, to, step } => {
-                    let mut inside = numbers.range(*from, *to, *step).peekable();
-                    if inside.peek().is_none() {
-                        return Err(unknown(location, format!("{from}, {to}, {step}")));
-                    }
-                    inside.for_each(&mut add);
-                }
-                Member::Set(name) => {
-                    let word = Word::new(location, name);
-                    let other = names.find("set", name, &word)?;
-                    if other >= index {
-                        let why = "a set may name only sets that are defined before it; move the other one up";
-                        return Err(word.cannot(why));
-                    }
-                    if taken.insert(other) {
-                        sets[other].iter().copied().for_each(&mut add);
-                    }
-                }
-            }
-        }
-        members.sort_unstable();
-        match room.checked_sub(members.len() as u64) {
-            Some(left) => *room = left,
-            None => {
-                let (member, location) = &set[0];
-                return Err(Word::new(location, format!("{member:?}")).fault(Fault::TooMany {
-                    what: "members of sets",
-                    most: MEMBERS,
-                    remedy: "remove sets that are not needed",
-                }));
-            }
-        }
-        sets.push(members);
-    }
-    Ok(sets)
 }

@@ -57,7 +57,7 @@ impl RigidBodies {
                     return Err(word.cannot(why));
                 }
             }
-            let node = |(target, word): &(Target, Word)| match sets.nodes(target, word)?[..] {
+            let node = |(target, word): &(Target, Word)| match sets.nodes.find(target, word)?[..] {
                 [node] => Ok(node),
                 _ => Err(word.expected("one node")),
             };

@@ -121,7 +121,7 @@ impl Table {
     fn add(&mut self, known: Known, step: Option<usize>, line: &Condition<Components>) -> Result<(), DeckError> {
         let owner = self.owner(&line.target);
         let (mut found, mut turned) = (false, None);
-        for node in known.sets.nodes(&line.target, &line.word)? {
+        for node in known.sets.nodes.find(&line.target, &line.word)? {
             let (map, key, components) = match known.raw.in_mesh(node) {
                 _ if known.bodies.has(node) => (&mut self.rigid, node, 6),
                 Some(inside) => (&mut self.held, inside, 3),
