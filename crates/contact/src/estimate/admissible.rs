@@ -41,7 +41,6 @@ pub(crate) struct AdmissibleNode {
 
 impl AdmissibleNode {
     pub(crate) fn new(model: &Model, point: &ConstrainedPoint) -> Self {
-        let subdomains = model.discrete.decomposition.subdomains();
         let rows: Vec<_> = point.directions().take(1).chain(point.isotropic()).collect();
         let mut parts: Vec<(u32, RowPart)> = Vec::with_capacity(2);
         parts.push((point.node(), RowPart::default()));
@@ -49,10 +48,9 @@ impl AdmissibleNode {
         parts.extend(others.map(|other| (other.0, RowPart::default())));
         let last = parts.len() - 1;
         for (k, &(_, row, scale)) in rows.iter().enumerate() {
-            for (subdomain, dof, coefficient) in model.tfeti.gluing().row(row) {
-                let node = subdomains[subdomain].nodes[dof / 3];
+            for (node, c, coefficient) in model.row(row) {
                 let place = parts[..last].iter().position(|p| p.0 == node).unwrap_or(last);
-                parts[place].1[k][dof % 3] += coefficient / scale;
+                parts[place].1[k][c] += coefficient / scale;
             }
         }
         // where supports fix nothing, without rounding

@@ -93,7 +93,7 @@ impl Solved<'_> {
         let (model, tfeti) = (self.model, &self.model.tfeti);
         let weights = self.caches.weights.get_or_init(|| Weights::new(model));
         let offset = &*self.offset();
-        let mut v = self.mean();
+        let mut v = tfeti.mean_by(model.copies(), &self.recovered.torn);
         let mean = (tfeti.subdomains() > 1).then(|| tfeti.nodal_mean(&self.recovered.torn));
         let points = || self.recovered.points.iter().zip(&weights.nodes);
         let moved: Vec<Correction> = match &weights.shared {
@@ -213,24 +213,6 @@ impl Solved<'_> {
         Some(u)
     }
 
-    /// The mean of the copies of each node, weighted by their stiffness.
-    fn mean(&self) -> Vec<f64> {
-        let weights = self.model.copies();
-        let nodes = self.model.scene.mesh.points().len();
-        let (mut v, mut total) = (vec![0.0; 3 * nodes], vec![0.0; nodes]);
-        let subdomains = self.model.discrete.decomposition.subdomains().iter();
-        let copies = subdomains.flat_map(|s| s.nodes.iter().copied());
-        for ((k, node), u) in copies.enumerate().zip(self.recovered.torn.chunks_exact(3)) {
-            let (node, weight) = (node as usize, weights.weight(k));
-            total[node] += weight;
-            (0..3).for_each(|c| v[3 * node + c] += weight * u[c]);
-        }
-        for (value, total) in v.chunks_exact_mut(3).zip(&total) {
-            value.iter_mut().for_each(|x| *x /= total);
-        }
-        v
-    }
-
     /// Moves nodes whose contact and support rows depend on one another to where all of them hold: the move for one
     /// may undo another. Points that touch stay at their obstacles, others are moved out of theirs.
     fn agree(&self, moved: &[Correction], nodes: &[AdmissibleNode], offset: &[f64], v: &mut [f64]) {
@@ -284,17 +266,15 @@ impl Solved<'_> {
     /// Moves the nodes of tied contacts to where their partners want them.
     fn tie(&self, v: &mut [f64]) {
         let gluing = self.model.tfeti.gluing();
-        let subdomains = self.model.discrete.decomposition.subdomains();
         for row in gluing.ranges().tied.clone() {
             let Some(own) = gluing.node(row) else {
                 continue;
             };
             let (mut part, mut value) = ([0.0; 3], 0.0);
-            for (subdomain, dof, coefficient) in gluing.row(row) {
-                let node = subdomains[subdomain].nodes[dof / 3];
-                value += coefficient * v[3 * node as usize + dof % 3];
+            for (node, c, coefficient) in self.model.row(row) {
+                value += coefficient * v[3 * node as usize + c];
                 if node == own {
-                    part[dof % 3] += coefficient;
+                    part[c] += coefficient;
                 }
             }
             let square = dot(&part, &part);

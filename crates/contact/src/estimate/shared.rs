@@ -32,12 +32,10 @@ impl SharedNodes {
         if (0..model.points.len()).all(|k| own(k) < 2) && discrete.ties.iter().all(|t| t.sides.own.nodes().len() < 2) {
             return None;
         }
-        let subdomains = discrete.decomposition.subdomains();
         let row = |row: usize, scale: f64| -> Vec<(usize, f64)> {
             let mut sums: BTreeMap<usize, f64> = BTreeMap::new();
-            for (subdomain, dof, coefficient) in gluing.row(row) {
-                let node = subdomains[subdomain].nodes[dof / 3] as usize;
-                *sums.entry(3 * node + dof % 3).or_insert(0.0) += coefficient / scale;
+            for (node, c, coefficient) in model.row(row) {
+                *sums.entry(3 * node as usize + c).or_insert(0.0) += coefficient / scale;
             }
             sums.into_iter().collect()
         };
@@ -45,7 +43,7 @@ impl SharedNodes {
         let mut rows: Vec<_> = of_points.map(|(_, number, scale)| row(number, scale)).collect();
         rows.extend(tied.clone().map(|number| row(number, 1.0)));
         let mut stiffness = vec![0.0; discrete.decomposition.nodes()];
-        let copies = subdomains.iter().flat_map(|s| &s.nodes);
+        let copies = discrete.decomposition.subdomains().iter().flat_map(|s| &s.nodes);
         for (k, &node) in copies.enumerate() {
             stiffness[node as usize] += model.copies().weight(k);
         }

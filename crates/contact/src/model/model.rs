@@ -76,6 +76,13 @@ impl Model {
         tied.filter_map(move |t| Some((t, self.discrete.ties.get(t.point.checked_sub(points)?)?)))
     }
 
+    /// The entries of a row: mesh node, component and coefficient.
+    pub(crate) fn row(&self, row: usize) -> impl Iterator<Item = (u32, usize, f64)> {
+        let subdomains = self.discrete.decomposition.subdomains();
+        let entries = self.tfeti.gluing().row(row).into_iter();
+        entries.map(|(subdomain, dof, value)| (subdomains[subdomain].nodes[dof / 3], dof % 3, value))
+    }
+
     /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales
     /// certificates.
     pub(crate) fn copies(&self) -> &CopyStiffness {

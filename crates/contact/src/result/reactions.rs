@@ -163,19 +163,16 @@ pub(crate) fn nodal_reactions(
 /// The force on each point of tied contacts, N: what its rows do to a node that no support holds, over the weight of
 /// the node.
 pub(crate) fn tied_forces<'a>(model: &'a Model, recovered: &Recovered) -> Vec<(&'a ContactPoint, [f64; 3])> {
-    let gluing = model.tfeti.gluing();
-    let subdomains = model.discrete.decomposition.subdomains();
+    let first = model.tfeti.gluing().ranges().tied.start;
     let supported = |node: u32| model.discrete.supports.directions.contains_key(&node);
     let force = |(tied, tie): (&TiedRows, &'a ContactPoint)| {
         let free = tie.sides.nodes().filter(|n| !supported(n.0));
         let (node, weight) = free.reduce(|a, b| if b.1.abs() > a.1.abs() { b } else { a })?;
         let mut force = [0.0; 3];
         for row in tied.rows.clone() {
-            let lambda = recovered.tied_multipliers[row - gluing.ranges().tied.start];
-            for (subdomain, dof, coefficient) in gluing.row(row) {
-                if subdomains[subdomain].nodes[dof / 3] == node {
-                    force[dof % 3] += lambda * coefficient / weight;
-                }
+            let lambda = recovered.tied_multipliers[row - first];
+            for (_, c, coefficient) in model.row(row).filter(|e| e.0 == node) {
+                force[c] += lambda * coefficient / weight;
             }
         }
         Some((tie, force))
@@ -185,13 +182,10 @@ pub(crate) fn tied_forces<'a>(model: &'a Model, recovered: &Recovered) -> Vec<(&
 
 /// Takes from `rest` what the rows of a point do to a node, where `whole` is the force of the point.
 fn take_rows(model: &Model, point: &ConstrainedPoint, whole: &[f64; 3], node: u32, rest: &mut [f64; 3]) {
-    let subdomains = model.discrete.decomposition.subdomains();
     for (direction, row, scale) in point.directions() {
         let lambda = dot(whole, &direction) / scale;
-        for (subdomain, dof, coefficient) in model.tfeti.gluing().row(row) {
-            if subdomains[subdomain].nodes[dof / 3] == node {
-                rest[dof % 3] -= lambda * coefficient;
-            }
+        for (_, c, coefficient) in model.row(row).filter(|e| e.0 == node) {
+            rest[c] -= lambda * coefficient;
         }
     }
 }

@@ -3,6 +3,7 @@
 use crate::error::TfetiError;
 use crate::linalg::{of_length, zeros};
 use crate::rows::gluing::CopyEntry;
+use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::BLOCKS;
 use rayon::prelude::*;
@@ -217,10 +218,16 @@ impl Tfeti {
     /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies that differ count by
     /// their [stiffness](Self::copy_stiffness).
     pub fn nodal_mean(&self, u: &[f64]) -> Vec<f64> {
+        self.mean_by(self.copy_stiffness(), u)
+    }
+
+    /// The same with other weights.
+    #[doc(hidden)]
+    pub fn mean_by(&self, copies: &CopyStiffness, u: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; 3 * self.nodes];
         let mut sums = vec![0.0; self.nodes];
         for (k, &node) in self.node_of.iter().enumerate() {
-            let weight = self.copy_stiffness().weight(k);
+            let weight = copies.weight(k);
             sums[node as usize] += weight;
             for c in 0..3 {
                 out[3 * node as usize + c] += weight * u[3 * k + c];
