@@ -97,7 +97,8 @@ pub mod kprgp;
 pub mod problem;
 mod projected_cg;
 mod report;
-mod settings;
+#[doc(hidden)]
+pub mod settings;
 pub mod smalse;
 mod tolerances;
 pub mod vector;

@@ -6,14 +6,17 @@ use crate::error::QpError;
 /// Defines a struct of settings with its setters, defaults and checks.
 ///
 /// A line is `field, setter: type = default, in "range";` after its meaning. A range is an interval like `"(0, 1]"`
-/// or `"[1, inf)"`. Settings inside of settings, which check themselves, are listed after `and`.
+/// or `"[1, inf)"`. Behind `or` stands the error whose variant `Setting` refuses, behind `and` the settings inside of
+/// these, which check themselves.
+#[doc(hidden)]
+#[macro_export]
 macro_rules! settings {
     (
         $(#[$about:meta])*
-        $name:ident {
+        $name:ident or $error:ident {
             $($(#[$meaning:meta])* $field:ident, $setter:ident: $type:ty = $default:expr $(, in $range:literal)?;)*
         }
-        $(and $inner:ident)?
+        $(and $($inner:ident),+)?
     ) => {
         $(#[$about])*
         pub struct $name {
@@ -40,10 +43,15 @@ macro_rules! settings {
             /// Checks the ranges.
             ///
             /// # Errors
-            /// [`QpError::Setting`](crate::QpError::Setting) with the first setting out of its range.
-            pub fn validate(&self) -> Result<(), $crate::QpError> {
-                $($($crate::settings::expect_setting(stringify!($field), self.$field as f64, $range)?;)?)*
-                $(self.$inner.validate()?;)?
+            #[doc = concat!("[`", stringify!($error), "::Setting`] with the first setting out of its range.")]
+            pub fn validate(&self) -> Result<(), $error> {
+                $($(
+                    let (name, value, range) = (stringify!($field), self.$field as f64, $range);
+                    if !$crate::settings::is_in_range(value, range) {
+                        return Err($error::Setting { name, value, range });
+                    }
+                )?)*
+                $($(self.$inner.validate()?;)+)?
                 Ok(())
             }
         }
@@ -53,7 +61,7 @@ pub(crate) use settings;
 
 /// Checks the range of a setting.
 pub(crate) fn expect_setting(name: &'static str, value: f64, range: &'static str) -> Result<(), QpError> {
-    if contains(range, value) {
+    if is_in_range(value, range) {
         Ok(())
     } else {
         Err(QpError::Setting { name, value, range })
@@ -61,7 +69,7 @@ pub(crate) fn expect_setting(name: &'static str, value: f64, range: &'static str
 }
 
 /// Whether an interval like `"(0, 1]"` contains a value.
-fn contains(range: &str, value: f64) -> bool {
+pub fn is_in_range(value: f64, range: &str) -> bool {
     let closed = [range.starts_with('['), range.ends_with(']')];
     let mut ends = range
         .trim_matches(['(', '[', ')', ']'])
@@ -75,7 +83,7 @@ fn contains(range: &str, value: f64) -> bool {
 
 #[cfg(test)]
 mod tests {
-    use super::contains;
+    use super::is_in_range;
 
     #[test]
     fn ranges_are_read_as_they_are_written() {
@@ -84,8 +92,8 @@ mod tests {
             ("[0, inf)", [0.0, 1e300], [-1e-300, f64::INFINITY]),
             ("[2, 200]", [2.0, 200.0], [1.0, 201.0]),
         ] {
-            assert!(inside.iter().all(|v| contains(range, *v)), "{range}");
-            assert!(!outside.iter().any(|v| contains(range, *v)), "{range}");
+            assert!(inside.iter().all(|v| is_in_range(*v, range)), "{range}");
+            assert!(!outside.iter().any(|v| is_in_range(*v, range)), "{range}");
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The solvers of a step.
 
-use signorini_qp::{ActiveSetSettings, SmalseSettings};
+use signorini_qp::{ActiveSetSettings, QpError, SmalseSettings};
 
 /// How the inequality-constrained problem of a step is solved.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +37,13 @@ impl Method {
     /// The paper's one inexact loop with the same settings.
     pub fn one_loop() -> Self {
         Self::OneLoop { smalse: paper_smalse() }
+    }
+
+    pub(crate) fn validate(&self) -> Result<(), QpError> {
+        match self {
+            Self::ActiveSet(settings) => settings.validate(),
+            Self::OneLoop { smalse } | Self::SuccessiveApproximations { smalse, .. } => smalse.validate(),
+        }
     }
 
     /// Which method it is, without its settings.

@@ -1,12 +1,13 @@
 //! Settings and report of [`active_set`](crate::active_set()).
 
+use crate::error::QpError;
 use crate::report::Status;
 use crate::settings::settings;
 
 settings! {
     /// Settings of [`active_set`](crate::active_set()). All are dimensionless.
     #[derive(Debug, Clone, PartialEq)]
-    ActiveSetSettings {
+    ActiveSetSettings or QpError {
         /// Estimated error of `x` relative to its norm, and of its constrained part relative to its own.
         tolerance, with_tolerance: f64 = 1e-7, in "(0, 1)";
         /// Norm of `x` that errors are at least relative to: what a vanishing solution is measured against.

@@ -20,7 +20,7 @@ use crate::vector;
 settings! {
     /// Settings of [`norm_estimate`].
     #[derive(Debug, Clone, Copy, PartialEq)]
-    NormSettings {
+    NormSettings or QpError {
         /// Products spent at most.
         max_products, with_max_products: usize = 20, in "[2, 200]";
         /// Residual, relative to the Ritz value, at which the estimate stops.

@@ -1,5 +1,6 @@
 //! Settings, report and work memory of [`kprgp`](crate::kprgp()).
 
+use crate::error::QpError;
 use crate::problem::SymmetricOperator;
 use crate::report::{Products, Status, Steps};
 use crate::settings::settings;
@@ -28,7 +29,7 @@ pub enum Expansion {
 settings! {
     /// Settings of [`kprgp`](crate::kprgp()).
     #[derive(Debug, Clone, Copy, PartialEq)]
-    KprgpSettings {
+    KprgpSettings or QpError {
         /// Ratio of chopped to free gradient at which components are released: Gamma.
         proportioning, with_proportioning: f64 = 1.0, in "(0, inf)";
         /// Fixed step length, times 1 / norm of the Hessian: alpha.

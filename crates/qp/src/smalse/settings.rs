@@ -1,5 +1,6 @@
 //! Settings, hook, report and work memory of [`smalse`](crate::smalse()).
 
+use crate::error::QpError;
 use crate::kprgp::{KprgpSettings, Vectors};
 use crate::problem::{Equality, SymmetricOperator};
 use crate::report::{Products, Status, Steps, Tolerance};
@@ -10,7 +11,7 @@ use super::penalised::State;
 settings! {
     /// Settings of [`smalse`](crate::smalse()), all dimensionless.
     #[derive(Debug, Clone, Copy, PartialEq)]
-    SmalseSettings {
+    SmalseSettings or QpError {
         /// Projected gradient at the end: `eps_1`.
         tolerance, with_tolerance: Tolerance = Tolerance::Relative(1e-6);
         /// Residual `Cx - e` at the end, relative to the larger of `|x|` and `|e|` and to no less than what rounding
