@@ -1,11 +1,18 @@
 //! Lists of positions by key, and sets of numbers that grow together.
 
 /// Lists one after another.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Lists<T> {
     /// Start of each list, and the end of the last.
     starts: Vec<u32>,
     items: Vec<T>,
+}
+
+impl<T> Default for Lists<T> {
+    fn default() -> Self {
+        let (starts, items) = (vec![0], Vec::new());
+        Self { starts, items }
+    }
 }
 
 impl Lists<u32> {
@@ -34,9 +41,15 @@ impl<T> Lists<T> {
         &self.starts
     }
 
+    /// Adds a list behind the others.
+    pub fn push(&mut self, list: impl IntoIterator<Item = T>) {
+        self.items.extend(list);
+        self.starts.push(self.items.len() as u32);
+    }
+
     /// Number of lists.
     pub fn count(&self) -> usize {
-        self.starts.len().saturating_sub(1)
+        self.starts.len() - 1
     }
 
     /// All items, list by list.

@@ -12,6 +12,7 @@ use crate::linalg::sparse::{MemoryNeed, SolveMemory};
 use crate::processes::exchange::Exchange;
 use crate::tolerances::{BLOCKS, LARGE, PARTS};
 use rayon::prelude::*;
+use signorini_fem_mesh::internal::Lists;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -67,13 +68,9 @@ pub(crate) struct BoundaryMap {
     pub(crate) nodal_rows: Vec<u32>,
     pub(crate) nodal_vectors: Vec<[f64; 3]>,
     /// Copies of each interface block.
-    pub(super) block_pointers: Vec<u32>,
-    pub(super) block_places: Vec<Place>,
-    pub(super) block_weights: Vec<f64>,
+    pub(super) blocks: Lists<(Place, f64)>,
     /// Copies of each other row.
-    pub(super) row_pointers: Vec<u32>,
-    pub(super) row_places: Vec<Place>,
-    pub(super) row_vectors: Vec<[f64; 3]>,
+    pub(super) others: Lists<(Place, [f64; 3])>,
 }
 
 /// Work memory of products by panels: a boundary vector, and what each lane needs.
@@ -115,12 +112,10 @@ impl BoundaryMap {
     }
 
     pub(crate) fn bytes(&self) -> u64 {
-        let words = self.spread_pointers.len()
-            + self.spread_blocks.len()
-            + self.block_pointers.len()
-            + 2 * self.block_places.len();
-        let numbers = self.spread_weights.len() + self.block_weights.len();
-        (4 * words + 8 * numbers + 56 * self.row_places.len() + self.cut.bytes()) as u64
+        let blocks = self.blocks.items().len();
+        let words = self.spread_pointers.len() + self.spread_blocks.len() + self.blocks.starts().len() + 2 * blocks;
+        let numbers = self.spread_weights.len() + blocks;
+        (4 * words + 8 * numbers + 56 * self.others.items().len() + self.cut.bytes()) as u64
     }
 
     /// A number for each boundary copy, from its subdomain and local node.
@@ -240,11 +235,9 @@ impl BoundaryMap {
     }
 
     fn collect_blocks(&self, y: &[f64], first: usize, out: &mut [f64]) {
-        let pointers = &self.block_pointers[first..=first + out.len() / 3];
-        for (pair, target) in pointers.windows(2).zip(out.chunks_exact_mut(3)) {
-            let range = pair[0] as usize..pair[1] as usize;
+        for (block, target) in (first..).zip(out.chunks_exact_mut(3)) {
             let (mut a, mut b, mut c) = (0.0, 0.0, 0.0);
-            for (place, &weight) in self.block_places[range.clone()].iter().zip(&self.block_weights[range]) {
+            for (place, weight) in self.blocks.of(block) {
                 let value = place.read(y);
                 a += weight * value[0];
                 b += weight * value[1];
@@ -258,13 +251,11 @@ impl BoundaryMap {
 
     fn collect_rows(&self, y: &[f64], first: usize, out: &mut [f64]) {
         for (k, target) in out.iter_mut().enumerate() {
-            let range = self.row_pointers[first + k] as usize..self.row_pointers[first + k + 1] as usize;
-            let entry = |e: usize| {
-                let value = self.row_places[e].read(y);
-                let v = &self.row_vectors[e];
+            let entry = |(place, v): &(Place, [f64; 3])| {
+                let value = place.read(y);
                 v[0] * value[0] + v[1] * value[1] + v[2] * value[2]
             };
-            *target = range.map(entry).sum();
+            *target = self.others.of(first + k).iter().map(entry).sum();
         }
     }
 

@@ -40,8 +40,6 @@ impl BoundaryMap {
             interface: gluing.ranges().interface.clone(),
             rows: gluing.ranges().total(),
             nodal_pointers: vec![0],
-            block_pointers: vec![0],
-            row_pointers: vec![0],
             exchange: ownership.exchange.clone(),
             ..Self::default()
         };
@@ -64,8 +62,6 @@ impl BoundaryMap {
             interface: own.ranges().interface.clone(),
             rows: own.ranges().total(),
             nodal_pointers: vec![0],
-            block_pointers: vec![0],
-            row_pointers: vec![0],
             exchange: self.exchange.clone(),
             ..Self::default()
         };
@@ -154,24 +150,20 @@ impl BoundaryMap {
         for block in 0..gluing.blocks() {
             let row = self.interface.start + 3 * block;
             while mine.next_if(|rows| rows.end <= row).is_some() {}
-            if all || mine.peek().is_some_and(|rows| rows.contains(&row)) {
-                for e in gluing.block(block) {
-                    let (copy, place) = numbering.copy(e.subdomain, e.local);
-                    copies[0].push(copy);
-                    self.block_places.push(place);
-                    self.block_weights.push(e.coefficient);
-                }
-            }
-            self.block_pointers.push(self.block_places.len() as u32);
+            let is_computed = all || mine.peek().is_some_and(|rows| rows.contains(&row));
+            let entries = gluing.block(block).iter().filter(|_| is_computed);
+            self.blocks.push(entries.map(|e| {
+                let (copy, place) = numbering.copy(e.subdomain, e.local);
+                copies[0].push(copy);
+                (place, e.coefficient)
+            }));
         }
         for nodal in 0..gluing.nodal_rows() {
-            for e in gluing.nodal(nodal) {
+            self.others.push(gluing.nodal(nodal).iter().map(|e| {
                 let (copy, place) = numbering.copy(e.subdomain, e.local);
                 copies[1].push(copy);
-                self.row_places.push(place);
-                self.row_vectors.push(e.vector);
-            }
-            self.row_pointers.push(self.row_places.len() as u32);
+                (place, e.vector)
+            }));
         }
         copies
     }
@@ -204,17 +196,17 @@ impl BoundaryMap {
 
     /// Fills the tables by copy: the transposes of the tables by row.
     fn fill_spread(&mut self, gluing: &Gluing, copies: &[Vec<u32>; 2]) {
-        let order = transpose(&self.block_pointers, &copies[0], self.copies);
+        let order = transpose(self.blocks.starts(), &copies[0], self.copies);
         self.spread_pointers = order.starts().to_vec();
         self.spread_blocks = order.items().iter().map(|&(block, _)| block).collect();
-        let weights = order.items().iter().map(|e| self.block_weights[e.1 as usize]);
+        let weights = order.items().iter().map(|e| self.blocks.items()[e.1 as usize].1);
         self.spread_weights = weights.collect();
-        let order = transpose(&self.row_pointers, &copies[1], self.copies);
+        let order = transpose(self.others.starts(), &copies[1], self.copies);
         for copy in (0..self.copies).filter(|&copy| !order.of(copy).is_empty()) {
             self.nodal_copies.push(copy as u32);
             for &(nodal, entry) in order.of(copy) {
                 self.nodal_rows.push(gluing.nodal_row(nodal as usize) as u32);
-                self.nodal_vectors.push(self.row_vectors[entry as usize]);
+                self.nodal_vectors.push(self.others.items()[entry as usize].1);
             }
             self.nodal_pointers.push(self.nodal_rows.len() as u32);
         }

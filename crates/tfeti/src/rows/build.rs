@@ -33,8 +33,6 @@ impl Gluing {
         let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
         let found = contact_rows(contact, &merged, nodes, squares)?;
         let mut gluing = Self {
-            block_pointers: vec![0],
-            row_pointers: vec![0],
             prescribed: vec![Vec::new(); merged.cases],
             is_aligned: stiffness.is_plain(),
             ..Self::default()
@@ -43,6 +41,7 @@ impl Gluing {
             decomposition,
             stiffness,
             shares: Vec::new(),
+            entries: Vec::new(),
             gluing: &mut gluing,
         };
         builder.contact(contact, &found.rows);
@@ -70,7 +69,7 @@ impl Gluing {
         let torn = decomposition.torn_dofs();
         let of_contact = contact.iter().map(|p| if p.friction || p.tied { 3 } else { 1 });
         gluing.paper_rows = torn.saturating_sub(3 * nodes) + 3 * merged.nodes.len() + of_contact.sum::<usize>();
-        let count = gluing.block_entries.len().max(gluing.row_entries.len());
+        let count = gluing.blocks.items().len().max(gluing.nodal.items().len());
         if count.max(gluing.ranges.total()).max(torn) >= u32::MAX as usize {
             let what = "entries of B";
             return Err(TfetiError::TooLarge { what, count });
@@ -93,6 +92,8 @@ struct Builder<'a> {
     stiffness: &'a CopyStiffness,
     /// Shares of the copies of a node.
     shares: Vec<f64>,
+    /// Of the row that is being made.
+    entries: Vec<CopyEntry>,
     gluing: &'a mut Gluing,
 }
 
@@ -109,13 +110,13 @@ impl Builder<'_> {
             local: c.local,
             vector: vector.map(|v| v * share),
         });
-        self.gluing.row_entries.extend(entries);
+        self.entries.extend(entries);
     }
 
     fn close(&mut self, node: u32) -> usize {
-        self.gluing.row_pointers.push(self.gluing.row_entries.len() as u32);
+        self.gluing.nodal.push(self.entries.drain(..));
         self.gluing.row_nodes.push(node);
-        self.gluing.row_pointers.len() - 2
+        self.gluing.nodal_rows() - 1
     }
 
     fn contact_row(&mut self, point: &ContactConstraint, row: &ContactRow, prescribed: &[(u32, [f64; 3])]) -> usize {
@@ -265,11 +266,9 @@ impl Builder<'_> {
             local: copies[k].local,
             coefficient,
         };
-        let entries = &mut self.gluing.block_entries;
         let scale = 1.0 / ((j * (j + 1)) as f64).sqrt();
-        entries.extend((0..j).map(|k| entry(k, scale)));
-        entries.push(entry(j, -(j as f64) * scale));
-        self.gluing.block_pointers.push(entries.len() as u32);
+        let first = (0..j).map(|k| entry(k, scale));
+        self.gluing.blocks.push(first.chain([entry(j, -(j as f64) * scale)]));
         self.gluing.block_nodes.push(node);
     }
 

@@ -7,7 +7,7 @@
 
 use crate::rows::ranges::RowRanges;
 use crate::rows::side::ContactConstraint;
-use signorini_fem_mesh::internal::DisjointSets;
+use signorini_fem_mesh::internal::{DisjointSets, Lists};
 
 /// Tangential rows of a contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,13 +105,12 @@ impl Glob {
 #[derive(Debug, Clone, Default)]
 pub struct Gluing {
     pub(super) ranges: RowRanges,
-    pub(super) block_pointers: Vec<u32>,
-    pub(super) block_entries: Vec<BlockEntry>,
+    pub(super) blocks: Lists<BlockEntry>,
     pub(super) block_nodes: Vec<u32>,
     /// In the order of their blocks.
     pub(crate) globs: Vec<Glob>,
-    pub(super) row_pointers: Vec<u32>,
-    pub(super) row_entries: Vec<CopyEntry>,
+    /// Rows that are no interface rows.
+    pub(super) nodal: Lists<CopyEntry>,
     pub(super) row_nodes: Vec<u32>,
     pub(super) contact: Vec<ContactRows>,
     pub(super) tied: Vec<TiedRows>,
@@ -242,11 +241,11 @@ impl Gluing {
     }
 
     pub(crate) fn blocks(&self) -> usize {
-        self.block_pointers.len() - 1
+        self.blocks.count()
     }
 
     pub(crate) fn block(&self, block: usize) -> &[BlockEntry] {
-        &self.block_entries[self.block_pointers[block] as usize..self.block_pointers[block + 1] as usize]
+        self.blocks.of(block)
     }
 
     /// The copies of a node of a glob: its last run combines all of them.
@@ -256,11 +255,11 @@ impl Gluing {
 
     /// Number of rows that are not interface rows: contact rows, then support rows.
     pub(crate) fn nodal_rows(&self) -> usize {
-        self.row_pointers.len() - 1
+        self.nodal.count()
     }
 
     pub(crate) fn nodal(&self, nodal: usize) -> &[CopyEntry] {
-        &self.row_entries[self.row_pointers[nodal] as usize..self.row_pointers[nodal + 1] as usize]
+        self.nodal.of(nodal)
     }
 
     pub(crate) fn nodal_row(&self, nodal: usize) -> usize {

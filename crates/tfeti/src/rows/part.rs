@@ -7,20 +7,14 @@ impl Gluing {
     /// The rows of the globs and of the other rows that are marked, in their order; all contact rows have to be. Only
     /// copies and coefficients come along, no names and no springs.
     pub(crate) fn part(&self, globs: &[bool], nodal: &[bool]) -> Self {
-        let mut out = Self {
-            row_pointers: vec![0],
-            block_pointers: vec![0],
-            ..Self::default()
-        };
+        let mut out = Self::default();
         for (k, _) in nodal.iter().enumerate().filter(|(_, kept)| **kept) {
-            out.row_entries.extend_from_slice(self.nodal(k));
-            out.row_pointers.push(out.row_entries.len() as u32);
+            out.nodal.push(self.nodal(k).iter().copied());
         }
         for (glob, _) in self.globs.iter().zip(globs).filter(|(_, kept)| **kept) {
             let first_block = out.blocks() as u32;
             for block in glob.block(0, 0)..glob.block(glob.runs as usize, 0) {
-                out.block_entries.extend_from_slice(self.block(block));
-                out.block_pointers.push(out.block_entries.len() as u32);
+                out.blocks.push(self.block(block).iter().copied());
             }
             out.globs.push(Glob { first_block, ..*glob });
         }
