@@ -87,6 +87,10 @@ pub(crate) const BENT_STEPS: usize = 6;
 /// Weight of a node in a side that counts as none, over the largest.
 pub(crate) const NO_WEIGHT: f64 = 1e-13;
 
+/// Square of the distance of nodes from the axis that they are turned about, over that of the way to the other side,
+/// from which on they carry the couple: its forces are no larger than the one that it is of.
+pub(crate) const SHORT_LEVER: f64 = 1.0;
+
 /// Depth of a supported node in an obstacle that counts, over its displacement or gap.
 pub(crate) const DEPTH: f64 = 1e-9;
 
