@@ -62,6 +62,40 @@ impl fmt::Display for StepStatus {
     }
 }
 
+/// How a body slides away that friction does not hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Slide {
+    /// Its number; bodies are numbered by their first subdomain.
+    pub body: usize,
+    /// A node of it.
+    pub node: u32,
+    /// Translation of its centre; with the rotation of length one.
+    pub translation: [f64; 3],
+    /// Rotation about its centre, times the radius.
+    pub rotation: [f64; 3],
+    /// Root mean square distance of its nodes from the centre, m.
+    pub radius: f64,
+    /// By how much the loads exceed what contact holds along it, N.
+    pub force: f64,
+}
+
+impl fmt::Display for Slide {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words = |name: &str, v: &[f64; 3]| {
+            let v = v.map(|v| if v.abs() < 5e-4 { 0.0 } else { v });
+            let moves = v.iter().any(|v| *v != 0.0);
+            moves.then(|| format!("{name} ({:.3}, {:.3}, {:.3})", v[0], v[1], v[2]))
+        };
+        let turn = words("rotation", &self.rotation).map(|w| format!("{w} at radius {:.3e}", self.radius));
+        let parts: Vec<String> = words("translation", &self.translation)
+            .into_iter()
+            .chain(turn)
+            .collect();
+        write!(f, "its {}", parts.join(" with "))
+    }
+}
+
 /// A step that did not converge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -76,6 +110,8 @@ pub struct StepFailure {
     pub certificate: f64,
     /// The condition of the certificate that is violated so.
     pub condition: &'static str,
+    /// Which body slides away, where that is how it ended.
+    pub slide: Option<Slide>,
 }
 
 impl fmt::Display for StepFailure {
@@ -86,11 +122,19 @@ impl fmt::Display for StepFailure {
             status,
             certificate,
             condition,
+            slide,
         } = self;
         write!(
             f,
-            "step {step}, at {time} s, did not converge ({status}, certificate {certificate:.1e}, {condition}); {}",
-            status.remedy()
-        )
+            "step {step}, at {time} s, did not converge ({status}, certificate {certificate:.1e}, {condition}); "
+        )?;
+        if let Some(Slide { body, node, force, .. }) = slide {
+            let motion = slide.map(|s| s.to_string()).unwrap_or_default();
+            write!(
+                f,
+                "body {body} (with node {node}) slides away along {motion}, for want of {force:.3e} N; "
+            )?;
+        }
+        f.write_str(status.remedy())
     }
 }

@@ -65,6 +65,7 @@ impl StepResult {
             status: self.report.status,
             certificate: self.recovered.certificate.largest(),
             condition: self.recovered.certificate.worst().0,
+            slide: self.report.slide,
         })
     }
 
