@@ -67,27 +67,35 @@ impl fmt::Display for StepStatus {
 #[non_exhaustive]
 pub struct Slide {
     /// Its number; bodies are numbered by their first subdomain.
-    pub body: usize,
+    pub body: u32,
     /// A node of it.
     pub node: u32,
     /// Translation of its centre; with the rotation of length one.
     pub translation: [f64; 3],
-    /// Rotation about its centre, times the radius.
+    /// Rotation about its centre, times the root mean square distance of its nodes from there.
     pub rotation: [f64; 3],
-    /// Root mean square distance of its nodes from the centre, m.
-    pub radius: f64,
     /// By how much the loads exceed what contact holds along it, N.
     pub force: f64,
 }
 
+impl Slide {
+    /// Whether it turns, as far as words tell.
+    pub(crate) fn turns(&self) -> bool {
+        self.rotation.iter().any(|r| r.abs() >= IN_WORDS)
+    }
+}
+
+/// Components of a motion of length one that words leave out: three digits are told.
+const IN_WORDS: f64 = 5e-4;
+
 impl fmt::Display for Slide {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let words = |name: &str, v: &[f64; 3]| {
-            let v = v.map(|v| if v.abs() < 5e-4 { 0.0 } else { v });
+            let v = v.map(|v| if v.abs() < IN_WORDS { 0.0 } else { v });
             let moves = v.iter().any(|v| *v != 0.0);
             moves.then(|| format!("{name} ({:.3}, {:.3}, {:.3})", v[0], v[1], v[2]))
         };
-        let turn = words("rotation", &self.rotation).map(|w| format!("{w} at radius {:.3e}", self.radius));
+        let turn = words("rotation", &self.rotation);
         let parts: Vec<String> = words("translation", &self.translation)
             .into_iter()
             .chain(turn)

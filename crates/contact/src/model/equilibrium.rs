@@ -63,7 +63,7 @@ pub(crate) fn slides(model: &Model, e: &[f64], lambda: &[f64]) -> Result<Option<
     if !(size.is_finite() && size > 0.0) {
         return Ok(None);
     }
-    let (slide, length) = describe(model, &motions, &work);
+    let (slide, _, length) = describe(model, &motions, &work);
     Ok((length > 0.0).then_some(Slide { force: length, ..slide }))
 }
 
@@ -136,8 +136,11 @@ fn escape(
 ) -> Escape {
     // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
     let motion: Vec<f64> = found.motion.iter().map(|v| -v).collect();
-    let (slide, share) = describe(model, motions, &motion);
+    let (slide, radius, share) = describe(model, motions, &motion);
     let mut mode = slide.to_string();
+    if slide.turns() {
+        mode = format!("{mode} at radius {radius:.3e}");
+    }
     if found.tresca > 0.0 {
         let held = found.tresca * share;
         mode = format!("{mode}, of which Tresca friction holds {held:.3e},");
@@ -145,7 +148,7 @@ fn escape(
     let force = force * share;
     let error = ContactError::NotHeld {
         step,
-        body: slide.body,
+        body: slide.body as usize,
         node: slide.node,
         mode,
         force,
@@ -203,8 +206,8 @@ struct Part {
     motion: [f64; 6],
 }
 
-/// The part that moves most in a sum of motions, and how: one of length one, and its length in the sum.
-fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, f64) {
+/// The part that moves most in a sum of motions, and how: one of length one; its radius, and its length in the sum.
+fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, f64, f64) {
     let mut parts: Vec<Part> = Vec::new();
     for (motion, factor) in motions.iter().zip(factors) {
         for part in &motion.bodies {
@@ -231,12 +234,11 @@ fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, 
     let most = most.copied().unwrap_or_default();
     let (m, length) = (most.motion.map(|v| v / size(&most)), size(&most));
     let slide = Slide {
-        body: most.body,
+        body: most.body as u32,
         node: model.discrete.decomposition.subdomains()[most.subdomain].nodes[0],
         translation: [m[0], m[1], m[2]],
         rotation: [m[3], m[4], m[5]],
-        radius: most.radius,
         force: 0.0,
     };
-    (slide, length)
+    (slide, most.radius, length)
 }
