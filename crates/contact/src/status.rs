@@ -62,6 +62,48 @@ impl fmt::Display for StepStatus {
     }
 }
 
+/// How a body slides away that friction does not hold.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct Slide {
+    /// Its number; bodies are numbered by their first subdomain.
+    pub body: u32,
+    /// A node of it.
+    pub node: u32,
+    /// Translation of its centre; with the rotation of length one.
+    pub translation: [f64; 3],
+    /// Rotation about its centre, times the root mean square distance of its nodes from there.
+    pub rotation: [f64; 3],
+    /// By how much the loads exceed what contact holds along it, N.
+    pub force: f64,
+}
+
+impl Slide {
+    /// Whether it turns, as far as words tell.
+    pub(crate) fn turns(&self) -> bool {
+        self.rotation.iter().any(|r| r.abs() >= IN_WORDS)
+    }
+}
+
+/// Components of a motion of length one that words leave out: three digits are told.
+const IN_WORDS: f64 = 5e-4;
+
+impl fmt::Display for Slide {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let words = |name: &str, v: &[f64; 3]| {
+            let v = v.map(|v| if v.abs() < IN_WORDS { 0.0 } else { v });
+            let moves = v.iter().any(|v| *v != 0.0);
+            moves.then(|| format!("{name} ({:.3}, {:.3}, {:.3})", v[0], v[1], v[2]))
+        };
+        let turn = words("rotation", &self.rotation);
+        let parts: Vec<String> = words("translation", &self.translation)
+            .into_iter()
+            .chain(turn)
+            .collect();
+        write!(f, "its {}", parts.join(" with "))
+    }
+}
+
 /// A step that did not converge.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -76,6 +118,8 @@ pub struct StepFailure {
     pub certificate: f64,
     /// The condition of the certificate that is violated so.
     pub condition: &'static str,
+    /// Which body slides away, where that is how it ended.
+    pub slide: Option<Slide>,
 }
 
 impl fmt::Display for StepFailure {
@@ -86,11 +130,19 @@ impl fmt::Display for StepFailure {
             status,
             certificate,
             condition,
+            slide,
         } = self;
         write!(
             f,
-            "step {step}, at {time} s, did not converge ({status}, certificate {certificate:.1e}, {condition}); {}",
-            status.remedy()
-        )
+            "step {step}, at {time} s, did not converge ({status}, certificate {certificate:.1e}, {condition}); "
+        )?;
+        if let Some(Slide { body, node, force, .. }) = slide {
+            let motion = slide.map(|s| s.to_string()).unwrap_or_default();
+            write!(
+                f,
+                "body {body} (with node {node}) slides away along {motion}, for want of {force:.3e} N; "
+            )?;
+        }
+        f.write_str(status.remedy())
     }
 }

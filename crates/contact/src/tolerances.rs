@@ -87,6 +87,10 @@ pub(crate) const BENT_STEPS: usize = 6;
 /// Weight of a node in a side that counts as none, over the largest.
 pub(crate) const NO_WEIGHT: f64 = 1e-13;
 
+/// Square of the distance of nodes from the axis that they are turned about, over that of the way to the other side,
+/// from which on they carry the couple: its forces are no larger than the one that it is of.
+pub(crate) const SHORT_LEVER: f64 = 1.0;
+
 /// Depth of a supported node in an obstacle that counts, over its displacement or gap.
 pub(crate) const DEPTH: f64 = 1e-9;
 
@@ -219,10 +223,13 @@ pub(crate) const AT_BOUND: f64 = 1.0 - 1e-9;
 /// Singular values below this part of one count as zero.
 pub(crate) const NULL_RANK: f64 = 1e-9;
 
-/// Products of the fall-back between two looks at the balance of bodies that friction does not seem to hold, and what
-/// may be left of the imbalance before them to go on.
-pub(crate) const BALANCING: usize = 2000;
-pub(crate) const BALANCED: f64 = 0.5;
+/// Products of the fall-back between two looks at the balance of bodies that friction does not seem to hold; what may be
+/// left after two of the imbalance before them to go on. Where other normal forces hold them 1e-4 of the loads is left
+/// after the first, where none do 0.01 to 0.7 in the end.
+pub(crate) const BALANCING: usize = 200;
+pub(crate) const BALANCED: f64 = 0.9;
+/// Imbalance over the loads below which forces hold the bodies.
+pub(crate) const NEAR_BALANCE: f64 = 1e-3;
 
 // ---- points and accumulated errors (result, report) ----
 

@@ -132,6 +132,8 @@ pub(crate) const COUPLED_LEAST: f64 = 0.03;
 pub(crate) const UNSURE: usize = 4;
 /// Times that a body which constraints alone hold is balanced with a set that follows.
 pub(crate) const BALANCE_ROUNDS: usize = 3;
+/// Factor on patience for moves in a row that find no balance, from which on there seems to be none.
+pub(crate) const UNBALANCED: usize = 2;
 /// With the safeguard: factor on the forcing; factor on patience and sets; very short steps in a row that end it.
 pub(crate) const FINER: f64 = 0.05;
 pub(crate) const LONGER: usize = 5;

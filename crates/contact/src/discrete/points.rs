@@ -12,7 +12,7 @@ use super::creases::{SurfaceSide, creases};
 use super::means::{Means, mean_gap};
 use super::normals::{along_axis, shape_frames};
 use super::partners::{Paired, Partners, check_overlap};
-use super::side::Sides;
+use super::side::{Sides, turned};
 use crate::error::ContactError;
 use crate::mortar::MortarNode;
 use crate::scene::{Pose, Scene};
@@ -90,6 +90,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
             (Partners::Obstacle, None) if shaped.is_empty() => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
         };
+        let curved = is_curved(partners);
         let means = Means::new(&scene.mesh, (index, contact), surface, partners, rounding);
         for (local, &node) in surface.nodes().iter().enumerate() {
             let position = scene.mesh.points()[node as usize];
@@ -124,12 +125,15 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                 let frame = fixed.or(shaped.get(local).copied()).unwrap_or(side.frame);
                 let (sides, gap) = match &means {
                     None => {
-                        let sides = Sides {
+                        let mut sides = Sides {
                             own: Side::new(mean.clone()),
                             partner: partner.clone(),
                             swapped: paired.swapped,
                         };
                         let gap = mean_gap(&scene.mesh, (index, contact), &mean, &frame.normal, |_| measured)?;
+                        if curved && !contact.tied {
+                            turn(&scene.mesh, &mut sides, rounding);
+                        }
                         (sides, gap)
                     }
                     Some(means) => means.point((local, &side.triangles), &frame)?,
@@ -153,13 +157,40 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
 }
 
 fn centre(mesh: &TetMesh, sides: &Sides) -> [f64; 3] {
+    mean_place(mesh, &sides.own)
+}
+
+fn mean_place(mesh: &TetMesh, side: &Side) -> [f64; 3] {
     let place = |node: u32| mesh.points()[node as usize];
-    match sides.own.nodes() {
+    match side.nodes() {
         [(node, _)] => place(*node),
         nodes => nodes.iter().fold([0.0; 3], |sum, &(node, weight)| {
             vec3::add(sum, vec3::scale(weight, place(node)))
         }),
     }
+}
+
+/// Whether meshes do not match and normals differ.
+fn is_curved(partners: &Partners) -> bool {
+    let Partners::Mortar(nodes) = partners else {
+        return false;
+    };
+    let mut normals = nodes.iter().flatten().map(|n| n.frame.normal);
+    let first = normals.next().unwrap_or_default();
+    normals.any(|n| vector::dot(&n, &first) <= SAME_NORMAL)
+}
+
+/// Facets of curved sides are apart where the sides touch, and forces of both act at two places: the partner turns over
+/// the way between them.
+fn turn(mesh: &TetMesh, sides: &mut Sides, rounding: f64) {
+    sides.partner = sides.partner.take().map(|partner| {
+        let way = vec3::sub(mean_place(mesh, &partner), mean_place(mesh, &sides.own));
+        let weights: f64 = partner.nodes().iter().map(|(_, weight)| weight.abs()).sum();
+        match vec3::norm(way) > weights * rounding {
+            true => turned(partner, way, |node| mesh.points()[node as usize]),
+            false => partner,
+        }
+    });
 }
 
 /// The weighted gap of a node of a surface along a normal, m: from the node to the weighted mean of what it sees.

@@ -1,5 +1,7 @@
 //! The two sides of a contact point: all that is above asks here which nodes a point moves.
 
+use crate::tolerances::SHORT_LEVER;
+use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use signorini_tfeti::Side;
 
 /// Both sides of a contact point: short lists of nodes with weights, where meshes match of one node each.
@@ -24,12 +26,28 @@ impl Sides {
         self.partner.as_ref().map(|side| side.nodes()[0].0)
     }
 
-    /// Nodes of the body that the scene names first, with weights, negative where forces on it are opposite to those of
-    /// the point.
-    pub(crate) fn first(&self) -> impl Iterator<Item = (u32, f64)> {
+    /// What a force on the point is at the nodes of both sides.
+    pub(crate) fn forces(&self, force: [f64; 3]) -> impl Iterator<Item = (u32, [f64; 3])> {
+        let partner = self.partner.iter();
+        on_nodes(&self.own, 1.0, force).chain(partner.flat_map(move |side| on_nodes(side, -1.0, force)))
+    }
+
+    /// The same at nodes of the body that the scene names first.
+    pub(crate) fn first(&self, force: [f64; 3]) -> impl Iterator<Item = (u32, [f64; 3])> {
         let partner = self.partner.as_ref().filter(|_| self.swapped);
-        let (side, sign) = (partner.unwrap_or(&self.own), self.sign());
-        side.nodes().iter().map(move |&(node, weight)| (node, sign * weight))
+        on_nodes(partner.unwrap_or(&self.own), self.sign(), force)
+    }
+
+    /// What the displacement of one side relative to the other along a direction has beside that of [`nodes`](Self::nodes),
+    /// from what each node has along a vector.
+    pub(crate) fn turned(&self, direction: &[f64; 3], along: impl Fn(u32, &[f64; 3]) -> f64) -> f64 {
+        let turns = self
+            .partner
+            .iter()
+            .flat_map(|side| side.nodes().iter().zip(side.turn()));
+        -turns
+            .map(|((node, _), turn)| along(*node, &times(turn, direction)))
+            .sum::<f64>()
     }
 
     /// Sign of forces on the body that the scene names first.
@@ -43,4 +61,49 @@ impl Sides {
         let partner = partner.map(|&(node, weight)| (node, -weight));
         self.own.nodes().iter().copied().chain(partner)
     }
+}
+
+/// A force times a sign at the nodes of a side.
+fn on_nodes(side: &Side, sign: f64, force: [f64; 3]) -> impl Iterator<Item = (u32, [f64; 3])> {
+    side.nodes().iter().enumerate().map(move |(k, &(node, weight))| {
+        let mut own = force.map(|f| sign * weight * f);
+        if let Some(turn) = side.turn().get(k) {
+            let turned = times(turn, &force);
+            (0..3).for_each(|c| own[c] += sign * turned[c]);
+        }
+        (node, own)
+    })
+}
+
+/// The transpose of a matrix times a vector.
+fn times(turn: &[[f64; 3]; 3], v: &[f64; 3]) -> [f64; 3] {
+    [0, 1, 2].map(|c| (0..3).map(|r| turn[r][c] * v[r]).sum())
+}
+
+/// A side that turns about its mean: what displacements of its nodes add at the end of the way `-lever` from there, m.
+///
+/// The rotation is that which fits displacements best, weighted as the mean is: rigid ones are met exactly, and forces
+/// of the couple are spread as those on a group of bolts. None about an axis from which the nodes are nearer than the
+/// way is long.
+pub(super) fn turned(side: Side, lever: [f64; 3], place: impl Fn(u32) -> [f64; 3]) -> Side {
+    let shares = || {
+        side.nodes()
+            .iter()
+            .map(|&(node, w)| (w.abs(), Vector3::from(place(node))))
+    };
+    let whole: f64 = shares().map(|s| s.0).sum();
+    let middle: Vector3<f64> = shares().map(|(w, x)| x * (w / whole)).sum();
+    let across = |x: Vector3<f64>| (x - middle).cross_matrix();
+    let inertia: Matrix3<f64> = shares().map(|(w, x)| across(x) * across(x) * (-w / whole)).sum();
+    let eigen = SymmetricEigen::new(inertia);
+    let lever = Vector3::from(lever);
+    let mut inverse = Matrix3::zeros();
+    for (axis, &square) in eigen.eigenvectors.column_iter().zip(&eigen.eigenvalues) {
+        if square > SHORT_LEVER * lever.norm_squared() {
+            inverse += axis * axis.transpose() / square;
+        }
+    }
+    let turn = shares().map(|(w, x)| lever.cross_matrix() * inverse * across(x) * (w / whole));
+    let turn = turn.map(|m| m.transpose().into()).collect();
+    side.with_turn(turn)
 }

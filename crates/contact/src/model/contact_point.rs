@@ -34,9 +34,16 @@ impl ConstrainedPoint {
 
     /// Mesh nodes with weights: the displacement relative to the obstacle or the partner is their weighted sum, and a
     /// force on the point acts on each of them with its weight. Those of the partner are last, with negative weights
-    /// (but for dual shape functions, of either sign) that sum to minus one.
+    /// (but for dual shape functions, of either sign) that sum to minus one. Where the sides touch and their places are
+    /// apart, as facets of curved sides are, [`forces`](Self::forces) add a couple on the partner, and its rotation counts.
     pub fn nodes(&self) -> impl Iterator<Item = (u32, f64)> {
         self.contact.sides.nodes()
+    }
+
+    /// Forces at mesh nodes that a force on the point is: without resultant and moment where it has a partner and its
+    /// gap is closed. Their work on displacements of the nodes is that of the force on the relative displacement.
+    pub fn forces(&self, force: [f64; 3]) -> impl Iterator<Item = (u32, [f64; 3])> {
+        self.contact.sides.forces(force)
     }
 
     /// Position of its contact surface in [`Scene::contacts`](crate::Scene::contacts).

@@ -11,16 +11,14 @@ use super::friction_cone::{Generators, Separation, WrenchCone};
 use super::model::Model;
 use crate::error::ContactError;
 use crate::scene::Friction;
+use crate::status::Slide;
 use crate::tolerances::{FREE_WORK, ROUNDING};
 use signorini_qp::vector;
 use signorini_tfeti::{BodyMotion, FreeMotion, RowWeights};
 
 /// Refuses loads that push the body along a rigid motion that neither supports nor contact can stop.
 pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
-    let coarse = model.tfeti.coarse();
-    let mut weights = vec![1.0; coarse.dim()];
-    weights[..model.tfeti.gluing().ranges().contact().end].fill(0.0);
-    let motions = coarse.free_motions(Some(&RowWeights::diagonal(weights)))?;
+    let motions = motions_without_contact(model)?;
     if motions.is_empty() {
         return Ok(());
     }
@@ -41,6 +39,32 @@ pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
         }
     }
     worst.map_or(Ok(()), |escape| Err(escape.error))
+}
+
+/// The rigid motions that supports leave to the bodies.
+fn motions_without_contact(model: &Model) -> Result<Vec<FreeMotion>, ContactError> {
+    let coarse = model.tfeti.coarse();
+    let mut weights = vec![1.0; coarse.dim()];
+    weights[..model.tfeti.gluing().ranges().contact().end].fill(0.0);
+    Ok(coarse.free_motions(Some(&RowWeights::diagonal(weights)))?)
+}
+
+/// The body that slides away where multipliers are not in balance with the right side `e` of a step; `None` if they are,
+/// or if supports hold all bodies.
+pub(crate) fn slides(model: &Model, e: &[f64], lambda: &[f64]) -> Result<Option<Slide>, ContactError> {
+    let coarse = model.tfeti.coarse();
+    let mut missing = vec![0.0; e.len()];
+    coarse.apply(lambda, &mut missing, &mut coarse.scratch());
+    vector::axpby(1.0, e, -1.0, &mut missing);
+    let motions = motions_without_contact(model)?;
+    let motions: Vec<&FreeMotion> = motions.iter().collect();
+    let work: Vec<f64> = motions.iter().map(|m| -vector::dot(&m.amplitudes, &missing)).collect();
+    let size = vector::norm(&work);
+    if !(size.is_finite() && size > 0.0) {
+        return Ok(None);
+    }
+    let (slide, _, length) = describe(model, &motions, &work);
+    Ok((length > 0.0).then_some(Slide { force: length, ..slide }))
 }
 
 /// A body that gets away, when and how strongly, N.
@@ -112,7 +136,11 @@ fn escape(
 ) -> Escape {
     // `G lambda = e = -Rᵀ f`: the loads push along the negative residual
     let motion: Vec<f64> = found.motion.iter().map(|v| -v).collect();
-    let (part, mut mode, share) = describe(motions, &motion);
+    let (slide, radius, share) = describe(model, motions, &motion);
+    let mut mode = slide.to_string();
+    if slide.turns() {
+        mode = format!("{mode} at radius {radius:.3e}");
+    }
     if found.tresca > 0.0 {
         let held = found.tresca * share;
         mode = format!("{mode}, of which Tresca friction holds {held:.3e},");
@@ -120,8 +148,8 @@ fn escape(
     let force = force * share;
     let error = ContactError::NotHeld {
         step,
-        body: part.body,
-        node: model.discrete.decomposition.subdomains()[part.subdomain].nodes[0],
+        body: slide.body as usize,
+        node: slide.node,
         mode,
         force,
         friction,
@@ -178,8 +206,8 @@ struct Part {
     motion: [f64; 6],
 }
 
-/// What a message says of a motion: the part that moves most, its motion in words, of length one, and its length.
-fn describe(motions: &[&FreeMotion], factors: &[f64]) -> (Part, String, f64) {
+/// The part that moves most in a sum of motions, and how: one of length one; its radius, and its length in the sum.
+fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, f64, f64) {
     let mut parts: Vec<Part> = Vec::new();
     for (motion, factor) in motions.iter().zip(factors) {
         for part in &motion.bodies {
@@ -204,17 +232,13 @@ fn describe(motions: &[&FreeMotion], factors: &[f64]) -> (Part, String, f64) {
     let size = |p: &Part| vector::norm(&p.motion);
     let most = parts.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
     let most = most.copied().unwrap_or_default();
-    let (m, radius, length) = (most.motion, most.radius, size(&most));
-    let rounded = |v: &f64| {
-        let v = v / length;
-        if v.abs() < 5e-4 { 0.0 } else { v }
+    let (m, length) = (most.motion.map(|v| v / size(&most)), size(&most));
+    let slide = Slide {
+        body: most.body as u32,
+        node: model.discrete.decomposition.subdomains()[most.subdomain].nodes[0],
+        translation: [m[0], m[1], m[2]],
+        rotation: [m[3], m[4], m[5]],
+        force: 0.0,
     };
-    let words = |name: &str, v: &[f64]| {
-        let v: Vec<f64> = v.iter().map(rounded).collect();
-        let moves = v.iter().any(|v| *v != 0.0);
-        moves.then(|| format!("{name} ({:.3}, {:.3}, {:.3})", v[0], v[1], v[2]))
-    };
-    let turn = words("rotation", &m[3..]).map(|w| format!("{w} at radius {radius:.3e}"));
-    let parts: Vec<String> = words("translation", &m[..3]).into_iter().chain(turn).collect();
-    (most, format!("its {}", parts.join(" with ")), length)
+    (slide, most.radius, length)
 }

@@ -3,6 +3,7 @@
 use crate::error::ContactError;
 use crate::result::ContactState;
 use crate::simulation::StepResult;
+use crate::vec3::dot;
 use signorini_fem_mesh::Surface;
 use signorini_fem_mesh::fields::{nodal_average, nodal_stresses, von_mises};
 use signorini_fem_mesh::output::Field;
@@ -229,6 +230,9 @@ fn slip(result: &StepResult, point: usize, u: &[[f64; 3]]) -> [f64; 3] {
     let mut way = result.problem.pose(contact).drag(&contact.contact.centre).map(|w| -w);
     for (node, weight) in contact.contact.sides.nodes() {
         (0..3).for_each(|c| way[c] += weight * u[node as usize][c]);
+    }
+    for (way, axis) in way.iter_mut().zip(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]) {
+        *way += contact.contact.sides.turned(axis, |node, v| dot(&u[node as usize], v));
     }
     let out: f64 = (0..3).map(|c| way[c] * state.normal[c]).sum();
     [0, 1, 2].map(|c| way[c] - out * state.normal[c])

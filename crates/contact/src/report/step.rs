@@ -2,7 +2,7 @@
 
 use super::counters::Counters;
 use super::errors::AccuracyReport;
-use crate::status::StepStatus;
+use crate::status::{Slide, StepStatus};
 use signorini_qp::{FixedPointReport, Steps};
 
 /// Report of one step's solve.
@@ -24,6 +24,8 @@ pub struct StepReport {
     pub fallback: bool,
     /// Products with F that SMALSE took for that, contained in the counters.
     pub fallback_products: usize,
+    /// Which body slides away, where friction [does not hold](StepStatus::NotHeld) it.
+    pub slide: Option<Slide>,
     /// Estimates of the step's errors; only with an [`Accuracy`](crate::Accuracy) that needs them.
     pub accuracy: Option<AccuracyReport>,
     /// The first earlier step that did not converge and on whose displacement this one depends, from 0: its slip is
@@ -42,6 +44,7 @@ impl StepReport {
             fixed_point: None,
             fallback: false,
             fallback_products: 0,
+            slide: None,
             accuracy: None,
             unconverged_history: None,
         }

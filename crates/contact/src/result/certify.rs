@@ -92,7 +92,8 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
         // no gap at all is no gap that holds
         let open = open.unwrap_or(f64::NAN) + model.discrete.rounding;
         let sides = condition.sides.nodes();
-        let way: f64 = sides.map(|(node, weight)| weight * along(node, normal)).sum();
+        let mean: f64 = sides.map(|(node, weight)| weight * along(node, normal)).sum();
+        let way = mean + condition.sides.turned(normal, along);
         let depth = way - open - model.given_way(point, m.lambda);
         let copies = model.discrete.decomposition.copies(condition.node() as usize);
         let body = copies

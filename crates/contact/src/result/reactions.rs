@@ -83,7 +83,8 @@ pub struct Reactions {
     pub supports: Vec<SupportReaction>,
     /// What each [elastic foundation](crate::Spring) does, in the order of the scene.
     pub springs: Vec<SupportReaction>,
-    /// What obstacles do: contact pressure and friction. Forces between bodies cancel.
+    /// What obstacles do: contact pressure and friction. Forces between bodies cancel; so do their moments, but that of
+    /// friction across a gap that was closed between matching or plane sides, for places are those before the deformation.
     pub contact: Resultant,
     /// The same for each contact surface, in the order of the scene. Between bodies it is what the partner does to the
     /// body with the first tag ([`Contact::between`](crate::Contact::between),
@@ -135,11 +136,11 @@ pub(crate) fn nodal_reactions(
     for (state, point) in points.iter().zip(&model.points) {
         let whole = state.force();
         let size = whole.iter().map(|f| f.abs()).fold(0.0, f64::max);
-        for (node, weight) in point.contact.sides.nodes() {
+        for (node, own) in point.contact.sides.forces(whole) {
             let Some(force) = forces.get_mut(&node) else {
                 continue;
             };
-            let mut rest = whole.map(|f| weight * f);
+            let mut rest = own;
             take_rows(model, point, &whole, node, &mut rest);
             if rest.iter().any(|f| f.abs() > ROUNDING * size) {
                 (0..3).for_each(|c| force[c] -= rest[c]);
@@ -205,18 +206,17 @@ pub(crate) fn reactions_about(
     let mut contact = Resultant::default();
     let mut contacts = vec![Resultant::default(); model.scene.contacts.len()];
     for (state, point) in recovered.points.iter().zip(&model.points) {
-        for (node, weight) in point.contact.sides.nodes() {
-            contact.add(arm(node), state.force().map(|f| weight * f));
-        }
-        for (node, weight) in point.contact.sides.first() {
-            contacts[state.surface].add(arm(node), state.force().map(|f| weight * f));
-        }
+        let sides = &point.contact.sides;
+        sides
+            .forces(state.force())
+            .for_each(|(node, f)| contact.add(arm(node), f));
+        let first = sides.first(state.force());
+        first.for_each(|(node, f)| contacts[state.surface].add(arm(node), f));
     }
     let ties = tied_forces(model, recovered);
     for (tie, force) in &ties {
-        for (node, weight) in tie.sides.first() {
-            contacts[tie.surface].add(arm(node), force.map(|f| weight * f));
-        }
+        let first = tie.sides.first(*force);
+        first.for_each(|(node, f)| contacts[tie.surface].add(arm(node), f));
     }
     let forces = nodal_reactions(model, recovered, &ties);
     Reactions {

@@ -65,6 +65,7 @@ impl StepResult {
             status: self.report.status,
             certificate: self.recovered.certificate.largest(),
             condition: self.recovered.certificate.worst().0,
+            slide: self.report.slide,
         })
     }
 
@@ -189,9 +190,8 @@ impl StepResult {
     pub fn contact_force_field(&self) -> Vec<[f64; 3]> {
         let mut field = vec![[0.0; 3]; self.model.scene.mesh.points().len()];
         for (state, point) in self.recovered.points.iter().zip(&self.model.points) {
-            let force = state.force();
-            for (node, weight) in point.contact.sides.nodes() {
-                (0..3).for_each(|c| field[node as usize][c] += weight * force[c]);
+            for (node, force) in point.contact.sides.forces(state.force()) {
+                (0..3).for_each(|c| field[node as usize][c] += force[c]);
             }
         }
         field

@@ -4,12 +4,13 @@ use super::halving::{Before, Way};
 use super::result::StepResult;
 use super::simulation::{Simulation, on_pool};
 use crate::error::ContactError;
-use crate::model::Model;
+use crate::model::{Model, slides};
 use crate::report::StepReport;
 use crate::result::{ContactState, PointState, Recovered, Sizes, summarise};
 use crate::scene::Friction;
 use crate::solve::{Iterate, Task};
 use crate::state::{Kept, Peak, State};
+use crate::status::StepStatus;
 use crate::step::StepProblem;
 use signorini_qp::vector;
 use signorini_tfeti::internal::{of_length, zeros};
@@ -74,8 +75,11 @@ impl Simulation {
         self.controller = state.controller;
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment)?;
         self.start(state, way.ratio());
-        let (report, recovered) = self.solve()?;
+        let (mut report, recovered) = self.solve()?;
         let (model, problem) = (&self.model, &self.problem);
+        if report.status == StepStatus::NotHeld {
+            report.slide = slides(model, &problem.rhs, &problem.multipliers(&self.iterate.lambda))?;
+        }
         let before: Vec<f64> = (0..model.tangential_rows()).map(|k| state.traces(k).0).collect();
         Ok(StepResult {
             summary: summarise(model, problem, &recovered, &self.iterate.lambda, &before)?,

@@ -255,20 +255,16 @@ impl ActiveSetSolver {
             Err(error) => return Err(error),
         };
         iterate.multiplier.clear();
-        // other normal forces may hold the body yet
-        let not_held = report.status == StepStatus::NotHeld;
+        // other normal forces may hold a body yet that only contact holds
         let most = task.settings.max_fallback_products;
-        let outcome = match not_held {
-            true => paper.solve_while_balancing(most, task, iterate),
-            false => paper.solve_within(most, task, iterate),
+        let outcome = match self.space.loose().is_empty() {
+            false => paper.solve_while_balancing(most, task, iterate),
+            true => paper.solve_within(most, task, iterate),
         };
         self.paper = Some(paper);
         let mut second = outcome?;
         second.fallback = true;
         second.fallback_products = second.counters.products;
-        if not_held && second.status == StepStatus::IterationLimit {
-            second.status = StepStatus::NotHeld;
-        }
         iterate.multiplier.clear();
         Ok(report.resumed(second))
     }

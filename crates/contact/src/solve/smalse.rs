@@ -9,7 +9,7 @@ use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::{InnerAccuracy, Method, Settings, paper_smalse};
 use crate::status::StepStatus;
-use crate::tolerances::{BALANCED, BALANCING, INNER_FACTOR, INNER_LOOSEST, INNER_STALL, SMALSE_SAFETY};
+use crate::tolerances::{BALANCED, BALANCING, INNER_FACTOR, INNER_LOOSEST, INNER_STALL, NEAR_BALANCE, SMALSE_SAFETY};
 use signorini_qp::internal::Contraction;
 use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
@@ -74,24 +74,38 @@ impl SmalseSolver {
         report
     }
 
-    /// The same for bodies that friction does not seem to hold: ends as well when a share of the products has not
-    /// brought the forces much nearer to balance.
+    /// The same for bodies that friction does not seem to hold: ends as [`StepStatus::NotHeld`] when products no longer
+    /// bring the forces nearer to balance. Slip bounds follow normal forces the sooner the fewer products there are
+    /// between two looks.
     pub(crate) fn solve_while_balancing(
         &mut self,
         limit: usize,
         task: Task<'_>,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
-        let (mut all, mut left, mut before) = (StepReport::new(), limit, f64::INFINITY);
+        let (mut all, mut left, mut share) = (StepReport::new(), limit, BALANCING);
+        let mut before = [f64::INFINITY; 2];
         loop {
-            let part = self.solve_within(left.min(BALANCING), task, iterate)?;
+            let part = self.solve_within(left.min(share), task, iterate)?;
             left = left.saturating_sub(part.counters.products);
             all = all.resumed(part);
-            let now = self.rows.imbalance(&iterate.lambda);
-            if all.status != StepStatus::IterationLimit || left == 0 || now > BALANCED * before {
+            if all.status != StepStatus::IterationLimit {
                 return Ok(all);
             }
-            before = now;
+            let now = self.rows.imbalance(&iterate.lambda);
+            // where there are no loads, a part of what contact does tells what is small
+            let contact = &iterate.lambda[task.model.tfeti.gluing().ranges().contact()];
+            let size = vector::norm(&self.rows.rhs).max(NEAR_BALANCE * vector::norm(contact));
+            if now <= NEAR_BALANCE * size {
+                // held: what is left needs longer solves
+                share *= 2;
+            } else if left == 0 || now > BALANCED * before[0] {
+                all.status = StepStatus::NotHeld;
+            }
+            if left == 0 || all.status == StepStatus::NotHeld {
+                return Ok(all);
+            }
+            before = [before[1], now];
         }
     }
 

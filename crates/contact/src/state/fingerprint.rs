@@ -7,6 +7,7 @@
 use crate::model::{ConstrainedPoint, Model};
 use crate::scene::{Analysis, DifferenceFormula};
 use crate::settings::Settings;
+use signorini_tfeti::Side;
 use std::collections::BTreeMap;
 
 /// Hashes of the parts. They depend on the bits of numbers only, not on threads, processor or byte order.
@@ -111,9 +112,11 @@ fn point(point: &ConstrainedPoint) -> impl Iterator<Item = u64> {
     let [a, b] = frame.tangents;
     let numbers = [frame.normal, a, b].into_iter().flatten();
     let nodes = point.contact.sides.nodes();
+    let turns = point.contact.sides.partner.iter().flat_map(Side::turn);
     nodes
         .flat_map(|(node, weight)| [u64::from(node), number(weight)])
         .chain(numbers.chain([point.area()]).map(number))
+        .chain(turns.flatten().flatten().copied().map(number))
 }
 
 /// What products with F depend on, in one number: two models that share it have the same F, bit for bit. Beside what

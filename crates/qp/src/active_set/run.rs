@@ -7,7 +7,7 @@ use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, Symmetri
 use crate::report::Status;
 use crate::tolerances::{
     FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NEGLIGIBLE, PASSING_PART, PRESSED, PROGRESS, ROUNDED, SHRUNK,
-    SINK_ROUNDS, SMALL_PART,
+    SINK_ROUNDS, SMALL_PART, UNBALANCED,
 };
 use crate::vector;
 
@@ -390,7 +390,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
     /// Why the solve ends without a solution, if it does.
     pub(crate) fn gives_up(&self) -> Option<Status> {
         let (settings, report) = (self.settings, &self.at.report);
-        if self.moved.unbalanced >= settings.patience.saturating_mul(LONGER) {
+        if self.moved.unbalanced >= settings.patience.saturating_mul(UNBALANCED) {
             return Some(Status::Infeasible);
         }
         let held_up = self.safeguard.as_ref().map_or(0, |safeguard| safeguard.held_up);

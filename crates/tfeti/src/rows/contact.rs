@@ -89,6 +89,8 @@ struct Space {
     /// Of each node its coefficient, signed, on the mean of its copies (as a unit vector of these), and the projector
     /// on what supports leave free.
     nodes: Vec<(f64, Matrix3<f64>)>,
+    /// Of each node what it adds by the turn of its side, as the coefficient; none where no side turns.
+    turns: Vec<Matrix3<f64>>,
     /// Scale of a row of length one if there are no supports.
     scale: f64,
     /// Gram matrix of the rows `direction -> coefficient * projector * direction`.
@@ -103,7 +105,8 @@ impl Space {
         let scale = sum.sqrt().recip();
         let mut prescribed: Vec<(u32, [f64; 3])> = Vec::new();
         let mut nodes = Vec::with_capacity(2);
-        for (node, weight) in point.nodes() {
+        let mut turns = point.turns();
+        for (k, (node, weight)) in point.nodes().enumerate() {
             let fixed = supports.at(node);
             let mut free = Matrix3::identity();
             for direction in fixed.iter().flat_map(|f| &f.directions) {
@@ -114,12 +117,20 @@ impl Space {
             for (case, value) in fixed.map(FixedNode::prescribed).unwrap_or_default() {
                 let sum = entry(&mut prescribed, case, [0.0; 3]);
                 (0..3).for_each(|c| sum[c] += weight * value[c]);
+                if let Some(turn) = turns.get(k) {
+                    let turned = turn * Vector3::from(value);
+                    (0..3).for_each(|c| sum[c] += turned[c]);
+                }
+            }
+            if let Some(turn) = turns.get_mut(k) {
+                *turn *= scale * squares(node).sqrt();
             }
         }
         prescribed.sort_by_key(|v| v.0);
         let gram = nodes.iter().map(|(c, free)| free * (c * c)).sum();
         Self {
             nodes,
+            turns,
             scale,
             gram,
             prescribed,
@@ -132,8 +143,14 @@ impl Space {
             let own = if whole { direction } else { free * direction };
             (own * (c * factor)).into()
         };
+        let mut parts: Vec<[f64; 3]> = self.nodes.iter().map(part).collect();
+        for ((part, turn), (_, free)) in parts.iter_mut().zip(&self.turns).zip(&self.nodes) {
+            let own = turn.tr_mul(&direction);
+            let own = if whole { own } else { free * own };
+            (0..3).for_each(|c| part[c] += factor * own[c]);
+        }
         ContactRow {
-            parts: self.nodes.iter().map(part).collect(),
+            parts,
             direction: direction.into(),
             scale: self.scale * factor,
         }
@@ -141,8 +158,12 @@ impl Space {
 
     /// The row of a direction, divided by its length.
     fn unit_row(&self, direction: Vector3<f64>) -> ContactRow {
-        let length = direction.dot(&(self.gram * direction)).sqrt();
-        self.row(direction, length.recip(), false)
+        let mut square = direction.dot(&(self.gram * direction));
+        if !self.turns.is_empty() {
+            let row = self.row(direction, 1.0, false);
+            square = row.parts.iter().map(|&v| dot(v, v)).sum();
+        }
+        self.row(direction, square.sqrt().recip(), false)
     }
 
     /// Directions that supports fix at all nodes, and those at right angles to `normal` in which they hold both sides,

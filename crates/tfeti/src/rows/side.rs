@@ -3,6 +3,7 @@
 use crate::error::TfetiError;
 use crate::rows::supports::check_node;
 use crate::tolerances::{SAME, UNIT};
+use nalgebra::Matrix3;
 use signorini_fem_mesh::SurfaceFrame;
 use signorini_fem_mesh::vec3::dot;
 
@@ -12,41 +13,64 @@ use signorini_fem_mesh::vec3::dot;
 /// A side of node-to-node contact is the list of length one. Weights may be negative, as those of dual shape functions
 /// and of quadratic facets are.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Side(Vec<(u32, f64)>);
+pub struct Side {
+    nodes: Vec<(u32, f64)>,
+    turn: Vec<[[f64; 3]; 3]>,
+}
 
 impl Side {
     /// A single node.
     pub fn node(node: u32) -> Self {
-        Self(vec![(node, 1.0)])
+        Self::new(vec![(node, 1.0)])
     }
 
     /// Mesh nodes with their weights; they are checked where rows are made of them.
     pub fn new(nodes: Vec<(u32, f64)>) -> Self {
-        Self(nodes)
+        let turn = Vec::new();
+        Self { nodes, turn }
+    }
+
+    /// Beside the mean it moves by the sum of these matrices, one a node, row by row, times their displacements: by its
+    /// rotation over the way to where it meets the other side.
+    #[must_use]
+    pub fn with_turn(mut self, turn: Vec<[[f64; 3]; 3]>) -> Self {
+        self.turn = turn;
+        self
     }
 
     /// The nodes and their weights.
     pub fn nodes(&self) -> &[(u32, f64)] {
-        &self.0
+        &self.nodes
+    }
+
+    /// The matrices of [`with_turn`](Self::with_turn); none where there is no way.
+    pub fn turn(&self) -> &[[[f64; 3]; 3]] {
+        &self.turn
     }
 
     /// The first node, which names the side.
     pub(crate) fn first(&self) -> u32 {
-        self.0.first().map_or(0, |n| n.0)
+        self.nodes.first().map_or(0, |n| n.0)
     }
 
     fn check(&self, point: usize, nodes: usize) -> Result<(), TfetiError> {
         let refuse = |what| Err(TfetiError::BadSide { point, what });
-        for (k, &(node, weight)) in self.0.iter().enumerate() {
+        for (k, &(node, weight)) in self.nodes.iter().enumerate() {
             check_node(node, nodes, || format!("contact point {point}"))?;
             if !weight.is_finite() || weight == 0.0 {
                 return refuse("a weight is zero or not finite");
             }
-            if self.0[..k].iter().any(|other| other.0 == node) {
+            if self.nodes[..k].iter().any(|other| other.0 == node) {
                 return refuse("a node stands twice in it");
             }
         }
-        if (self.0.iter().map(|n| n.1).sum::<f64>() - 1.0).abs() > UNIT {
+        if !self.turn.is_empty() && self.turn.len() != self.nodes.len() {
+            return refuse("there is not one matrix a node");
+        }
+        if self.turn.as_flattened().as_flattened().iter().any(|t| !t.is_finite()) {
+            return refuse("a matrix is not finite");
+        }
+        if (self.nodes.iter().map(|n| n.1).sum::<f64>() - 1.0).abs() > UNIT {
             return refuse("the weights do not sum to one");
         }
         Ok(())
@@ -123,6 +147,20 @@ impl ContactConstraint {
             .iter()
             .copied()
             .chain(partner.map(|&(node, weight)| (node, -weight)))
+    }
+
+    /// What sides add by turning, node by node as [`nodes`](Self::nodes); nothing where none does.
+    pub(crate) fn turns(&self) -> Vec<Matrix3<f64>> {
+        let sides = || std::iter::once((&self.side, 1.0)).chain(self.partner.iter().map(|p| (p, -1.0)));
+        if sides().all(|(side, _)| side.turn.is_empty()) {
+            return Vec::new();
+        }
+        let of = |(side, sign): (&Side, f64)| -> Vec<Matrix3<f64>> {
+            let turn = |k| side.turn.get(k).copied().unwrap_or_default();
+            let turns = (0..side.nodes.len()).map(turn);
+            turns.map(|t| Matrix3::from(t).transpose() * sign).collect()
+        };
+        sides().flat_map(of).collect()
     }
 
     /// Whether it is of a single node and a rigid obstacle.

@@ -183,6 +183,43 @@ fn supports_at_some_nodes_leave_the_row() {
     );
 }
 
+/// Matrices of a side are in its rows beside the mean, whatever supports hold.
+#[test]
+fn a_side_that_turns_adds_its_matrices() {
+    let b = Brick::new(1, 2);
+    let (own, top) = (b.bottom[7], b.mesh.nodes_on(brick::Z_MAX));
+    let turn = |s: f64| [[0.1 * s, 0.0, -0.3], [0.2, s, 0.0], [0.0, -0.4 * s, 0.5]];
+    let partner = side(&top[..2], &[0.75, 0.25]).with_turn(vec![turn(1.0), turn(-2.0)]);
+    let point = ContactConstraint::new(side(&[own], &[1.0]), frame());
+    let point = point.with_partner(Some(partner)).with_friction(true);
+    let held = NodeSupport::fixed(vec![top[1]]);
+    for supports in [vec![], vec![held]] {
+        let g = gluing(&b, &supports, std::slice::from_ref(&point)).unwrap();
+        let info = &g.contact()[0];
+        let direction = point.frame.normal;
+        for (node, weight, turn) in [
+            (own, 1.0, None),
+            (top[0], -0.75, Some(turn(1.0))),
+            (top[1], -0.25, Some(turn(-2.0))),
+        ] {
+            let mut found = [0.0; 3];
+            for (subdomain, dof, value) in g.row(info.row) {
+                if b.decomposition.subdomains()[subdomain].nodes[dof / 3] == node {
+                    found[dof % 3] += value / info.scale;
+                }
+            }
+            let mut expected = direction.map(|d| weight * d);
+            if let Some(turn) = turn {
+                (0..3).for_each(|c| expected[c] -= (0..3).map(|r| turn[r][c] * direction[r]).sum::<f64>());
+            }
+            if node == top[1] && !supports.is_empty() {
+                expected = [0.0; 3];
+            }
+            assert!(distance(&found, &expected) < 1e-14, "{node}: {found:?} {expected:?}");
+        }
+    }
+}
+
 #[test]
 fn a_list_of_one_node_is_the_node() {
     let b = Brick::new(1, 2);
@@ -210,6 +247,12 @@ fn bad_sides_are_named() {
     ] {
         let error = make(vec![point(&[1], &[1.0]), point(nodes, weights)]);
         assert!(matches!(error, TfetiError::BadSide { point: 1, .. }), "{error}");
+    }
+    let unit = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    for turn in [vec![unit], vec![unit, [[f64::NAN; 3]; 3]]] {
+        let turning = side(&[3, 4], &[0.5, 0.5]).with_turn(turn);
+        let error = make(vec![point(&[1], &[1.0]).with_partner(Some(turning))]);
+        assert!(matches!(error, TfetiError::BadSide { point: 0, .. }), "{error}");
     }
     let error = make(vec![point(&[3, 1 << 20], &[0.5, 0.5])]);
     assert!(matches!(error, TfetiError::UnknownNode { .. }), "{error}");
