@@ -126,6 +126,22 @@ pub(crate) const COUPLED_WAIT: usize = 4;
 pub(crate) const COUPLED_LOST: f64 = 10.0;
 pub(crate) const COUPLED_LEAST: f64 = 0.03;
 
+// Active set: the path of compliant constraints, where nothing was known at the start
+
+/// Estimated error over the first one from which on predictions lead away.
+pub(crate) const FAR: f64 = 100.0;
+/// The first compliance, in units of that of one component alone: plates of 20 to 50 times their thickness settle with
+/// it, or with the next.
+pub(crate) const START_COMPLIANCE: f64 = 1e3;
+pub(crate) const MORE_COMPLIANT: f64 = 100.0;
+/// Paths that are tried.
+pub(crate) const PATHS: usize = 2;
+/// Factor from one compliance to the next, and below which there is none.
+pub(crate) const LESS_COMPLIANT: f64 = 0.1;
+pub(crate) const LEAST_COMPLIANCE: f64 = 0.3;
+/// Error, relative, to which a problem on the path is solved.
+pub(crate) const ON_PATH: f64 = 0.1;
+
 // Active set: without progress
 
 /// Sets without progress after which the solved set tells what is active next, not the point moved to.

@@ -32,10 +32,9 @@ pub(crate) struct Goal {
     pub(crate) limits: Lengths,
     /// No more products than that in the whole solve.
     pub(crate) max_products: usize,
-    /// Whether to go on as long as the natural map of this `step` leaves the active set as it is, and `|x|` has
-    /// not outgrown its value at the start, `size`, by which the limits were set.
+    /// Whether to go on as long as the natural map leaves the active set as it is, and `|x|` has not outgrown its value
+    /// at the start, `size`, by which the limits were set.
     pub(crate) goes_on: bool,
-    pub(crate) step: f64,
     pub(crate) size: f64,
 }
 
@@ -111,7 +110,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
     /// Whether a move would change nothing: radii that follow, blocks or the limits.
     fn stays(&self, goal: &Goal) -> bool {
         let work = &*self.work;
-        let map = natural_map(self.problem, &work.residual, goal.step);
+        let map = natural_map(self.problem, &work.residual, self.step);
         self.problem.operator.norm(self.x) <= GROWN * goal.size
             && !work.coupling.follows(self.set, self.x)
             && work.active.stays(self.set, self.x, &map)
@@ -148,6 +147,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         let q = if coupled { &work.coupling.step } else { &work.p };
         let operator = self.problem.operator;
         operator.apply(q, &mut work.ap, &mut work.operator);
+        let constrained = work.restricted.len();
+        self.compliance.add(self.problem.scale, &q[..constrained], &mut work.ap);
         self.report.cg_steps += 1;
         coupled
     }

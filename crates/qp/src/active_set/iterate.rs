@@ -6,6 +6,7 @@ use crate::tolerances::MAY_SLIDE;
 use crate::vector;
 
 use super::balance::Search;
+use super::compliance::Compliance;
 use super::natural_map::NaturalMap;
 use super::problem::ActiveSetProblem;
 use super::settings::ActiveSetReport;
@@ -48,6 +49,10 @@ pub(crate) struct Iterate<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) ax: &'s mut [f64],
     pub(crate) work: &'s mut ActiveSetWorkspace<A, M>,
     pub(crate) report: ActiveSetReport,
+    /// Springs in series with the constrained components; `A` and `ax` are with them.
+    pub(crate) compliance: Compliance,
+    /// Step of the natural map.
+    pub(crate) step: f64,
 }
 
 impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'_, A, C, M> {
@@ -75,6 +80,9 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
     pub(crate) fn catch_up(&mut self) {
         let work = &mut *self.work;
         self.problem.operator.apply(&work.t, &mut work.ap, &mut work.operator);
+        let constrained = work.restricted.len();
+        self.compliance
+            .add(self.problem.scale, &work.t[..constrained], &mut work.ap);
         vector::axpy(1.0, &work.ap, self.ax);
         self.report.corrections += 1;
     }
@@ -83,6 +91,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
     pub(crate) fn multiply(&mut self) {
         let operator = self.problem.operator;
         operator.apply(self.x, self.ax, &mut self.work.operator);
+        let constrained = self.constrained();
+        self.compliance.add(self.problem.scale, &self.x[..constrained], self.ax);
         self.report.corrections += 1;
     }
 
@@ -93,21 +103,30 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         self.projector.project_gradient(residual);
     }
 
+    /// Another compliance of the constrained components; the product follows.
+    pub(crate) fn set_compliance(&mut self, c: f64) {
+        let (before, constrained) = (self.compliance, self.constrained());
+        let change = Compliance { c: c - before.c };
+        change.add(self.problem.scale, &self.x[..constrained], self.ax);
+        self.compliance = Compliance { c };
+        self.step *= self.compliance.share() / before.share();
+    }
+
     /// Classifies the blocks by the natural map.
-    pub(crate) fn classify(&mut self, step: f64) {
-        let map = natural_map(self.problem, &self.work.residual, step);
+    pub(crate) fn classify(&mut self) {
+        let map = natural_map(self.problem, &self.work.residual, self.step);
         self.work.active.classify(self.set, self.x, &map);
     }
 
     /// Tells the next classification what the natural map makes of the blocks here.
-    pub(crate) fn foresee(&mut self, step: f64) {
-        let map = natural_map(self.problem, &self.work.residual, step);
+    pub(crate) fn foresee(&mut self) {
+        let map = natural_map(self.problem, &self.work.residual, self.step);
         self.work.active.foresee(self.set, self.x, &map);
     }
 
     /// The same where the point has moved since the residual was computed.
-    pub(crate) fn foresee_moved(&mut self, step: f64) {
-        let map = natural_map(self.problem, &self.work.residual, step);
+    pub(crate) fn foresee_moved(&mut self) {
+        let map = natural_map(self.problem, &self.work.residual, self.step);
         self.work.active.foresee_moved(self.set, self.x, &map);
     }
 
@@ -136,10 +155,13 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         saved.copy_from_slice(&residual[..constrained]);
         residual[..constrained].copy_from_slice(restricted);
         active.damp(set, &mut residual[..constrained]);
+        self.compliance.damp(&mut residual[..constrained]);
         self.problem.preconditioner.apply(residual, z, scratch);
         let part = &mut z[..constrained];
         active.restrict(set, part);
         active.damp(set, part);
+        self.compliance.damp(part);
+        self.compliance.add_own(self.problem.scale, restricted, part);
         active.add_own(set, restricted, part);
         self.projector.project_step(z);
         self.report.preconditionings += 1;

@@ -2,7 +2,7 @@
 //! predicts the next choice.
 //!
 //! From above: `solver` (the loop), `moves` and `run` (what happens between one active set and the next), `descent`
-//! (safeguard where predictions run in circles), `cg` and `weights` (the linear problem), `iterate` (the point),
+//! (safeguard where predictions run in circles), `path` and `compliance` (springs that lead to a first set), `cg` and `weights` (the linear problem), `iterate` (the point),
 //! `balance` (modes that constraints alone stop), `coupling` (radii that follow), `natural_map`, `blocks` and `disc` (states);
 //! `problem`, `settings`, `view`.
 //!
@@ -12,12 +12,14 @@
 mod balance;
 mod blocks;
 mod cg;
+mod compliance;
 mod coupling;
 mod descent;
 mod disc;
 mod iterate;
 mod moves;
 mod natural_map;
+mod path;
 mod problem;
 mod run;
 mod settings;

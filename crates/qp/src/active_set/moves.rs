@@ -21,7 +21,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         let at = &mut self.at;
         at.work.before.copy_from_slice(&at.x[..constrained]);
         if self.safeguard.is_none() && self.repairs_suffice && self.progress.waited >= UNSURE {
-            at.foresee(self.settings.natural_step);
+            at.foresee();
         }
         self.moved.followed = (self.safeguard.is_none() || place.solved) && self.has_settled();
         if self.repairs_suffice {
@@ -29,7 +29,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         } else {
             self.settle_loose(false, self.moved.followed)?;
             if self.safeguard.is_none() && self.progress.waited >= UNSURE {
-                self.at.foresee_moved(self.settings.natural_step);
+                self.at.foresee_moved();
             }
         }
         let at = &mut self.at;
@@ -48,7 +48,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             self.settle_bounds();
         }
         let at = &mut self.at;
-        let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
+        let map = natural_map(at.problem, &at.work.residual, at.step);
         at.work.active.settle_discs(at.set, at.x, &map);
         Ok(())
     }
@@ -64,7 +64,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             let last = at.x[..constrained].to_vec();
             at.x[..constrained].copy_from_slice(&from);
             if !start {
-                let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
+                let map = natural_map(at.problem, &at.work.residual, at.step);
                 at.work.active.aim(at.set, at.x, &map);
                 let balances = at.project();
                 if round == rounds {
@@ -99,7 +99,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
 
     fn settle_bounds(&mut self) {
         let at = &mut self.at;
-        let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
+        let map = natural_map(at.problem, &at.work.residual, at.step);
         settle_bounds(at.set, at.x, &map);
     }
 
@@ -134,7 +134,11 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
     /// Whether the problem on the set is solved, and the move to the next one next to nothing.
     fn may_end(&self, place: &Place) -> bool {
         let short = self.moved.jump <= NEGLIGIBLE * place.limits.constrained;
-        short && self.moved.followed && self.left.within(place.limits) && self.safeguard.is_none()
+        self.at.compliance.c == 0.0
+            && short
+            && self.moved.followed
+            && self.left.within(place.limits)
+            && self.safeguard.is_none()
     }
 
     /// With a safeguard, where the set stayed: shortens the move until the cost falls, and holds blocks that stop it.

@@ -6,12 +6,13 @@ use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NEGLIGIBLE, PASSING_PART, PRESSED, PROGRESS, ROUNDED, SHRUNK,
+    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NEGLIGIBLE, ON_PATH, PASSING_PART, PRESSED, PROGRESS, ROUNDED, SHRUNK,
     SINK_ROUNDS, SMALL_PART, UNBALANCED,
 };
 use crate::vector;
 
 use super::cg::Goal;
+use super::compliance::{Compliance, Path};
 use super::descent::DescentSafeguard;
 use super::iterate::{Iterate, Lengths, natural_map};
 use super::problem::{ActiveSetHook, ActiveSetProblem};
@@ -24,7 +25,7 @@ pub(crate) struct Place {
     /// Residual times `z`.
     rho: f64,
     /// Estimated distance to the solution on the set.
-    errors: Lengths,
+    pub(crate) errors: Lengths,
     /// What it is to fall below.
     pub(crate) limits: Lengths,
     x_norm: f64,
@@ -64,6 +65,14 @@ pub(crate) struct Progress {
     pub(crate) waited: usize,
 }
 
+impl Progress {
+    pub(crate) const NONE: Self = Self {
+        best: f64::INFINITY,
+        last: f64::INFINITY,
+        waited: 0,
+    };
+}
+
 /// One solve: the iterate, and what it remembers of earlier active sets.
 pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) at: Iterate<'s, A, C, M>,
@@ -79,14 +88,15 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     /// Whether gaps alone can call for forces.
     unloaded: bool,
     /// Largest norm of `x` since `A x` was computed afresh.
-    peak: f64,
+    pub(crate) peak: f64,
     pub(crate) moved: LastMove,
     pub(crate) progress: Progress,
     /// Estimated errors when the last set was left, that of the constrained part when it was entered, and the least
     /// with which a set was entered.
     pub(crate) left: Lengths,
-    first_error: f64,
-    least_error: f64,
+    pub(crate) first_error: f64,
+    pub(crate) least_error: f64,
+    pub(crate) path: Path,
     /// Once predictions ran in circles.
     pub(crate) safeguard: Option<DescentSafeguard>,
 }
@@ -131,14 +141,11 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
                 drifted: false,
                 behind: false,
             },
-            progress: Progress {
-                best: f64::INFINITY,
-                last: f64::INFINITY,
-                waited: 0,
-            },
+            progress: Progress::NONE,
             left: Lengths::INFINITE,
             first_error: f64::INFINITY,
             least_error: f64::INFINITY,
+            path: Path::default(),
             safeguard: None,
             at: Iterate {
                 problem,
@@ -148,6 +155,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
                 ax,
                 work,
                 report: ActiveSetReport::new(),
+                compliance: Compliance::default(),
+                step: settings.natural_step,
             },
         }
     }
@@ -155,6 +164,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
     /// A feasible point that satisfies `G x = e`, a first active set and the product with the point.
     pub(crate) fn start(&mut self, ax_known: bool) -> Result<(), QpError> {
         self.at.mark();
+        self.path.unknown = !self.is_known();
         self.guess();
         let stopped = if self.repairs_suffice {
             self.at.set_weights(false)?.is_some()
@@ -232,7 +242,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let rounding = if nothing { ROUNDED * self.reach } else { 0.0 };
         let (at, settings) = (&mut self.at, self.settings);
         at.residual();
-        at.classify(settings.natural_step);
+        at.classify();
         let sparing = self.safeguard.is_some() && self.repairs_suffice;
         match at.hold_modes(sparing) {
             Ok(true) if at.projector.project_gradient_again(&mut at.work.residual) => {}
@@ -254,12 +264,16 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let part = vector::norm(&at.x[..at.constrained()]);
         let vanishes = part < settings.contact_error_floor;
         let part = part.max(SMALL_PART * all).max(settings.contact_error_floor);
-        let limits = Lengths {
-            all: (settings.tolerance * all).max(rounding),
-            constrained: (settings.tolerance * part).max(rounding),
+        let tolerance = match at.compliance.c {
+            0.0 => settings.tolerance,
+            _ => ON_PATH,
         };
-        at.report.error = ratio(errors.all, limits.all / settings.tolerance);
-        at.report.constrained_error = ratio(errors.constrained, limits.constrained / settings.tolerance);
+        let limits = Lengths {
+            all: (tolerance * all).max(rounding),
+            constrained: (tolerance * part).max(rounding),
+        };
+        at.report.error = ratio(errors.all, limits.all / tolerance);
+        at.report.constrained_error = ratio(errors.constrained, limits.constrained / tolerance);
         if !(errors.all.is_finite() && x_norm.is_finite()) {
             return Err(at.not_finite("the error estimate"));
         }
@@ -308,8 +322,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let current = self.safeguard.as_ref().is_none_or(|safeguard| safeguard.current);
         let moved = self.moved.length();
         let settled = at.report.active_sets == 0 || current && moved <= limit.max(f64::MIN_POSITIVE);
-        let map = natural_map(at.problem, &at.work.residual, self.settings.natural_step);
-        place.errors.within(place.limits)
+        let map = natural_map(at.problem, &at.work.residual, at.step);
+        at.compliance.c == 0.0
+            && place.errors.within(place.limits)
             && settled
             && at.set.violation(at.x) <= limit
             && 2.0 * at.work.active.crossing <= limit
@@ -397,7 +412,11 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         if self.progress.waited >= settings.patience.saturating_mul(LONGER) || held_up >= HELD_UP {
             return Some(Status::Stagnated);
         }
-        let longer = if self.safeguard.is_some() { LONGER } else { 1 };
+        let longer = if self.safeguard.is_some() || self.path.begun > 0 {
+            LONGER
+        } else {
+            1
+        };
         let most = settings.max_active_sets.saturating_mul(longer);
         let limit = report.active_sets >= most || report.products() >= settings.max_products;
         limit.then_some(Status::IterationLimit)
@@ -430,7 +449,6 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             limits: place.limits,
             max_products: self.settings.max_products,
             goes_on: self.safeguard.is_none(),
-            step: self.settings.natural_step,
             size: place.x_norm.max(self.settings.error_floor),
         };
         self.first_error = place.errors.constrained;
@@ -468,6 +486,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
     }
 
     pub(crate) fn finish(mut self, status: Status) -> ActiveSetReport {
+        self.leave_path();
         self.at.report.status = status;
         self.at.report
     }

@@ -7,7 +7,8 @@
 //! fallen by `forcing`; then `x - a g` tells which blocks are active next (a primal-dual active-set step), `x` is
 //! moved there, made to satisfy `G x = e` again, and one product keeps `A x` exact. That product is shared with the
 //! next step of conjugate gradients, of the length of the last one. A set of which much has just changed is not solved:
-//! this step leads over it.
+//! this step leads over it. Where predictions lead away or in circles from a start that told nothing, a path of
+//! compliant constraints leads to a first set ([`path`](super::path)).
 //!
 //! The error is the length of the preconditioned residual. After `patience` sets without progress they are solved
 //! more accurately, every move has to lower the cost, and the set follows the solution only where the problem with
@@ -72,9 +73,20 @@ pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrecon
         if run.catches_up() {
             continue;
         }
+        if run.hardens(&place) {
+            continue;
+        }
         run.note_progress(&place);
+        if run.wants_path(&place) {
+            run.begin_path();
+            continue;
+        }
         if run.in_circles() {
+            let anew = run.leave_path();
             run.start_safeguard();
+            if anew {
+                continue;
+            }
         }
         if let Some(status) = run.gives_up() {
             break status;

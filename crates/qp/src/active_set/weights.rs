@@ -31,6 +31,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
     fn weigh(&mut self, sparing: bool) -> Result<bool, QpError> {
         let work = &mut *self.work;
         work.active.weights(self.set, &mut work.w);
+        self.compliance.damp(&mut work.w);
         if sparing {
             work.lines.clear();
         } else {

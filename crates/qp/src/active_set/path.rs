@@ -1,0 +1,79 @@
+//! A path of compliant constraints to a first active set.
+//!
+//! Where a body bends easily, forces gather at the rim of what touches, and a set predicted from a solved one is no
+//! closer to the solution. [Springs](super::compliance) in series with the constrained components spread the forces, and
+//! with much compliance few predictions settle. From one such set to that of a tenth of it little changes, down to none
+//! (Moreau-Yosida regularisation with path-following: Hintermüller and Kunisch, SIAM J. Optim. 17, 2006). A change of
+//! the compliance costs no product, only its end one: large terms have rounded.
+
+use crate::problem::{ConvexSet, EqualityProjector, SymmetricOperator};
+use crate::tolerances::{FAR, LEAST_COMPLIANCE, LESS_COMPLIANT, MORE_COMPLIANT, PATHS, START_COMPLIANCE};
+
+use super::iterate::Lengths;
+use super::run::{Place, Progress, Run};
+use super::view::ActiveSetPreconditioner;
+
+impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, '_, A, C, M> {
+    /// Whether predictions lead away from a start that told nothing, or in circles, and a path is to be tried.
+    pub(crate) fn wants_path(&mut self, place: &Place) -> bool {
+        let first = *self.path.first.get_or_insert(place.errors.all);
+        let far = self.path.begun == 0 && place.errors.all > FAR * first;
+        self.path.unknown && self.path.begun < PATHS && self.safeguard.is_none() && (far || self.in_circles())
+    }
+
+    /// Begins the path, or one of more compliance, from no forces.
+    pub(crate) fn begin_path(&mut self) {
+        let at = &mut self.at;
+        let c = match self.path.begun {
+            0 => START_COMPLIANCE,
+            _ => START_COMPLIANCE.max(at.compliance.c) * MORE_COMPLIANT,
+        };
+        self.path.begun += 1;
+        at.x.fill(0.0);
+        at.set.project(at.x);
+        at.projector.balance(at.x, at.problem.rhs);
+        at.projector.repair(at.x, at.problem.rhs);
+        at.set_compliance(c);
+        at.multiply();
+        self.peak = at.problem.operator.norm(at.x);
+        self.begin_anew();
+    }
+
+    /// Where the problem with springs is solved: those of a tenth, in the end none. Whether they have changed.
+    pub(crate) fn hardens(&mut self, place: &Place) -> bool {
+        let c = self.at.compliance.c;
+        let tried = self.at.report.active_sets > self.path.since;
+        let hardens = c > 0.0 && tried && self.has_settled() && place.errors.within(place.limits);
+        if hardens {
+            let less = LESS_COMPLIANT * c;
+            if less >= LEAST_COMPLIANCE {
+                self.at.set_compliance(less);
+                self.begin_anew();
+            } else {
+                self.leave_path();
+            }
+        }
+        hardens
+    }
+
+    /// Ends the path: no springs. Whether there were any.
+    pub(crate) fn leave_path(&mut self) -> bool {
+        let on = self.at.compliance.c > 0.0;
+        if on {
+            self.at.set_compliance(0.0);
+            self.at.multiply();
+            self.begin_anew();
+        }
+        on
+    }
+
+    /// Another problem: nothing is known of errors.
+    fn begin_anew(&mut self) {
+        self.path.since = self.at.report.active_sets;
+        self.progress = Progress::NONE;
+        self.left = Lengths::INFINITE;
+        self.first_error = f64::INFINITY;
+        self.least_error = f64::INFINITY;
+        self.moved.behind = false;
+    }
+}
