@@ -336,3 +336,43 @@ fn a_column_stands_evenly() {
         }
     }
 }
+
+/// A body that stands on soft springs and is dragged by friction with another one: they take no part in what friction
+/// does, and cost no products. With stiff and soft parts, and alike, whatever the cut.
+#[test]
+fn soft_springs_beside_friction() {
+    for (stiff, softness) in [1.0, 10.0]
+        .into_iter()
+        .flat_map(|s| [1e-2, 1e-6, 1e-12].map(|k| (s, k)))
+    {
+        let other = block([1.0; 3], [4; 3]).map_points(|x| [x[0] + 1.0, x[1], x[2]]);
+        let mesh = with_second(&block([1.0; 3], [3; 3]), &other.expect("mesh"));
+        let region = |t: usize| u32::from(mesh.tet_points(t).iter().all(|p| p[0] < 0.4));
+        let regions = (0..mesh.tets().len()).map(region).collect();
+        let law = |factor: f64| Hooke::isotropic(factor * YOUNG, 0.3).expect("Hooke");
+        let materials = Materials::new(vec![(0, law(1.0)), (1, law(stiff))]).expect("materials");
+        let motion = Support::fixed(second(brick::X_MAX)).with_motion([-2e-3, 3e-4, -1e-3], ramp());
+        let scene = Scene::new(mesh.with_regions(regions).expect("regions"), materials)
+            .with_support(Support::components(brick::Z_MIN, [true, true, false]))
+            .with_spring(Spring::normal(brick::Z_MIN, softness * GROUND))
+            .with_support(motion)
+            .with_contact(Contact::between(second(brick::X_MIN), brick::X_MAX).with_friction(Friction::coulomb(0.3)))
+            .with_analysis(Analysis::quasistatic(1.0, 3));
+        let mut known: Option<Vec<f64>> = None;
+        for boxes in [[1, 1, 1], [6, 1, 1]] {
+            let what = format!("{stiff} {softness:e} {boxes:?}");
+            let (simulation, results) = run(scene.clone().with_boxes(boxes), Settings::default());
+            let products = simulation.counters().products;
+            assert!(products < 150, "{what}: {products}");
+            let reactions = simulation.result().expect("a step").reactions();
+            let lifted = reactions.springs[0].resultant.force[2];
+            let dragged = reactions.contacts[0].force;
+            assert!((lifted - dragged[2]).abs() < 1e-6 * dragged[0].abs(), "{what}");
+            let u = &results[2].displacement;
+            match &known {
+                Some(known) => assert_close(u, known, 1e-4, &what),
+                None => known = Some(u.clone()),
+            }
+        }
+    }
+}

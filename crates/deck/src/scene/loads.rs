@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use signorini_contact::Load;
 use signorini_fem_mesh::internal::distinct;
+use signorini_fem_mesh::vec3::{norm, scale, sub};
 use signorini_fem_mesh::{FacetTag, LoadDensity};
 
 use super::faces::{FaceTable, Known};
@@ -15,6 +16,9 @@ use crate::model::{Component, Condition, Conditions, DistributedKind, Given, Tar
 /// Most different pressures that get tags of their own. More become forces at nodes, which are the same for
 /// linear elements.
 const PRESSURES: usize = 100;
+
+/// Difference of unit vectors that is rounding of what a deck writes.
+const TURNED: f64 = 1e-5;
 
 /// Loads that share a history, by its position, and their place among all.
 type Groups<T> = BTreeMap<usize, (usize, T)>;
@@ -71,15 +75,17 @@ impl Loads {
         let mut forces = Tracks(BTreeMap::new());
         let mut pressures = Tracks(BTreeMap::new());
         let mut bodies = Tracks(BTreeMap::new());
-        let mut order = 0;
+        let (mut order, mut gravity) = (0, BTreeMap::new());
         for (step, given) in known.model.steps.iter().enumerate() {
             known.forces(&mut forces, step, &given.forces, &mut order)?;
             if given.distributed.removes() {
                 pressures.remove(step);
                 bodies.remove(step);
+                gravity.clear();
             }
             for line in &given.distributed.lines {
                 order += 1;
+                one_gravity(&mut gravity, line)?;
                 let to = (&mut pressures, &mut bodies);
                 known.distributed(to, (step, order), line, surfaces, faces)?;
             }
@@ -204,6 +210,24 @@ impl Loads {
         out.sort_by_key(|load| load.0);
         let load = |(_, density, history)| Load::new(density).with_history(self.histories.at(history));
         out.into_iter().map(load).collect()
+    }
+}
+
+/// Refuses gravity along another direction than before; `directions` are those that stand.
+fn one_gravity<'a>(
+    directions: &mut BTreeMap<&'a Target, [f64; 3]>,
+    line: &'a Condition<DistributedKind>,
+) -> Result<(), DeckError> {
+    let DistributedKind::Gravity(direction) = line.kind else {
+        return Ok(());
+    };
+    let unit = scale(1.0 / norm(direction), direction);
+    match directions.insert(&line.target, unit) {
+        Some(before) if norm(sub(before, unit)) > TURNED => Err(line.word.cannot(
+            "gravity along another direction stands there, which CalculiX keeps beside this and Abaqus replaces; give \
+            one vector, in a later step with OP=NEW",
+        )),
+        _ => Ok(()),
     }
 }
 

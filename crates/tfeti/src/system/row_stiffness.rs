@@ -122,9 +122,9 @@ impl Tfeti {
     }
 
     /// Weights of the rows for projectors where copies differ in stiffness: `1 / sum_d b_d² / K_dd`, relative to the
-    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one, and a contact
-    /// row that gives way in proportion to both together. `None` where all copies
-    /// [count alike](Self::copy_stiffness) and no contact row gives way. Without contact that is so only where the factor
+    /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one, and a row that
+    /// gives way in proportion to both together: a soft spring takes no part in what friction holds. `None` where all
+    /// copies [count alike](Self::copy_stiffness) and no row gives way. Without contact that is so only where the factor
     /// is not small (there weights save a product), and always on springs, whose small forces weights would hide.
     pub fn row_weights(&self) -> Option<Vec<f64>> {
         let (ranges, springs) = (self.gluing().ranges(), self.gluing().springs());
@@ -134,7 +134,7 @@ impl Tfeti {
         }
         let saves = !contact && self.subdomains() > 1 && self.coarse().rows() < SHORT_ROWS;
         let (plain, given) = (
-            !saves && self.copy_stiffness().is_plain(),
+            !saves && springs.is_empty() && self.copy_stiffness().is_plain(),
             self.gluing().contact_compliance(),
         );
         if plain && given.is_empty() {
@@ -154,8 +154,8 @@ impl Tfeti {
             return Some(soft.chain(std::iter::repeat_n(1.0, rest)).collect());
         }
         let mut weights: Vec<f64> = (0..self.dual_dim()).map(weight).collect();
-        for (weight, compliance) in weights.iter_mut().zip(given) {
-            *weight /= 1.0 + compliance * *weight;
+        for (row, compliance) in self.gluing().compliance() {
+            weights[row] /= 1.0 + compliance * weights[row];
         }
         let largest = weights.iter().fold(0.0_f64, |m, w| m.max(*w));
         for w in &mut weights {

@@ -1,7 +1,7 @@
 //! Supports, loads and times.
 
 use super::{behind, in_step, inside, refused};
-use crate::write::cube;
+use crate::write::{cube, read};
 
 #[test]
 fn supports() {
@@ -66,6 +66,15 @@ fn loads() {
     refused(&deck, "ALONE, 1, 1.", "ALONE", "no elastic element uses node 99");
     let deck = cube(&in_step("*DLOAD\nALL, GRAV, 9.8, 0., 0., -1.\n")).replace("*DENSITY\n7.8e-9\n", "");
     refused(&deck, "ALL, GRAV, 9.8, 0., 0., -1.", "ALL", "*DENSITY");
+    let (down, side) = ("ALL, GRAV, 9.8, 0., 0., -1.", "ALL, GRAV, 9.8, 1., 0., 0.");
+    let next = |op: &str, line: &str| format!("*STEP\n*STATIC\n*DLOAD{op}\n{line}\n*END STEP\n");
+    for second in [side, "ALL, GRAV, 9.8, 0., 0., 1."] {
+        let deck = cube(&(in_step(&format!("*DLOAD\n{down}\n")) + &next("", second)));
+        refused(&deck, second, "ALL", "OP=NEW");
+    }
+    for (op, second) in [(", OP=NEW", side), ("", "ALL, GRAV, 4.9, 0., 0., -2.")] {
+        read(&cube(&(in_step(&format!("*DLOAD\n{down}\n")) + &next(op, second)))).expect("deck");
+    }
     let two = "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n";
     let deck = cube(&format!(
         "{two}{}",
