@@ -47,7 +47,7 @@ fn short_cases_come_near_their_targets() {
     let hertz = findings.iter().find(|f| f.case == "two spheres").expect("two spheres");
     assert!(hertz.run.products <= 80, "{hertz:?}");
     // what supports of a thin body leave free is eliminated, and what is added to dependent rows of a joint is little
-    for (start, most) in [("plate", 400), ("press", 120), ("crack", 65), ("punch", 65)] {
+    for (start, most) in [("plate", 400), ("press", 140), ("crack", 65), ("punch", 65)] {
         let own = findings.iter().filter(|f| f.case.starts_with(start));
         let products: Vec<usize> = own.map(|f| f.run.products).collect();
         assert!(products.iter().all(|p| *p <= most), "{start}: {products:?}");

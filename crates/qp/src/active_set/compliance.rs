@@ -58,7 +58,7 @@ pub(crate) struct Path {
     pub(crate) begun: usize,
     /// Active sets when the compliance was changed.
     pub(crate) since: usize,
-    /// Estimated error on the first active set.
+    /// Estimated error on the first active set that was not solved when it was entered.
     pub(crate) first: Option<f64>,
 }
 

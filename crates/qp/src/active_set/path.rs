@@ -16,8 +16,10 @@ use super::view::ActiveSetPreconditioner;
 impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, '_, A, C, M> {
     /// Whether predictions lead away from a start that told nothing, or in circles, and a path is to be tried.
     pub(crate) fn wants_path(&mut self, place: &Place) -> bool {
-        let first = *self.path.first.get_or_insert(place.errors.all);
-        let far = self.path.begun == 0 && place.errors.all > FAR * first;
+        if self.path.first.is_none() && !place.errors.within(place.limits) {
+            self.path.first = Some(place.errors.all);
+        }
+        let far = self.path.begun == 0 && self.path.first.is_some_and(|first| place.errors.all > FAR * first);
         self.path.unknown && self.path.begun < PATHS && self.safeguard.is_none() && (far || self.in_circles())
     }
 
