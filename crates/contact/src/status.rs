@@ -136,11 +136,10 @@ impl fmt::Display for StepFailure {
             f,
             "step {step}, at {time} s, did not converge ({status}, certificate {certificate:.1e}, {condition}); "
         )?;
-        if let Some(Slide { body, node, force, .. }) = slide {
-            let motion = slide.map(|s| s.to_string()).unwrap_or_default();
+        if let Some(slide @ Slide { body, node, force, .. }) = slide {
             write!(
                 f,
-                "body {body} (with node {node}) slides away along {motion}, for want of {force:.3e} N; "
+                "body {body} (with node {node}) slides away along {slide}, for want of {force:.3e} N; "
             )?;
         }
         f.write_str(status.remedy())

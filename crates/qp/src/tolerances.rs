@@ -135,7 +135,7 @@ pub(crate) const FAR: f64 = 100.0;
 pub(crate) const START_COMPLIANCE: f64 = 1e3;
 pub(crate) const MORE_COMPLIANT: f64 = 100.0;
 /// Paths that are tried.
-pub(crate) const PATHS: usize = 2;
+pub(crate) const PATHS: i32 = 2;
 /// Factor from one compliance to the next, and below which there is none.
 pub(crate) const LESS_COMPLIANT: f64 = 0.1;
 pub(crate) const LEAST_COMPLIANCE: f64 = 0.3;

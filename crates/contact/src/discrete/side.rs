@@ -38,16 +38,16 @@ impl Sides {
         on_nodes(partner.unwrap_or(&self.own), self.sign(), force)
     }
 
-    /// What the displacement of one side relative to the other along a direction has beside that of [`nodes`](Self::nodes),
-    /// from what each node has along a vector.
-    pub(crate) fn turned(&self, direction: &[f64; 3], along: impl Fn(u32, &[f64; 3]) -> f64) -> f64 {
+    /// The displacement of the own side relative to the partner along a direction, from what each node has along a
+    /// vector.
+    pub(crate) fn way(&self, direction: &[f64; 3], along: impl Fn(u32, &[f64; 3]) -> f64) -> f64 {
+        let mean: f64 = self.nodes().map(|(node, weight)| weight * along(node, direction)).sum();
         let turns = self
             .partner
             .iter()
             .flat_map(|side| side.nodes().iter().zip(side.turn()));
-        -turns
-            .map(|((node, _), turn)| along(*node, &times(turn, direction)))
-            .sum::<f64>()
+        let turned = turns.map(|((node, _), turn)| along(*node, &times(turn, direction)));
+        mean - turned.sum::<f64>()
     }
 
     /// Sign of forces on the body that the scene names first.

@@ -227,13 +227,10 @@ fn gap_at_rest(result: &StepResult, point: usize) -> f64 {
 fn slip(result: &StepResult, point: usize, u: &[[f64; 3]]) -> [f64; 3] {
     let state = &result.recovered.points[point];
     let contact = &result.model.points[point];
-    let mut way = result.problem.pose(contact).drag(&contact.contact.centre).map(|w| -w);
-    for (node, weight) in contact.contact.sides.nodes() {
-        (0..3).for_each(|c| way[c] += weight * u[node as usize][c]);
-    }
-    for (way, axis) in way.iter_mut().zip(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]) {
-        *way += contact.contact.sides.turned(axis, |node, v| dot(&u[node as usize], v));
-    }
+    let drag = result.problem.pose(contact).drag(&contact.contact.centre);
+    let along = |node: u32, v: &[f64; 3]| dot(&u[node as usize], v);
+    let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    let way = [0, 1, 2].map(|c| contact.contact.sides.way(&axes[c], along) - drag[c]);
     let out: f64 = (0..3).map(|c| way[c] * state.normal[c]).sum();
     [0, 1, 2].map(|c| way[c] - out * state.normal[c])
 }

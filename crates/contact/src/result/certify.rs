@@ -91,10 +91,7 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
         let open = condition.gap_after(scene, &pose.copied().unwrap_or_default());
         // no gap at all is no gap that holds
         let open = open.unwrap_or(f64::NAN) + model.discrete.rounding;
-        let sides = condition.sides.nodes();
-        let mean: f64 = sides.map(|(node, weight)| weight * along(node, normal)).sum();
-        let way = mean + condition.sides.turned(normal, along);
-        let depth = way - open - model.given_way(point, m.lambda);
+        let depth = condition.sides.way(normal, along) - open - model.given_way(point, m.lambda);
         let copies = model.discrete.decomposition.copies(condition.node() as usize);
         let body = copies
             .first()

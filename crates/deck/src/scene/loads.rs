@@ -286,7 +286,7 @@ impl Known<'_> {
             DistributedKind::Gravity(direction) => {
                 // so that an unknown set is refused here
                 self.sets.elements.find(&line.target, word)?;
-                let length = direction.iter().map(|d| d * d).sum::<f64>().sqrt();
+                let length = norm(*direction);
                 for (c, d) in direction.iter().enumerate() {
                     let key = (line.target.clone(), true, c);
                     let value = given.value * (d / length);

@@ -3,6 +3,7 @@
 use rayon::prelude::*;
 
 use crate::quadrature;
+use crate::tables::distinct;
 use crate::tolerances::{CURVED, MID_OFF};
 use crate::vec3::{Vec3, add, cross, norm, scale, sub, tet_volume};
 
@@ -138,8 +139,7 @@ fn check_numbers(nodes: usize, tets: &[[u32; 4]], mids: &[[u32; 6]]) -> Result<(
             edges.push(([a.min(b), a.max(b)], node));
         }
     }
-    edges.sort_unstable();
-    edges.dedup();
+    let mut edges = distinct(edges);
     if let Some(w) = edges.windows(2).find(|w| w[0].0 == w[1].0) {
         let (edge, first, second) = (w[0].0, w[0].1, w[1].1);
         return Err(MeshError::MidNodesOfEdge { edge, first, second });

@@ -17,6 +17,7 @@ use std::collections::BinaryHeap;
 use super::estimate::DiscretisationError;
 use crate::fields::{FieldError, expect_entries};
 use crate::mesh::TetMesh;
+use crate::tables::distinct;
 use crate::tolerances::{COARSENED, GROWTH, REFINED};
 use crate::vec3::{norm, sub};
 
@@ -83,8 +84,7 @@ fn limit_growth(mesh: &TetMesh, sizes: &mut [f64]) {
             ends.extend((1..4).map(|k| [tet[a], tet[(a + k) % 4]]));
         }
     }
-    ends.sort_unstable();
-    ends.dedup();
+    let ends = distinct(ends);
     // positive numbers are ordered as their bits
     let entry = |node: u32, size: f64| Reverse((size.to_bits(), node));
     let mut queue: BinaryHeap<_> = (0..).zip(&*sizes).map(|(node, size)| entry(node, *size)).collect();

@@ -145,10 +145,9 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             work.coupling.extend(self.projector, self.set, &work.active, &work.p);
         }
         let q = if coupled { &work.coupling.step } else { &work.p };
-        let operator = self.problem.operator;
-        operator.apply(q, &mut work.ap, &mut work.operator);
-        let constrained = work.restricted.len();
-        self.compliance.add(self.problem.scale, &q[..constrained], &mut work.ap);
+        let part = work.restricted.len();
+        self.compliance
+            .apply(self.problem, part, q, &mut work.ap, &mut work.operator);
         self.report.cg_steps += 1;
         coupled
     }

@@ -4,7 +4,10 @@
 //! preconditioner and the weight of the projector by the share `1 / (1 + c)`, as with the curvature of a disc, and the
 //! step of the natural map.
 
+use crate::problem::SymmetricOperator;
 use crate::vector;
+
+use super::problem::ActiveSetProblem;
 
 /// Springs in series with the constrained components.
 #[derive(Debug, Default, Clone, Copy)]
@@ -17,6 +20,19 @@ impl Compliance {
     /// Part of a constrained component's own compliance in that with its spring.
     pub(crate) fn share(self) -> f64 {
         1.0 / (1.0 + self.c)
+    }
+
+    /// `av = A v` with the springs of the first so many components.
+    pub(crate) fn apply<A: SymmetricOperator, M>(
+        self,
+        problem: &ActiveSetProblem<'_, A, M>,
+        constrained: usize,
+        v: &[f64],
+        av: &mut [f64],
+        scratch: &mut A::Scratch,
+    ) {
+        problem.operator.apply(v, av, scratch);
+        self.add(problem.scale, &v[..constrained], av);
     }
 
     /// `av += c / scale * v`.
@@ -55,7 +71,7 @@ pub(crate) struct Path {
     /// Whether the start told nothing of the constrained components: else it is closer than any path.
     pub(crate) unknown: bool,
     /// Times that a path was begun.
-    pub(crate) begun: usize,
+    pub(crate) begun: i32,
     /// Active sets when the compliance was changed.
     pub(crate) since: usize,
     /// Estimated error on the first active set that was not solved when it was entered.

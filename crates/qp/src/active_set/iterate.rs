@@ -79,20 +79,18 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
     /// The same after a move that was too short: `ax += A t`, where `t` is that move.
     pub(crate) fn catch_up(&mut self) {
         let work = &mut *self.work;
-        self.problem.operator.apply(&work.t, &mut work.ap, &mut work.operator);
-        let constrained = work.restricted.len();
+        let part = work.restricted.len();
         self.compliance
-            .add(self.problem.scale, &work.t[..constrained], &mut work.ap);
+            .apply(self.problem, part, &work.t, &mut work.ap, &mut work.operator);
         vector::axpy(1.0, &work.ap, self.ax);
         self.report.corrections += 1;
     }
 
     /// `ax = A x`.
     pub(crate) fn multiply(&mut self) {
-        let operator = self.problem.operator;
-        operator.apply(self.x, self.ax, &mut self.work.operator);
-        let constrained = self.constrained();
-        self.compliance.add(self.problem.scale, &self.x[..constrained], self.ax);
+        let part = self.constrained();
+        self.compliance
+            .apply(self.problem, part, self.x, self.ax, &mut self.work.operator);
         self.report.corrections += 1;
     }
 

@@ -4,7 +4,7 @@
 //! closer to the solution. [Springs](super::compliance) in series with the constrained components spread the forces, and
 //! with much compliance few predictions settle. From one such set to that of a tenth of it little changes, down to none
 //! (Moreau-Yosida regularisation with path-following: Hintermüller and Kunisch, SIAM J. Optim. 17, 2006). A change of
-//! the compliance costs no product, only its end one: large terms have rounded.
+//! the compliance costs no product, only its end one, for large terms have rounded.
 
 use crate::problem::{ConvexSet, EqualityProjector, SymmetricOperator};
 use crate::tolerances::{FAR, LEAST_COMPLIANCE, LESS_COMPLIANT, MORE_COMPLIANT, PATHS, START_COMPLIANCE};
@@ -26,10 +26,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
     /// Begins the path, or one of more compliance, from no forces.
     pub(crate) fn begin_path(&mut self) {
         let at = &mut self.at;
-        let c = match self.path.begun {
-            0 => START_COMPLIANCE,
-            _ => START_COMPLIANCE.max(at.compliance.c) * MORE_COMPLIANT,
-        };
+        let c = START_COMPLIANCE * MORE_COMPLIANT.powi(self.path.begun);
         self.path.begun += 1;
         at.x.fill(0.0);
         at.set.project(at.x);

@@ -5,6 +5,7 @@ use crate::subdomain::inverse::Inverse;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{SAMPLE, SHORT_ROWS};
 use rayon::prelude::*;
+use signorini_fem_mesh::internal::distinct;
 use std::ops::Range;
 
 /// Subdomain, unknown and coefficient in a row.
@@ -33,13 +34,12 @@ impl Tfeti {
         for (subdomain, dof, _) in rows.clone().flat_map(|row| self.gluing().row(row)) {
             nodes[subdomains.class(subdomain)].push(dof / 3);
         }
-        let of_class = |(class, mut nodes): (usize, Vec<usize>)| {
+        let of_class = |(class, nodes): (usize, Vec<usize>)| {
             let inverse = parts.inverses[class].as_ref()?;
             Some(match &inverse.boundary {
                 Some(block) => Compliance::Block(block),
                 None => {
-                    nodes.sort_unstable();
-                    nodes.dedup();
+                    let nodes = distinct(nodes);
                     Compliance::Sample(self.sample_compliance(class, &inverse.full, &nodes))
                 }
             })
