@@ -93,6 +93,12 @@ pub(crate) const NEGLIGIBLE: f64 = 0.03;
 
 /// Most steps: where more are needed, rounding has taken over or the set is not worth it.
 pub(crate) const MOST_STEPS: usize = 500;
+/// The same on the path of compliant constraints: its problems are badly conditioned, and need not be solved well.
+pub(crate) const MOST_STEPS_ON_PATH: usize = 50;
+/// Error over that at the start of a set from which on steps may lead away for good, and the longest step then, over
+/// `|x|`. Small enough that the rest of the set still tells something.
+pub(crate) const ASTRAY: f64 = 4.0;
+pub(crate) const ASTRAY_STEP: f64 = 0.1;
 /// Part of the tolerance below which further steps buy nothing: the move after them brings some of it back.
 pub(crate) const ENOUGH: f64 = 0.6;
 /// Estimated error over `|x|` from which on the next set would be predicted from next to nothing but error, as in thin
@@ -126,7 +132,7 @@ pub(crate) const COUPLED_WAIT: usize = 4;
 pub(crate) const COUPLED_LOST: f64 = 10.0;
 pub(crate) const COUPLED_LEAST: f64 = 0.03;
 
-// Active set: the path of compliant constraints, where nothing was known at the start
+// Active set: the path of compliant constraints
 
 /// Estimated error over the first one from which on predictions lead away.
 pub(crate) const FAR: f64 = 100.0;

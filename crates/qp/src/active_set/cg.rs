@@ -17,7 +17,8 @@
 use crate::error::QpError;
 use crate::problem::{EqualityProjector, SymmetricOperator};
 use crate::tolerances::{
-    ENOUGH, GROWN, MOST_STEPS, NEGATIVE_CURVATURE, PASSING, PASSING_STEP, ROUNDED_STEPS, TAMED, WILD,
+    ASTRAY, ASTRAY_STEP, ENOUGH, GROWN, MOST_STEPS, MOST_STEPS_ON_PATH, NEGATIVE_CURVATURE, PASSING, PASSING_STEP,
+    ROUNDED_STEPS, TAMED, WILD,
 };
 use crate::vector;
 
@@ -56,11 +57,11 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             })
         };
         let mut enough = fallen(start);
-        // without constraints there is no other set
-        let most = if self.constrained() == 0 {
-            usize::MAX
-        } else {
-            MOST_STEPS
+        let most = match self.compliance.c > 0.0 {
+            // without constraints there is no other set
+            _ if self.constrained() == 0 => usize::MAX,
+            true => MOST_STEPS_ON_PATH,
+            false => MOST_STEPS,
         };
         let last = goal.max_products.min(self.report.products().saturating_add(most));
         self.first_direction();
@@ -71,7 +72,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             let Some(curvature) = self.curvature(coupled)? else {
                 break;
             };
-            let length = rho / curvature;
+            let longest = self.longest_step(first.all, goal.size, coupled);
+            let length = longest.min(rho / curvature);
             self.work.length = length;
             self.advance(length, coupled);
             // a direction that is coupled or rounded is kept conjugate to the last one
@@ -100,11 +102,23 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
                 }
                 return Ok(if more { length } else { 0.0 });
             }
-            if self.work.coupling.too_strong(steps, first.all, errors.all) {
+            if length == longest || self.work.coupling.too_strong(steps, first.all, errors.all) {
                 break;
             }
         }
         Ok(0.0)
+    }
+
+    /// Length of a step that is the last one on this set. Where rows that are free depend on one another, as those of a
+    /// support and of a point that sticks at one node, a set does not determine all forces, and conjugate gradients
+    /// lead far away while the error grows: a part of that way tells which rows cannot be free.
+    fn longest_step(&self, first_error: f64, size: f64, coupled: bool) -> f64 {
+        if self.work.z_norm <= ASTRAY * first_error {
+            return f64::INFINITY;
+        }
+        let work = &self.work;
+        let q = if coupled { &work.coupling.step } else { &work.p };
+        ASTRAY_STEP * size / self.problem.operator.norm(q)
     }
 
     /// Whether a move would change nothing: radii that follow, blocks or the limits.

@@ -68,7 +68,7 @@ impl Compliance {
 /// What a solve remembers of its path.
 #[derive(Debug, Default)]
 pub(crate) struct Path {
-    /// Whether the start told nothing of the constrained components: else it is closer than any path.
+    /// Whether the start told nothing of the constrained components.
     pub(crate) unknown: bool,
     /// Times that a path was begun.
     pub(crate) begun: i32,

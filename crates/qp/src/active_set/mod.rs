@@ -2,7 +2,7 @@
 //! predicts the next choice.
 //!
 //! From above: `solver` (the loop), `moves` and `run` (what happens between one active set and the next), `descent`
-//! (safeguard where predictions run in circles), `path` and `compliance` (springs that lead to a first set), `cg` and
+//! (safeguard where predictions run in circles), `path` and `compliance` (springs that lead to another set), `cg` and
 //! `weights` (the linear problem), `iterate` (the point), `balance` (modes that constraints alone stop), `coupling` (radii
 //! that follow), `natural_map`, `blocks` and `disc` (states); `problem`, `settings`, `view`.
 //!

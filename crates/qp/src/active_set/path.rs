@@ -1,4 +1,4 @@
-//! A path of compliant constraints to a first active set.
+//! A path of compliant constraints to an active set where predictions fail.
 //!
 //! Where a body bends easily, forces gather at the rim of what touches, and a set predicted from a solved one is no
 //! closer to the solution. [Springs](super::compliance) in series with the constrained components spread the forces, and
@@ -14,13 +14,14 @@ use super::run::{Place, Progress, Run};
 use super::view::ActiveSetPreconditioner;
 
 impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, '_, A, C, M> {
-    /// Whether predictions lead away from a start that told nothing, or in circles, and a path is to be tried.
+    /// Whether predictions run in circles, or away from a start that told nothing, and a path is to be tried.
     pub(crate) fn wants_path(&mut self, place: &Place) -> bool {
         if self.path.first.is_none() && !place.errors.within(place.limits) {
             self.path.first = Some(place.errors.all);
         }
         let far = self.path.begun == 0 && self.path.first.is_some_and(|first| place.errors.all > FAR * first);
-        self.path.unknown && self.path.begun < PATHS && self.safeguard.is_none() && (far || self.in_circles())
+        let lost = self.path.unknown && far || self.in_circles();
+        lost && self.path.begun < PATHS && self.safeguard.is_none()
     }
 
     /// Begins the path, or one of more compliance, from no forces.

@@ -7,8 +7,8 @@
 //! fallen by `forcing`; then `x - a g` tells which blocks are active next (a primal-dual active-set step), `x` is
 //! moved there, made to satisfy `G x = e` again, and one product keeps `A x` exact. That product is shared with the
 //! next step of conjugate gradients, of the length of the last one. A set of which much has just changed is not solved:
-//! this step leads over it. Where predictions lead away or in circles from a start that told nothing, a path of
-//! compliant constraints leads to a first set ([`path`](super::path)).
+//! this step leads over it. Where predictions run in circles, or away from a start that told nothing, a path
+//! of compliant constraints leads to another set ([`path`](super::path)).
 //!
 //! The error is the length of the preconditioned residual. After `patience` sets without progress they are solved
 //! more accurately, every move has to lower the cost, and the set follows the solution only where the problem with
