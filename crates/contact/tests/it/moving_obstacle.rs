@@ -193,3 +193,23 @@ fn a_run_over_a_moving_plate_continues() {
         assert_eq!(a.summary.obstacle_work, b.summary.obstacle_work);
     }
 }
+
+/// A block that friction alone holds between a floor and a plate that comes down: forces grow in proportion, and no
+/// step after the first has anything to solve, whether points stick among those that slide or none does.
+#[test]
+fn what_is_squeezed_in_proportion_is_solved_before_it_starts() {
+    let block = |cells| Brick::new([1.5, 1.0, 1.0], cells).perturbed(0.15, 7).build();
+    for (cells, boxes, coefficient) in [([6, 4, 4], [1, 1, 1], 0.3), ([9, 6, 6], [3, 2, 2], 0.1)] {
+        let rough = |tag| Contact::rigid(tag).with_friction(Friction::coulomb(coefficient));
+        let scene = Scene::new(block(cells).expect("mesh"), uniform(1e3, 0.4))
+            .with_contact(rough(brick::Z_MIN))
+            .with_contact(rough(brick::Z_MAX).with_motion([0.0, 0.0, -0.05], ramp()))
+            .with_boxes(boxes)
+            .with_analysis(Analysis::quasistatic(1.0, 4));
+        let (_, results) = run(scene, Settings::default());
+        assert!(results.iter().all(|r| r.summary.slip > 0));
+        assert_eq!(results[3].summary.slip < results[3].summary.active, coefficient == 0.3);
+        let products: Vec<usize> = results.iter().map(|r| r.report.counters.products).collect();
+        assert_eq!(products[1..], [2; 3], "{products:?}");
+    }
+}

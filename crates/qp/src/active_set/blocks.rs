@@ -9,7 +9,7 @@
 use crate::problem::{LineWeight, ProductSet, for_bounds, for_discs};
 use crate::tolerances::MAY_SLIDE;
 
-use super::disc::Disc;
+use super::disc::{Disc, along_circle};
 
 /// Classification of all blocks; unconstrained components are free and not stored.
 #[derive(Debug, Default)]
@@ -62,6 +62,16 @@ impl ActiveSet {
         for_discs(set, |i, k, radius| {
             let inside = radius > 0.0 && x[i].hypot(x[i + 1]) < radius * (1.0 - MAY_SLIDE);
             self.discs[k] = if inside { Disc::Free } else { Disc::Fixed };
+        });
+    }
+
+    /// After a [guess](Self::guess): points on their circle slide along it. Where all do, these directions alone tell
+    /// how far a body has gone.
+    pub(crate) fn guess_sliding(&mut self, set: &ProductSet, x: &[f64]) {
+        for_discs(set, |i, k, radius| {
+            if self.discs[k] == Disc::Fixed && radius > 0.0 {
+                self.discs[k] = along_circle([x[i], x[i + 1]], radius);
+            }
         });
     }
 

@@ -7,6 +7,7 @@ use crate::vector;
 
 use super::balance::Search;
 use super::compliance::Compliance;
+use super::disc::Disc;
 use super::natural_map::NaturalMap;
 use super::problem::ActiveSetProblem;
 use super::settings::ActiveSetReport;
@@ -211,19 +212,21 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
     }
 
     /// The same for the start of a solve: components at their bounds stay there, and points on their circles stay on
-    /// them. Leaves `x` alone and returns false if the others do not suffice.
+    /// them, as do those that the last guess found there: radii that follow a balance leave them inside by rounding.
+    /// Leaves `x` alone and returns false if the others do not suffice.
     pub(crate) fn project_start(&mut self) -> bool {
         let constrained = self.constrained();
         let mut y = self.x[..constrained].to_vec();
         let mut lengths = self.problem.scale[..constrained].to_vec();
+        let discs = &self.work.active.discs;
         for_constrained(self.set, |block| match block {
             Constrained::Bound { i, lower, upper, .. } => {
                 if y[i] <= lower || y[i] >= upper {
                     lengths[i] = 0.0;
                 }
             }
-            Constrained::Disc { i, radius, .. } => {
-                if y[i].hypot(y[i + 1]) >= radius * (1.0 - MAY_SLIDE) {
+            Constrained::Disc { i, k, radius } => {
+                if discs[k] == Disc::Fixed || y[i].hypot(y[i + 1]) >= radius * (1.0 - MAY_SLIDE) {
                     y[i..i + 2].iter_mut().for_each(|y| *y *= 2.0);
                 }
             }

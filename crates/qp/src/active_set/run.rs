@@ -184,6 +184,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         if !self.repairs_suffice {
             self.settle_loose(true, true)?;
             self.at.work.active.guess(self.at.set, self.at.x);
+            if stopped {
+                self.at.work.active.guess_sliding(self.at.set, self.at.x);
+            }
         }
         if !(stopped && self.repairs_suffice) && self.at.set_weights(false)?.is_none() {
             self.at.set_all_free()?;
