@@ -77,6 +77,8 @@ pub(crate) const CG_ROUNDING: f64 = 1e-8;
 /// Distance from a circle, over the radius, at which a point may slide. Wider than [`ON_CIRCLE`]: projectors round
 /// more.
 pub(crate) const MAY_SLIDE: f64 = 1e-9;
+/// The same for points that a solve begins with: radii that follow a balance leave them a little inside.
+pub(crate) const SLID: f64 = 1e-6;
 /// Part of `x`, or of what the natural map moves `x = 0` by, that is rounding, in `x` and in its errors.
 pub(crate) const ROUNDED: f64 = 1e-14;
 /// Way inwards by the natural map, over the radius, that takes a point across its circle. Points that give way together

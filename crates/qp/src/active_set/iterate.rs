@@ -2,12 +2,11 @@
 
 use crate::error::QpError;
 use crate::problem::{Constrained, ConvexSet, EqualityProjector, ProductSet, SymmetricOperator, for_constrained};
-use crate::tolerances::MAY_SLIDE;
+use crate::tolerances::SLID;
 use crate::vector;
 
 use super::balance::Search;
 use super::compliance::Compliance;
-use super::disc::Disc;
 use super::natural_map::NaturalMap;
 use super::problem::ActiveSetProblem;
 use super::settings::ActiveSetReport;
@@ -212,21 +211,19 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
     }
 
     /// The same for the start of a solve: components at their bounds stay there, and points on their circles stay on
-    /// them, as do those that the last guess found there: radii that follow a balance leave them inside by rounding.
-    /// Leaves `x` alone and returns false if the others do not suffice.
+    /// them. Leaves `x` alone and returns false if the others do not suffice.
     pub(crate) fn project_start(&mut self) -> bool {
         let constrained = self.constrained();
         let mut y = self.x[..constrained].to_vec();
         let mut lengths = self.problem.scale[..constrained].to_vec();
-        let discs = &self.work.active.discs;
         for_constrained(self.set, |block| match block {
             Constrained::Bound { i, lower, upper, .. } => {
                 if y[i] <= lower || y[i] >= upper {
                     lengths[i] = 0.0;
                 }
             }
-            Constrained::Disc { i, k, radius } => {
-                if discs[k] == Disc::Fixed || y[i].hypot(y[i + 1]) >= radius * (1.0 - MAY_SLIDE) {
+            Constrained::Disc { i, radius, .. } => {
+                if y[i].hypot(y[i + 1]) >= radius * (1.0 - SLID) {
                     y[i..i + 2].iter_mut().for_each(|y| *y *= 2.0);
                 }
             }

@@ -75,5 +75,6 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         self.first_error = f64::INFINITY;
         self.least_error = f64::INFINITY;
         self.moved.behind = false;
+        self.moved.unbalanced = 0;
     }
 }

@@ -394,7 +394,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
 
     /// Whether predictions without a safeguard have made no progress for too long.
     pub(crate) fn in_circles(&self) -> bool {
-        self.progress.waited >= self.settings.patience && self.safeguard.is_none()
+        let (patience, on_path) = (self.settings.patience, self.at.compliance.c > 0.0);
+        let waited = self.progress.waited >= patience || on_path && self.moved.unbalanced >= patience;
+        waited && self.safeguard.is_none()
     }
 
     /// From now on the problem on a set is solved better, and moves have to descend.
