@@ -75,7 +75,10 @@ impl Contact {
     }
 
     /// Contact with a rigid obstacle of any shape: at each node the normal is that of the obstacle, against the
-    /// gradient of its distance, and the gap is the distance.
+    /// gradient of its distance, and the gap is the distance. On an edge or corner of a
+    /// [surface](Obstacle::surface) it is, of those between the normals of its facets, nearest to the body's own. Nodes
+    /// that do not face the obstacle (by less than a tenth, the cosine to the body's own normal) have no point: a flat
+    /// side slides over an edge beside it.
     ///
     /// [`with_normal`](Self::with_normal) and [`with_body_normals`](Self::with_body_normals) take another direction,
     /// along which the gap is then measured; [`with_gap`](Self::with_gap) takes another gap. Normals are those of body
