@@ -248,7 +248,16 @@ impl Contact {
         };
         let all = times.iter().copied();
         let mut poses: Vec<Pose> = match &self.rotation {
-            Some(rotation) => Pose::turning(rotation, all.map(|t| (shift(t), rotation.angle.value(t)))),
+            Some(rotation) => {
+                let mut way = self.kinks(rotation, times);
+                way.extend(all);
+                way.sort_by(f64::total_cmp);
+                way.dedup();
+                let poses = Pose::turning(rotation, way.iter().map(|&t| (shift(t), rotation.angle.value(t))));
+                let reached = |time: &f64| times.binary_search_by(|t| t.total_cmp(time)).is_ok();
+                let reached = way.iter().zip(poses).filter(|(time, _)| reached(time));
+                reached.map(|(_, pose)| pose).collect()
+            }
             None if self.motion.is_some() => all.map(|t| Pose::shifted(shift(t))).collect(),
             None if self.gap_history.is_some() => vec![Pose::default(); times.len()],
             None => Vec::new(),
@@ -258,6 +267,15 @@ impl Contact {
             with_times.for_each(|(pose, time)| pose.factor = history.value(*time));
         }
         poses
+    }
+
+    /// Times up to the last one at which an obstacle that is displaced and turns changes its way: points of its tables.
+    fn kinks(&self, rotation: &Rotation, times: &[f64]) -> Vec<f64> {
+        let (Some((_, course)), Some(&last)) = (&self.motion, times.last()) else {
+            return Vec::new();
+        };
+        let points = course.points().iter().chain(rotation.angle.points());
+        points.map(|p| p.0).filter(|t| (0.0..last).contains(t)).collect()
     }
 
     /// The same before the first step.
