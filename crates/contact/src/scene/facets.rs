@@ -75,7 +75,7 @@ impl Facets {
         let mut facets = Vec::with_capacity(triangles.len());
         let mut at_node = vec![[0.0; 3]; points.len()];
         let mut at_edge: HashMap<[u32; 2], Edge> = HashMap::new();
-        let same = first_at_place(points);
+        let (same, mut turns) = (first_at_place(points), HashSet::new());
         for (k, triangle) in triangles.iter().enumerate() {
             if triangle.iter().any(|&n| n as usize >= points.len()) {
                 return Err(wrong(k, "names a node that does not exist"));
@@ -89,6 +89,13 @@ impl Facets {
             let normal = scale(1.0 / norm(area), area);
             if !is_finite(normal) {
                 return Err(wrong(k, "has no area"));
+            }
+            let [a, b, c] = *triangle;
+            if turns.contains(&cyclic([a, c, b])) {
+                return Err(wrong(k, "lies on another one and turns the other way round"));
+            }
+            if !turns.insert(cyclic(*triangle)) {
+                continue;
             }
             for c in 0..3 {
                 let [a, b, d] = [0, 1, 2].map(|i| corners[(c + i) % 3]);
@@ -220,6 +227,15 @@ impl Edge {
             [(_, a), (later, b)] if a == b => Some(later),
             _ => None,
         }
+    }
+}
+
+/// The corners of a triangle, the smallest number first.
+fn cyclic([a, b, c]: [u32; 3]) -> [u32; 3] {
+    match a.min(b).min(c) {
+        least if least == a => [a, b, c],
+        least if least == b => [b, c, a],
+        _ => [c, a, b],
     }
 }
 
@@ -409,6 +425,14 @@ mod tests {
     #[test]
     fn facets_that_turn_unlike_their_neighbours_are_refused() {
         let (points, mut triangles) = cube_triangles();
+        // a sheet with two sides; the same facet twice is one
+        let two = Facets::new(&points, &[[0, 1, 2], [1, 0, 2]]).err();
+        assert!(
+            matches!(two, Some(ContactError::ObstacleFacet { facet: 1, .. })),
+            "{two:?}"
+        );
+        let twice = Facets::new(&points, &[[0, 1, 2], [2, 0, 1]]).expect("a sheet");
+        assert_eq!(twice.distance([3.0, 0.0, 0.0], 1.0, None).0, 1.0);
         triangles[4].swap(0, 1);
         let found = Facets::new(&points, &triangles).err();
         assert!(
