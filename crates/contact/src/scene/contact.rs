@@ -171,10 +171,10 @@ impl Contact {
         self
     }
 
-    /// The gap changes in time: it is `history(t)` times what [`with_gap`](Self::with_gap), a field or the coordinates
-    /// say. A press fit grows from nothing by a negative gap and a ramp; a factor that changes its sign opens or closes
-    /// again. Before the first step the factor is that at time 0. For obstacles and between bodies. What the growing
-    /// interference does to the bodies is part of
+    /// The gap changes in time: it is `history(t)` times what [`with_gap`](Self::with_gap), a field, a shape or the
+    /// coordinates say; what an obstacle opens by moving is not multiplied. A press fit grows from nothing by a negative
+    /// gap and a ramp; a factor that changes its sign opens or closes again. Before the first step the factor is that at
+    /// time 0. For obstacles and between bodies. What the growing interference does to the bodies is part of
     /// [`obstacle_work`](crate::result::ContactSummary::obstacle_work).
     pub fn with_gap_history(mut self, history: History) -> Self {
         self.gap_history = Some(history);
@@ -401,7 +401,9 @@ impl Contact {
         match &self.gap {
             Gap::Obstacle => {
                 let whole = at(pose.origin(&position), &pose.back(normal))?;
-                Ok(pose.factor * whole - vector::dot(&pose.drag(&position), normal))
+                let way = vector::dot(&pose.way(&position), normal);
+                let whole = whole + (pose.factor - 1.0) * (whole - way);
+                Ok(whole - vector::dot(&pose.drag(&position), normal))
             }
             Gap::Field(_) => {
                 let way = pose.way(&position);
