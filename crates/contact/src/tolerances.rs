@@ -43,6 +43,10 @@ pub(crate) const NEWTON: usize = 50;
 /// Rounding of a distance to an obstacle, over the distances and lengths that it is made of.
 pub(crate) const RAY: f64 = 1e-13;
 
+/// Distance from an edge of the surface of an obstacle, over the edge of its facet, up to which a place is on it: files
+/// have nine digits.
+pub(crate) const RIM: f64 = 1e-9;
+
 /// Part of the way along a normal that must lead towards an obstacle to reach it.
 pub(crate) const STEEP: f64 = 0.05;
 
@@ -66,7 +70,7 @@ pub(crate) const TILT: f64 = 0.1;
 /// The most of that, over the size of the facets.
 pub(crate) const MOST_TILT: f64 = 0.2;
 
-/// Cosine between a normal and that of the other side reversed above which they face each other.
+/// Cosine between a normal and that of the other side, or of an obstacle, reversed above which they face each other.
 pub(crate) const FACING: f64 = 0.1;
 
 /// Mean area of the facets of a side over that of the other from which on it is the coarser one.

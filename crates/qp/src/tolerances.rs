@@ -57,6 +57,8 @@ pub(crate) const COST_RISE: f64 = 0.01;
 pub(crate) const LEAST_PRECISION: f64 = 1e-4;
 /// Least reference of the tolerance, over the unprojected load: below it the projected load is rounding.
 pub(crate) const PROJECTED_LOAD: f64 = 1e-7;
+/// Least reference of the tolerance, over the norm of the operator times the size of `x` that counts as nothing.
+pub(crate) const LEAST_RESPONSE: f64 = 0.01;
 /// Outer steps with a stagnating inner solver after which the solve ends.
 pub(crate) const STAGNATIONS: usize = 3;
 

@@ -27,4 +27,4 @@ pub(crate) use extents::Extents;
 pub(crate) use points::ContactPoint;
 pub(crate) use scene::DiscreteScene;
 pub(crate) use supports::Supports;
-pub(crate) use turn::turned;
+pub(crate) use turn::{beside, turned, turned_to};

@@ -2,7 +2,7 @@
 
 use crate::error::ContactError;
 use crate::scene::{Contact, ContactNormal};
-use crate::tolerances::{ALONG, AXIS, GRADIENT};
+use crate::tolerances::{ALONG, AXIS, FACING, GRADIENT};
 use signorini_fem_mesh::vec3::{cross, dot, norm, scale, sub};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 
@@ -16,7 +16,7 @@ pub(super) fn fixed_frame(
         return Ok(None);
     };
     let frame = SurfaceFrame::from_normal(normal).ok_or(ContactError::ObstacleNormal { contact: index, normal })?;
-    check_side(index, surface, normal, |_| frame)?;
+    check_side(index, surface, normal, |_| Some(frame))?;
     Ok(Some(frame))
 }
 
@@ -50,10 +50,10 @@ fn check_side(
     index: usize,
     surface: &Surface,
     normal: [f64; 3],
-    frame: impl Fn(usize) -> SurfaceFrame,
+    frame: impl Fn(usize) -> Option<SurfaceFrame>,
 ) -> Result<(), ContactError> {
     let mut own = surface.frames().iter().enumerate();
-    if own.any(|(local, own)| frame(local).normal_part(own.normal) > ALONG) {
+    if own.any(|(local, own)| frame(local).is_some_and(|f| f.normal_part(own.normal) > ALONG)) {
         return Ok(());
     }
     Err(ContactError::ObstacleSide {
@@ -63,19 +63,20 @@ fn check_side(
     })
 }
 
-/// The frame at each node of a contact with the normals of its obstacle; empty for all others.
+/// The frame at each node of a contact with the normals of its obstacle, none where the body does not face it; empty for
+/// all others.
 pub(super) fn shape_frames(
     mesh: &TetMesh,
     index: usize,
     contact: &Contact,
     surface: &Surface,
-) -> Result<Vec<SurfaceFrame>, ContactError> {
+) -> Result<Vec<Option<SurfaceFrame>>, ContactError> {
     let (Some(shape), ContactNormal::Obstacle) = (&contact.shape, contact.normal) else {
         return Ok(Vec::new());
     };
-    let frame = |&node: &u32| {
+    let frame = |(&node, own): (&u32, &SurfaceFrame)| {
         let position = mesh.points()[node as usize];
-        let (distance, gradient) = shape.distance(position);
+        let distance = shape.distance(position).0;
         if !distance.is_finite() {
             let (contact, value) = (index, distance);
             return Err(ContactError::Gap {
@@ -85,17 +86,23 @@ pub(super) fn shape_frames(
                 value,
             });
         }
+        let gradient = shape.gradient(position, own.normal);
         let is_unit = (norm(gradient) - 1.0).abs() <= GRADIENT;
         let frame = SurfaceFrame::from_normal(gradient.map(|c| -c)).filter(|_| is_unit);
-        frame.ok_or(ContactError::ObstacleGradient {
+        let frame = frame.ok_or(ContactError::ObstacleGradient {
             contact: index,
             node,
             position,
             gradient,
-        })
+        })?;
+        Ok((frame.normal_part(own.normal) > FACING).then_some(frame))
     };
-    let frames: Vec<SurfaceFrame> = surface.nodes().iter().map(frame).collect::<Result<_, _>>()?;
-    let first = frames.first().map_or([0.0; 3], |f| f.normal);
+    let nodes = surface.nodes().iter().zip(surface.frames());
+    let frames: Vec<Option<SurfaceFrame>> = nodes.map(frame).collect::<Result<_, _>>()?;
+    let first = surface.nodes().first().map_or([0.0; 3], |&node| {
+        let gradient = shape.distance(mesh.points()[node as usize]).1;
+        gradient.map(|c| -c)
+    });
     check_side(index, surface, first, |local| frames[local])?;
     Ok(frames)
 }

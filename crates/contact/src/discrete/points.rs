@@ -93,6 +93,10 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
         let curved = is_curved(partners);
         let means = Means::new(&scene.mesh, (index, contact), surface, partners, rounding);
         for (local, &node) in surface.nodes().iter().enumerate() {
+            let shape = shaped.get(local).copied();
+            if shape == Some(None) {
+                continue;
+            }
             let position = scene.mesh.points()[node as usize];
             let mut one = [SurfaceSide {
                 frame: surface.frames()[local],
@@ -122,7 +126,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
             };
             let own = sides.get(&(local as u32));
             for side in own.map_or(&one[..], Vec::as_slice) {
-                let frame = fixed.or(shaped.get(local).copied()).unwrap_or(side.frame);
+                let frame = fixed.or(shape.flatten()).unwrap_or(side.frame);
                 let (sides, gap) = match &means {
                     None => {
                         let mut sides = Sides {

@@ -4,7 +4,7 @@ use super::creases::area_vector;
 use super::points::ContactPoint;
 use crate::error::ContactError;
 use crate::scene::{ContactNormal, Pose, Scene};
-use crate::tolerances::TURN;
+use crate::tolerances::{FACING, TURN};
 use signorini_fem_mesh::{Surface, vec3};
 use signorini_qp::vector;
 
@@ -19,7 +19,7 @@ pub(super) fn check_turn(
 ) -> Result<(), ContactError> {
     let contact = &scene.contacts[index];
     match (&contact.shape, contact.normal) {
-        (Some(_), ContactNormal::Obstacle) => return check_shape(scene, index, own, poses),
+        (Some(_), ContactNormal::Obstacle) => return check_shape(scene, (index, surface), own, poses),
         // measured along the normals of the nodes at each step
         (Some(_), _) => return Ok(()),
         (None, normal) => {
@@ -77,14 +77,26 @@ pub(super) fn check_turn(
     Ok(())
 }
 
-/// Refuses motions that turn the obstacle's normal at a node.
-fn check_shape(scene: &Scene, index: usize, own: &[ContactPoint], poses: &[Pose]) -> Result<(), ContactError> {
+/// Refuses motions that turn the obstacle's normal at a node, of those without a condition such as bring it there.
+fn check_shape(
+    scene: &Scene,
+    (index, surface): (usize, &Surface),
+    own: &[ContactPoint],
+    poses: &[Pose],
+) -> Result<(), ContactError> {
     let mut worst = (0.0, 0, 0.0);
+    let beside: Vec<_> = beside(surface, own).collect();
     for (pose, &time) in poses.iter().zip(scene.analysis.times()) {
-        for point in own {
-            let turn = turned(scene, point, pose, &point.position);
+        let met = own
+            .iter()
+            .map(|point| (point.node(), turned(scene, point, pose, &point.position)));
+        let brought = beside.iter().map(|&(node, normal)| {
+            let place = &scene.mesh.points()[node as usize];
+            (node, turned_to(scene, (index, node, normal), pose, place))
+        });
+        for (node, turn) in met.chain(brought) {
             if turn > worst.0 {
-                worst = (turn, point.node(), time);
+                worst = (turn, node, time);
             }
         }
     }
@@ -101,14 +113,39 @@ fn check_shape(scene: &Scene, index: usize, own: &[ContactPoint], poses: &[Pose]
     Ok(())
 }
 
+/// The nodes of a surface that have none of its conditions, with the normals of the body.
+pub(crate) fn beside(surface: &Surface, own: &[ContactPoint]) -> impl Iterator<Item = (u32, [f64; 3])> {
+    let nodes = surface.nodes().iter().zip(surface.frames());
+    let without = nodes.filter(|(node, _)| own.binary_search_by_key(*node, ContactPoint::node).is_err());
+    without.map(|(&node, frame)| (node, frame.normal))
+}
+
 /// The angle between the normal of a point and that of its obstacle at a place, radians; zero without a shape.
 pub(crate) fn turned(scene: &Scene, point: &ContactPoint, pose: &Pose, place: &[f64; 3]) -> f64 {
-    let Some(shape) = &scene.contacts[point.surface].shape else {
-        return 0.0;
-    };
-    let (_, gradient) = shape.distance(pose.origin(place));
-    let now = pose.forth(&gradient);
     let normal = point.frame.normal;
-    let sine = vec3::norm(vec3::cross(now, normal));
-    sine.atan2(-vec3::dot(now, normal))
+    gradient(scene, point.surface, pose, place, &normal).map_or(0.0, |now| angle(now, normal.map(|c| -c)))
+}
+
+/// The same of a node of a contact that does not face the obstacle, with the normal of the body: by how much that of the
+/// obstacle has turned where it does; zero elsewhere.
+pub(crate) fn turned_to(
+    scene: &Scene,
+    (contact, node, normal): (usize, u32, [f64; 3]),
+    pose: &Pose,
+    place: &[f64; 3],
+) -> f64 {
+    let at = &scene.mesh.points()[node as usize];
+    let first = gradient(scene, contact, &Pose::default(), at, &normal);
+    let now = gradient(scene, contact, pose, place, &normal).filter(|now| vec3::dot(*now, normal) < -FACING);
+    first.zip(now).map_or(0.0, |(first, now)| angle(first, now))
+}
+
+/// The gradient of the distance to the obstacle of a contact, if it has a shape.
+fn gradient(scene: &Scene, contact: usize, pose: &Pose, place: &[f64; 3], against: &[f64; 3]) -> Option<[f64; 3]> {
+    let shape = scene.contacts[contact].shape.as_ref()?;
+    Some(pose.forth(&shape.gradient(pose.origin(place), pose.back(against))))
+}
+
+fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {
+    vec3::norm(vec3::cross(a, b)).atan2(vec3::dot(a, b))
 }

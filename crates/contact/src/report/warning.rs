@@ -36,8 +36,8 @@ signorini_fem_mesh::errors! {
             plane a shorter way", at(place);
         TurnedNormal { step: usize, contact: usize, node: u32, place: [f64; 3], turn: f64 } =
             "step {step}: node {node} of contact {contact} at {} is displaced to where the normal of its obstacle is \
-            another one by {turn:.1} degrees; it keeps the one that it began with, so forces point a little aside \
-            there: make the way along the obstacle small against its radius of curvature", at(place);
+            another one by {turn:.1} degrees; it keeps the one that it began with, so forces are missing or \
+            point aside there: make the way along the obstacle small against its radius of curvature", at(place);
         LargeGap { contact: usize, node: u32, place: [f64; 3], gap: f64, extent: f64 } =
             "contact {contact} begins {:.3e} {} its obstacle even at the nearest node, {node} at {}, and the body is \
             {extent:.3e} long; look at the unit of the gap and at the places of the bodies",

@@ -4,8 +4,8 @@
 
 use super::points::ContactState;
 use super::recovered::Recovered;
-use crate::discrete::{Extents, turned};
-use crate::model::{ConstrainedPoint, Model};
+use crate::discrete::{Extents, beside, turned, turned_to};
+use crate::model::Model;
 use crate::report::Warning;
 use crate::scene::ContactNormal;
 use crate::step::StepProblem;
@@ -141,23 +141,39 @@ fn long_slip(model: &Model, lengths: &Lengths, recovered: &Recovered, step: usiz
     })
 }
 
-/// Looked at only where contacts have the normals of shapes.
+/// Looked at only where contacts have the normals of shapes: at nodes that touch, and at those without a point that are
+/// inside the obstacle.
 fn turned_normal(model: &Model, recovered: &Recovered, u: &[f64], step: usize) -> Option<Warning> {
-    let shaped = |p: &&ConstrainedPoint| model.scene.contacts[p.surface()].normal() == ContactNormal::Obstacle;
+    let (scene, discrete) = (&model.scene, &model.discrete);
+    let is_shaped = |contact: usize| scene.contacts[contact].normal() == ContactNormal::Obstacle;
+    let pose = |contact: usize| discrete.poses[contact].get(step).copied().unwrap_or_default();
+    let displaced = |node: u32| {
+        let (at, first) = (scene.mesh.points()[node as usize], 3 * node as usize);
+        [0, 1, 2].map(|c| at[c] + u[first + c])
+    };
     let pairs = model.points.iter().zip(&recovered.points);
-    let touching = pairs.filter(|(p, state)| shaped(p) && state.state != ContactState::Open);
+    let touching = pairs.filter(|(p, state)| is_shaped(p.surface()) && state.state != ContactState::Open);
     let turns = touching.map(|(p, _)| {
-        let (at, first) = (p.position(), 3 * p.node() as usize);
-        let pose = model.discrete.poses[p.surface()].get(step).copied().unwrap_or_default();
-        let displaced = [0, 1, 2].map(|c| at[c] + u[first + c]);
-        (p, turned(&model.scene, &p.contact, &pose, &displaced))
+        let turn = turned(scene, &p.contact, &pose(p.surface()), &displaced(p.node()));
+        ((p.surface(), p.node()), turn)
     });
-    let (point, turn) = worst(turns)?;
+    let shaped = (0..scene.contacts.len()).filter(|&contact| is_shaped(contact));
+    let without = shaped.flat_map(|contact| {
+        let [first, end] = [contact, contact + 1].map(|k| discrete.conditions.partition_point(|c| c.surface < k));
+        let nodes = beside(&discrete.surfaces[contact], &discrete.conditions[first..end]);
+        nodes.map(move |(node, normal)| (contact, node, normal))
+    });
+    let reached = without.filter_map(|own @ (contact, node, _)| {
+        let (pose, place) = (pose(contact), displaced(node));
+        let depth = -scene.contacts[contact].shape.as_ref()?.distance(pose.origin(&place)).0;
+        (depth > discrete.rounding).then(|| ((contact, node), turned_to(scene, own, &pose, &place)))
+    });
+    let ((contact, node), turn) = worst(turns.chain(reached))?;
     (turn > TURN).then(|| Warning::TurnedNormal {
         step,
-        contact: point.surface(),
-        node: point.node(),
-        place: point.position(),
+        contact,
+        node,
+        place: scene.mesh.points()[node as usize],
         turn: turn.to_degrees(),
     })
 }

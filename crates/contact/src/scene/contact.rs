@@ -75,7 +75,10 @@ impl Contact {
     }
 
     /// Contact with a rigid obstacle of any shape: at each node the normal is that of the obstacle, against the
-    /// gradient of its distance, and the gap is the distance.
+    /// gradient of its distance, and the gap is the distance. On an edge or corner of a
+    /// [surface](Obstacle::surface) it is, of those between the normals of its facets, nearest to the body's own. Nodes
+    /// that do not face the obstacle (by less than a tenth, the cosine to the body's own normal) have no point: a flat
+    /// side slides over an edge beside it.
     ///
     /// [`with_normal`](Self::with_normal) and [`with_body_normals`](Self::with_body_normals) take another direction,
     /// along which the gap is then measured; [`with_gap`](Self::with_gap) takes another gap. Normals are those of body
@@ -168,10 +171,10 @@ impl Contact {
         self
     }
 
-    /// The gap changes in time: it is `history(t)` times what [`with_gap`](Self::with_gap), a field or the coordinates
-    /// say. A press fit grows from nothing by a negative gap and a ramp; a factor that changes its sign opens or closes
-    /// again. Before the first step the factor is that at time 0. For obstacles and between bodies. What the growing
-    /// interference does to the bodies is part of
+    /// The gap changes in time: it is `history(t)` times what [`with_gap`](Self::with_gap), a field, a shape or the
+    /// coordinates say; what an obstacle opens by moving is not multiplied. A press fit grows from nothing by a negative
+    /// gap and a ramp; a factor that changes its sign opens or closes again. Before the first step the factor is that at
+    /// time 0. For obstacles and between bodies. What the growing interference does to the bodies is part of
     /// [`obstacle_work`](crate::result::ContactSummary::obstacle_work).
     pub fn with_gap_history(mut self, history: History) -> Self {
         self.gap_history = Some(history);
@@ -245,7 +248,16 @@ impl Contact {
         };
         let all = times.iter().copied();
         let mut poses: Vec<Pose> = match &self.rotation {
-            Some(rotation) => Pose::turning(rotation, all.map(|t| (shift(t), rotation.angle.value(t)))),
+            Some(rotation) => {
+                let mut way = self.kinks(rotation, times);
+                way.extend(all);
+                way.sort_by(f64::total_cmp);
+                way.dedup();
+                let poses = Pose::turning(rotation, way.iter().map(|&t| (shift(t), rotation.angle.value(t))));
+                let reached = |time: &f64| times.binary_search_by(|t| t.total_cmp(time)).is_ok();
+                let reached = way.iter().zip(poses).filter(|(time, _)| reached(time));
+                reached.map(|(_, pose)| pose).collect()
+            }
             None if self.motion.is_some() => all.map(|t| Pose::shifted(shift(t))).collect(),
             None if self.gap_history.is_some() => vec![Pose::default(); times.len()],
             None => Vec::new(),
@@ -255,6 +267,15 @@ impl Contact {
             with_times.for_each(|(pose, time)| pose.factor = history.value(*time));
         }
         poses
+    }
+
+    /// Times up to the last one at which an obstacle that is displaced and turns changes its way: points of its tables.
+    fn kinks(&self, rotation: &Rotation, times: &[f64]) -> Vec<f64> {
+        let (Some((_, course)), Some(&last)) = (&self.motion, times.last()) else {
+            return Vec::new();
+        };
+        let points = course.points().iter().chain(rotation.angle.points());
+        points.map(|p| p.0).filter(|t| (0.0..last).contains(t)).collect()
     }
 
     /// The same before the first step.
@@ -380,7 +401,9 @@ impl Contact {
         match &self.gap {
             Gap::Obstacle => {
                 let whole = at(pose.origin(&position), &pose.back(normal))?;
-                Ok(pose.factor * whole - vector::dot(&pose.drag(&position), normal))
+                let way = vector::dot(&pose.way(&position), normal);
+                let whole = whole + (pose.factor - 1.0) * (whole - way);
+                Ok(whole - vector::dot(&pose.drag(&position), normal))
             }
             Gap::Field(_) => {
                 let way = pose.way(&position);

@@ -7,7 +7,9 @@ use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
 use std::sync::Arc;
 
-type Field = dyn Fn([f64; 3]) -> (f64, [f64; 3]) + Send + Sync;
+/// Of a place, the side that is free (1, or -1 for what is turned inside out), and the direction that the gradient is to
+/// be opposite to where there is a choice.
+type Field = dyn Fn([f64; 3], f64, Option<[f64; 3]>) -> (f64, [f64; 3]) + Send + Sync;
 
 /// A rigid obstacle of any shape: the signed distance to it, m, positive outside, and the gradient of the distance, a
 /// unit vector out of the obstacle.
@@ -31,6 +33,7 @@ type Field = dyn Fn([f64; 3]) -> (f64, [f64; 3]) + Send + Sync;
 #[must_use]
 pub struct Obstacle {
     field: Function<Field>,
+    side: f64,
     /// What has to be finite and positive, with its name.
     sizes: Vec<(&'static str, f64)>,
 }
@@ -77,35 +80,52 @@ impl Obstacle {
     }
 
     /// A triangulated surface, closed or open: places of its nodes, m, and triangles whose nodes turn counter-clockwise
-    /// seen from outside. The nearest place is looked for in a tree.
+    /// seen from outside. Nodes at one place are one. The nearest place is looked for in a tree; beyond the rim of an
+    /// open surface nothing is inside.
     ///
     /// # Errors
-    /// [`ContactError::ObstacleFacet`] for triangles without area or with unknown nodes, or if there is none.
+    /// [`ContactError::ObstacleFacet`] for triangles without area or with unknown nodes, if there is none, and where two
+    /// neighbours turn otherwise.
     pub fn surface(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self, ContactError> {
         let facets = Facets::new(points, triangles)?;
-        Ok(Self::new(Vec::new(), move |x| facets.distance(x)))
+        Ok(Self {
+            field: Function(Arc::new(move |x, side, against| facets.distance(x, side, against))),
+            side: 1.0,
+            sizes: Vec::new(),
+        })
     }
 
     /// What this obstacle leaves free is the obstacle: of a ball a socket, of a cylinder a bore.
     pub fn hollow(self) -> Self {
-        let field = self.field;
-        Self::new(self.sizes, move |x| {
-            let (distance, gradient) = field(x);
-            (-distance, gradient.map(|c| -c))
-        })
+        Self {
+            side: -self.side,
+            ..self
+        }
     }
 
     fn new(
         sizes: Vec<(&'static str, f64)>,
         field: impl Fn([f64; 3]) -> (f64, [f64; 3]) + Send + Sync + 'static,
     ) -> Self {
-        let field = Function(Arc::new(field) as Arc<Field>);
-        Self { field, sizes }
+        let turned = move |x, side, _| {
+            let (distance, gradient): (f64, [f64; 3]) = field(x);
+            (side * distance, gradient.map(|c| side * c))
+        };
+        Self {
+            field: Function(Arc::new(turned) as Arc<Field>),
+            side: 1.0,
+            sizes,
+        }
     }
 
     /// The signed distance of a place, m, and its gradient.
     pub fn distance(&self, place: [f64; 3]) -> (f64, [f64; 3]) {
-        (self.field)(place)
+        (self.field)(place, self.side, None)
+    }
+
+    /// Its gradient at a place; on edges and corners of surfaces the one that is most opposite to a direction.
+    pub(crate) fn gradient(&self, place: [f64; 3], against: [f64; 3]) -> [f64; 3] {
+        (self.field)(place, self.side, Some(against)).1
     }
 
     /// The way along a direction from a place to the obstacle, m, negative inside; the shortest distance where that

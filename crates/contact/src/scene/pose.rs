@@ -50,7 +50,7 @@ impl Pose {
         }
     }
 
-    /// The poses of an obstacle that has displacements and angles (rad) at a sequence of steps. Between two steps the
+    /// The poses of an obstacle that has displacements and angles (rad) at a sequence of times. Between two of them the
     /// displacement is the mean of both.
     pub(super) fn turning(rotation: &Rotation, ways: impl Iterator<Item = ([f64; 3], f64)>) -> Vec<Self> {
         let axis = scale(1.0 / norm(rotation.axis), rotation.axis);

@@ -153,6 +153,7 @@ impl SmalseSolver {
             .settings
             .with_tolerance(Tolerance::Relative(tolerance))
             .with_equality(tolerance)
+            .with_least(task.problem.least(task.settings.tolerance)[0])
             .limited_to(self.left);
         let report = smalse(
             task.model.tfeti.dual(),

@@ -107,6 +107,31 @@ fn a_gap_that_closes_is_an_obstacle_that_comes() {
     }
 }
 
+/// A factor of the gap at rest beside a motion: the same of a plane, told as a gap or as a shape.
+#[test]
+fn what_a_motion_opens_is_not_multiplied() {
+    let (point, outward) = ([0.0, 0.0, -1e-4], [0.02, 0.01, 1.0]);
+    let course = || History::table(vec![(0.0, 0.0), (0.5, 1.5), (1.0, -1.0)]).expect("table");
+    let scene = |plane: Contact| {
+        let plane = plane
+            .with_motion([1e-3, 0.0, 2e-4], ramp())
+            .with_rotation(point, outward, History::ramp(1.0, 1e-2).expect("ramp"))
+            .with_gap_history(course())
+            .with_friction(Friction::coulomb(0.3));
+        Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), uniform(1e6, 0.3))
+            .with_support(Support::fixed(brick::Z_MAX))
+            .with_contact(plane)
+            .with_analysis(Analysis::quasistatic(1.0, 4))
+    };
+    let shape = Obstacle::half_space(point, outward);
+    let (_, told) = run(scene(Contact::half_space(brick::Z_MIN, point, outward)), at(1e-9));
+    let (_, shaped) = run(scene(Contact::obstacle(brick::Z_MIN, shape)), at(1e-9));
+    for (a, b) in told.iter().zip(&shaped) {
+        assert_close(&b.displacement, &a.displacement, 1e-7, "displacement");
+    }
+    assert!(told.iter().any(|r| r.summary.active > 0));
+}
+
 #[test]
 fn a_run_goes_on_from_a_state_with_the_same_bits() {
     let new = || {

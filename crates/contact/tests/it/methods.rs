@@ -73,6 +73,30 @@ fn the_one_loop_stays_below_the_papers_products() {
     }
 }
 
+/// Where all loads are gone for a while there is nothing that errors could be relative to but what was there before.
+#[test]
+fn steps_without_loads_are_solved_by_all_methods() {
+    let course = History::table(vec![(0.0, 0.0), (0.4, 1.0), (0.8, 0.0), (1.6, 0.0), (2.0, 1.0)]).expect("table");
+    for (coefficient, most) in [(0.0, 130), (0.3, 1000)] {
+        for method in methods() {
+            for extrapolate in [true, false] {
+                let load = Load::traction(brick::Z_MAX, [0.0, 0.0, -1e4]).with_history(course.clone());
+                let floor = Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(coefficient));
+                let scene = Scene::new(block([2.0, 1.0, 1.0], [6, 3, 3]), uniform(1e6, 0.3))
+                    .with_support(Support::fixed(brick::X_MIN))
+                    .with_load(load)
+                    .with_contact(floor)
+                    .with_boxes([2, 1, 1])
+                    .with_analysis(Analysis::quasistatic(2.0, 10));
+                let (_, results) = run(scene, by(method.clone()).with_extrapolation(extrapolate));
+                let products: Vec<usize> = results.iter().map(|r| r.report.counters.products).collect();
+                println!("{} {coefficient} {extrapolate}: {products:?}", method.kind());
+                assert!(products[3..8].iter().all(|p| *p <= most), "{products:?}");
+            }
+        }
+    }
+}
+
 /// Six decades of accuracy: 2.5 times the products.
 #[test]
 fn accuracy_is_not_dear() {

@@ -74,6 +74,14 @@ impl History {
         Self(Kind::Function(Function(Arc::new(value))))
     }
 
+    /// The (time, value) points of a table; none of a function.
+    pub fn points(&self) -> &[(f64, f64)] {
+        match &self.0 {
+            Kind::Table(points) => points,
+            Kind::Function(_) => &[],
+        }
+    }
+
     /// The value at a time. At the points of a table it is exactly the value given.
     pub fn value(&self, time: f64) -> f64 {
         match &self.0 {

@@ -9,7 +9,7 @@ use crate::settings::settings;
 use super::penalised::State;
 
 settings! {
-    /// Settings of [`smalse`](crate::smalse()), all dimensionless.
+    /// Settings of [`smalse`](crate::smalse()), dimensionless but for `least`.
     #[derive(Debug, Clone, Copy, PartialEq)]
     SmalseSettings or QpError {
         /// Projected gradient at the end: `eps_1`.
@@ -17,6 +17,9 @@ settings! {
         /// Residual `Cx - e` at the end, relative to the larger of `|x|` and `|e|` and to no less than what rounding
         /// errors of `b` make of `x`: `eps_1 M_0`.
         equality, with_equality: f64 = 1e-6, in "(0, inf)";
+        /// Size of `x` that counts as nothing: it is measured against no less, and the reference of the tolerance is at
+        /// least a hundredth of the norm of `PAP` times that. Where the data vanish no tolerance relative to them ends.
+        least, with_least: f64 = 0.0, in "[0, inf)";
         /// Penalty relative to the norm of `PAP`: `rho`.
         penalty, with_penalty: f64 = 3.0, in "(0, inf)";
         /// First precision control, inner tolerance over `Cx - e`, relative to the norm of `PAP`: `M_0`.

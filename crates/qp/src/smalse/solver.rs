@@ -24,7 +24,7 @@ use crate::kprgp::{KprgpReport, Objective, Vectors, drifted, iterate};
 use crate::problem::{ConvexSet, Equality, SymmetricOperator};
 use crate::report::{Products, Status, Steps, Tolerance, usable};
 use crate::settings::expect_setting;
-use crate::tolerances::{LEAST_PRECISION, PROJECTED_LOAD, STAGNATIONS};
+use crate::tolerances::{LEAST_PRECISION, LEAST_RESPONSE, PROJECTED_LOAD, STAGNATIONS};
 use crate::vector;
 
 use super::penalised::Penalised;
@@ -116,7 +116,7 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
             a_scratch: &mut work.a_scratch,
             c_scratch: &mut work.c_scratch,
         },
-        least: vector::norm(e),
+        least: vector::norm(e).max(settings.least),
         set,
         settings,
         hook,
@@ -164,7 +164,8 @@ struct Run<'s, 'h, A: SymmetricOperator, C: Equality, S: ?Sized> {
     hook: &'s mut OuterHook<'h, S>,
     x: &'s mut [f64],
     v: &'s mut Vectors,
-    /// What the equality is measured against if `x` is smaller: `|e|`, or what rounding errors of the load make of `x`.
+    /// What the equality is measured against if `x` is smaller: `|e|`, what rounding errors of the load make of `x`, or
+    /// what counts as nothing.
     least: f64,
     steps: Steps,
     products: Products,
@@ -192,6 +193,7 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, '_, A, C,
         let (o, settings) = (&mut self.o, self.settings);
         // eps_1 = eps |P h|
         let (reference, rounding) = reference(o, settings.tolerance, &mut self.v.ap, &mut self.products);
+        let reference = reference.max(LEAST_RESPONSE * o.norm * settings.least);
         self.least = self.least.max(rounding / o.norm);
         o.floor = usable(settings.tolerance.resolve(reference))?;
         o.cap = settings.gradient_cap * reference;
