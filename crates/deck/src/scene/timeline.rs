@@ -2,6 +2,7 @@
 
 use signorini_contact::{Analysis, DifferenceFormula};
 
+use super::parts::told;
 use crate::error::{DeckError, Fault};
 use crate::model::{INCREMENTS, Model};
 
@@ -57,6 +58,16 @@ impl<'a> Timeline<'a> {
             start = end;
         }
         Ok(Self { model, spans, times })
+    }
+
+    /// Increments up to the end of each step, and where it stands.
+    pub(super) fn steps(&self) -> Vec<(usize, String)> {
+        let mut end = 0;
+        let steps = self.model.steps.iter().map(|step| {
+            end += step.time.as_ref().map_or(0, |(_, increments)| increments.count);
+            (end, told(&step.word))
+        });
+        steps.collect()
     }
 
     /// Backward Euler over all increments; a single one is static.
