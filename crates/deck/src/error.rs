@@ -74,6 +74,11 @@ impl Word {
         }
     }
 
+    /// It and where it stands.
+    pub(crate) fn told(&self) -> String {
+        format!("{} ({})", self.text, self.location)
+    }
+
     pub(crate) fn fault(&self, fault: Fault) -> DeckError {
         let word = match self.text.char_indices().nth(WORD) {
             Some((end, _)) => format!("{}...", &self.text[..end]),

@@ -8,7 +8,6 @@ use signorini_fem_mesh::vec3::tet_volume;
 use signorini_fem_mesh::{Facet, TetMesh};
 
 use super::numbers::{Numbers, Sets};
-use super::parts::Parts;
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Fault, Word};
 use crate::model::{Kind, Model};
@@ -162,14 +161,14 @@ impl Raw {
         tet_volume(&self.tet_points(tet))
     }
 
-    /// The mesh; `parts` says what it speaks of if it is none.
+    /// The mesh; `name` says what a part is in the deck.
     pub(super) fn mesh(
         &self,
         path: &Path,
         model: &Model,
         facets: Vec<Facet>,
         regions: Vec<u32>,
-        parts: &Parts,
+        name: impl Fn(Part) -> Option<String>,
     ) -> Result<TetMesh, DeckError> {
         let whole =
             |(tet, mids): (&[u32; 4], &[u32; 6])| std::array::from_fn(|k| if k < 4 { tet[k] } else { mids[k - 4] });
@@ -192,7 +191,7 @@ impl Raw {
                 let path = path.to_owned();
                 return DeckError::Mesh { path, source };
             };
-            let named = |part: Part| Some(format!("{part} is {}", parts.name(part)?));
+            let named = |part: Part| Some(format!("{part} is {}", name(part)?));
             let names: Vec<String> = of.into_iter().filter_map(named).collect();
             let names = names.join(", ");
             word.fault(Fault::Mesh { names, source })

@@ -22,7 +22,7 @@ use std::path::Path;
 use signorini_contact::Scene;
 use signorini_fem_mesh::{FacetTag, TetMesh};
 
-use crate::error::DeckError;
+use crate::error::{DeckError, Word};
 use crate::model::{Ignored, Model, Names};
 
 pub(crate) use numbers::Numbers;
@@ -65,7 +65,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     let tags = faces.tags();
     let (regions, materials) = materials::materials(&raw, &sets)?;
     let mut parts = parts::Parts::new(&raw, &sets, &regions);
-    let mesh = raw.mesh(path, model, faces.facets(&tags), regions, &parts)?;
+    let mesh = raw.mesh(path, model, faces.facets(&tags), regions, |part| parts.name(part))?;
     let surfaces = faces.tags_of(&tags, model);
 
     let mut supports = supports::supports(known)?;
@@ -74,8 +74,8 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     let (support_names, held): (Vec<_>, Vec<_>) = supports.names.into_iter().unzip();
     parts.steps = timeline.steps();
     parts.tagged(&surfaces);
-    parts.loads = words.iter().map(parts::told).collect();
-    parts.supports = held.iter().map(parts::told).collect();
+    parts.loads = words.iter().map(Word::told).collect();
+    parts.supports = held.iter().map(Word::told).collect();
     let scene = materials.map(|materials| {
         let scene = Scene::new(mesh.clone(), materials).with_analysis(timeline.analysis());
         let scene = supports.list.into_iter().fold(scene, Scene::with_support);

@@ -5,7 +5,6 @@ use signorini_fem_mesh::FacetTag;
 
 use super::mesh::Raw;
 use super::numbers::Sets;
-use crate::error::Word;
 use crate::model::{Law, Names, Pair};
 
 /// Lines and names by the numbers of the scene.
@@ -32,11 +31,6 @@ fn contact(pair: &Pair) -> String {
     format!("{keyword} {}, {} ({})", first.text, second.text, first.location)
 }
 
-/// A word and where it stands.
-pub(super) fn told(word: &Word) -> String {
-    format!("{} ({})", word.text, word.location)
-}
-
 impl Parts {
     /// Those of the mesh; `regions` are the sections of the tetrahedra.
     pub(super) fn new(raw: &Raw, sets: &Sets, regions: &[u32]) -> Self {
@@ -54,7 +48,7 @@ impl Parts {
         Self {
             nodes,
             elements: elements.map(|(tet, &label)| (label, region(tet))).collect(),
-            sections: model.sections.iter().map(|s| told(&s.elset.word)).collect(),
+            sections: model.sections.iter().map(|s| s.elset.word.told()).collect(),
             contacts: model.pairs.iter().map(contact).collect(),
             ..Self::default()
         }

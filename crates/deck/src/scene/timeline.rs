@@ -2,7 +2,6 @@
 
 use signorini_contact::{Analysis, DifferenceFormula};
 
-use super::parts::told;
 use crate::error::{DeckError, Fault};
 use crate::model::{INCREMENTS, Model};
 
@@ -65,7 +64,7 @@ impl<'a> Timeline<'a> {
         let mut end = 0;
         let steps = self.model.steps.iter().map(|step| {
             end += step.time.as_ref().map_or(0, |(_, increments)| increments.count);
-            (end, told(&step.word))
+            (end, step.word.told())
         });
         steps.collect()
     }
