@@ -37,7 +37,8 @@ signorini_fem_mesh::errors! {
     ///
     /// Fields are what their variant speaks of: `contact`, `support` and `index` positions in the scene, `node` and
     /// `partner` mesh nodes, steps from 0; in s, m, m/s, N and Pa. A body is a part of the mesh that hangs together.
-    /// `friction` is the factor above which larger friction would hold it, `None` where none could.
+    /// `friction` is the factor above which larger friction would hold it, `None` where none could. [`parts`](Self::parts)
+    /// lists them. Where a scene [has names](crate::Scene::with_names) what is said of it is `Named`.
     ContactError from {
         Mesh(fem::MeshError),
         Material(fem::MaterialError),
@@ -137,8 +138,8 @@ signorini_fem_mesh::errors! {
             facets around it out of one of the surfaces, or give both the same motion, compliance and gap";
         HistoryValue { what: &'static str, index: usize, time: f64, value: f64 } =
             "{what} {index}: its history gives {value} at time {time} s";
-        TooLarge { place: String, value: f64, unit: &'static str, most: f64 } =
-            "{place}: {value:e} {unit} are too much, squares of what follows from it would overflow (at most {most:e}); check \
+        TooLarge { part: crate::part::Part, place: String, value: f64, unit: &'static str, most: f64 } =
+            "{part}{place}: {value:e} {unit} are too much, squares of what follows from it would overflow (at most {most:e}); check \
             its units and its history";
         Stiffness { region: u32, value: f64, least: f64, most: f64 } =
             "region {region}: its material has a stiffness of {value:e}, and squares of what follows from it would \
@@ -147,8 +148,8 @@ signorini_fem_mesh::errors! {
             "step {step}: body {body} (with node {node}) cannot be in equilibrium: {mode} is {}, and the loads push \
             along it with a force of {force:.3e}; {}",
             held_by(*friction), held_remedy(*friction);
-        NotDetermined { body: usize, count: usize, motions: String } =
-            "the place of body {body} is not determined: the loads are in balance, but {count} rigid motion(s) are \
+        NotDetermined { body: usize, node: u32, count: usize, motions: String } =
+            "the place of body {body} (with node {node}) is not determined: the loads are in balance, but {count} rigid motion(s) are \
             held neither by supports nor by contact ({motions}); add supports that stop them";
         Setting { name: &'static str, value: f64, range: &'static str } =
             "setting {name} = {value} is outside its range {range}";
@@ -169,6 +170,7 @@ signorini_fem_mesh::errors! {
         ResultTable { path: std::path::PathBuf, line: usize, found: String, expected: String } =
             "cannot continue {}: line {line} is {found:?}, but {expected} is needed; a run that is resumed goes on with \
             the table of a writer with the same choices: give it those, or another folder", path.display();
+        Named { names: String, source: Box<Self> } = "{names}: {source}";
         Load { index: usize, source: fem::LoadError } = "load {index}: {source}";
     }
 }

@@ -79,8 +79,10 @@ mod error;
 mod estimate;
 mod model;
 mod mortar;
+mod names;
 #[cfg(feature = "vtu")]
 mod output;
+mod part;
 pub mod plan;
 pub mod report;
 pub mod result;
@@ -98,6 +100,7 @@ pub use error::ContactError;
 pub use model::ConstrainedPoint;
 #[cfg(feature = "vtu")]
 pub use output::{ResultField, ResultWriter};
+pub use part::Part;
 pub use plan::Plan;
 pub use report::{RunReport, Warning};
 pub use result::{Certificate, ContactState, PointState};

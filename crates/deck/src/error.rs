@@ -31,8 +31,7 @@ signorini_fem_mesh::errors! {
         Io { path: PathBuf, source: std::io::Error } = "cannot read {}: {source}", path.display();
         At { location: Location, word: String, fault: Box<Fault> } = "{location}: {word}: {fault}";
         Mesh { path: PathBuf, source: MeshError } =
-            "the elements of {} make no mesh (nodes and elements are counted from 0 here, in the order of the \
-            file): {source}", path.display();
+            "the elements of {} make no mesh: {source}", path.display();
         NoElements { path: PathBuf } = "{} has no elements; it needs *ELEMENT, TYPE=C3D4 or C3D10", path.display();
         NoSection { path: PathBuf } =
             "{} has no *SOLID SECTION: it is a mesh, not a scene; give it *MATERIAL, *ELASTIC and *SOLID SECTION, or \
@@ -73,6 +72,11 @@ impl Word {
             location: location.clone(),
             text: text.into(),
         }
+    }
+
+    /// It and where it stands.
+    pub(crate) fn told(&self) -> String {
+        format!("{} ({})", self.text, self.location)
     }
 
     pub(crate) fn fault(&self, fault: Fault) -> DeckError {
@@ -117,14 +121,15 @@ signorini_fem_mesh::errors! {
         UnknownName { what: &'static str, known: Vec<String> } = "there is no {what} of this name; {}", listed(known);
         UnknownNumber(&'static str) =
             "there is no {0} with this number; check the number, or define it with *NODE or *ELEMENT";
-        Repeated { first: usize, remedy: &'static str } =
-            "defined a second time, first in line {first}; {remedy}";
+        Repeated { first: Location, remedy: &'static str } =
+            "defined a second time, first in {first}; {remedy}";
         Volume =
             "the element has no volume, or is turned inside out; its first three nodes have to be counter-clockwise \
             seen from the fourth";
         FaceInside { element: u32, face: u8 } =
             "face {face} of element {element} lies inside the body, against another element; give only faces of the \
             boundary";
+        Mesh { names: String, source: MeshError } = "the elements make no mesh: {names}: {source}";
         Cannot(Cow<'static, str>) = "{0}";
     }
 }

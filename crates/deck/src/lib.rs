@@ -72,7 +72,7 @@
 //! | `*SURFACE BEHAVIOR` | `PRESSURE-OVERCLOSURE=HARD`, `LINEAR` | contact is hard and exact, or has a normal compliance, the inverse of the slope; other laws are refused |
 //! | `*FRICTION` | `SLIP TOLERANCE`, `ELASTIC SLIP` | Coulomb's coefficient, and elastic slip where a stick slope stands beside it; both parameters are ignored: friction is exact |
 //! | `*CONTACT PAIR` | `INTERACTION`, `TYPE`, `SMALL SLIDING` | the first (dependent) surface touches the second, whether their meshes match or not; sliding is small |
-//! | `*TIE` | `NAME`, `ADJUST=NO`, `POSITION TOLERANCE` | bonded surfaces, whether their meshes match or not; nodes are not moved, the tolerance is ignored |
+//! | `*TIE` | `NAME`, `ADJUST`, `POSITION TOLERANCE` | bonded surfaces, whether their meshes match or not; nodes are not moved, which is reported where they would be; nodes beyond the tolerance, which CalculiX leaves free, are refused |
 //! | `*RIGID BODY` | `ELSET`, `REF NODE`, `ROT NODE` | an obstacle, see below |
 //! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `YSYMM`, `ZSYMM`; rotations held at zero are ignored on solids |
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |

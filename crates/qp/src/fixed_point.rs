@@ -67,6 +67,7 @@ impl Contraction {
 
 /// Result of [`successive_approximations`].
 #[derive(Debug, Clone, PartialEq)]
+#[must_use = "it may not have converged: see `verdict`"]
 pub struct FixedPointReport {
     /// How it ended.
     pub verdict: Verdict,

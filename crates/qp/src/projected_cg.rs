@@ -16,12 +16,13 @@
 use crate::error::{QpError, expect_finite, expect_lengths};
 use crate::problem::{Equality, Identity, SymmetricOperator};
 use crate::report::{Status, Tolerance, usable};
-use crate::tolerances::{CG_PATIENCE, CG_ROUNDING, NEGLIGIBLE_LOAD, PROGRESS, SOLVED_BY_EQUALITY, VANISHED_LOAD};
+use crate::tolerances::{CG_PATIENCE, CG_ROUNDING, FLAT, NEGLIGIBLE_LOAD, PROGRESS, SOLVED_BY_EQUALITY, VANISHED_LOAD};
 use crate::vector;
 
 /// Result of [`projected_cg`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
+#[must_use = "it may not have converged: see `status`"]
 pub struct CgReport {
     /// How the solve ended.
     pub status: Status,
@@ -134,6 +135,7 @@ pub fn projected_cg<A: SymmetricOperator, C: Equality, M: SymmetricOperator>(
         start: f64::NAN,
         best: f64::NAN,
         waited: 0,
+        steepest: 0.0,
     };
     run.start(b, e, tolerance)?;
     run.report.status = loop {
@@ -164,6 +166,8 @@ struct Run<'s, A: SymmetricOperator, C: Equality, M: SymmetricOperator> {
     start: f64,
     best: f64,
     waited: usize,
+    /// Largest `|Ap| / |p|` so far.
+    steepest: f64,
 }
 
 impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
@@ -257,10 +261,12 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
     }
 
     /// The minimising length; `None` where rounding errors have taken over.
-    fn step_length(&self) -> Result<Option<f64>, QpError> {
+    fn step_length(&mut self) -> Result<Option<f64>, QpError> {
         let (w, products) = (&*self.work, self.report.products);
-        let pap = vector::dot(&w.p, &w.ap);
-        if pap > 0.0 && self.slope > 0.0 {
+        let (pap, pp) = (vector::dot(&w.p, &w.ap), vector::dot(&w.p, &w.p));
+        self.steepest = self.steepest.max((vector::dot(&w.ap, &w.ap) / pp).sqrt());
+        let flat = pap.abs() <= FLAT * self.steepest * pp;
+        if pap > 0.0 && self.slope > 0.0 && !flat {
             return Ok(Some(self.slope / pap));
         }
         if pap.is_nan() || self.slope.is_nan() {
@@ -270,10 +276,13 @@ impl<A: SymmetricOperator, C: Equality, M: SymmetricOperator> Run<'_, A, C, M> {
             });
         }
         // with a positive curvature the preconditioned residual is no longer one
-        if pap > 0.0 || self.report.projected_gradient <= CG_ROUNDING * self.start {
+        if pap > 0.0 && !flat || self.report.projected_gradient <= CG_ROUNDING * self.start {
             return Ok(None);
         }
-        let curvature = pap / vector::dot(&w.p, &w.p);
+        if flat {
+            return Err(QpError::Unbounded { products });
+        }
+        let curvature = pap / pp;
         Err(QpError::Indefinite { curvature, products })
     }
 

@@ -9,9 +9,11 @@ use crate::settings::expect_setting;
 pub enum Status {
     /// The tolerance was reached.
     Converged,
-    /// The allowed number of operator products or outer steps was spent.
+    /// The allowed number of operator products or outer steps was spent. SMALSE ends so where no point of the set satisfies
+    /// the equality.
     IterationLimit,
-    /// No further progress: the gradient is at the level of rounding errors, above the tolerance.
+    /// No further progress: the gradient is at the level of rounding errors, above the tolerance. The active-set method
+    /// ends so where no point of a fixed set satisfies the equality.
     Stagnated,
     /// The set, as it follows the solution, holds no point that satisfies the equality.
     Infeasible,
@@ -31,8 +33,8 @@ impl Status {
 pub enum Tolerance {
     /// At most this value, in the units of the gradient.
     Absolute(f64),
-    /// At most this multiple of the solver's own reference: `|b|` for KPRGP (the norm of the first gradient if `b` is
-    /// zero), `|P (b - A C'e)|` for SMALSE (the paper's `|P h|`; one more product if `e` is not zero).
+    /// At most this multiple of the solver's own reference: `|b|` for KPRGP, `|P (b - A C'e)|` for SMALSE (the paper's
+    /// `|P h|`; one more product if `e` is not zero), the norm of the first gradient where that is zero.
     Relative(f64),
 }
 

@@ -9,6 +9,16 @@ pub(crate) const PROGRESS: f64 = 0.9;
 /// Curvature `p·Ap` below minus this part of the norm of the operator times `p·p` makes it indefinite; above it is
 /// rounding.
 pub(crate) const NEGATIVE_CURVATURE: f64 = 1e-10;
+/// Curvature `p·Ap` over `p·p` times the largest `|Ap| / |p|` so far that is rounding: there is none along `p`.
+pub(crate) const FLAT: f64 = 1e-13;
+/// A step of conjugate gradients over the shortest one from which on its direction is asked whether it has curvature.
+pub(crate) const LONG: f64 = 1e4;
+/// Curvature over the largest one that a direction without any is given, so that steps along it lead to the boundary.
+pub(crate) const LENT: f64 = 1e-2;
+/// The same from which on `x` is no solution, however small the error is against it.
+pub(crate) const RUNAWAY: f64 = 1e-2;
+/// Gradient over `|b| + |A x|` that is rounding.
+pub(crate) const FLAT_GRADIENT: f64 = 1e-10;
 
 // Data of a problem
 

@@ -25,8 +25,9 @@ const CRATES: [(&str, &[&str]); 6] = [
             "plan",
             "discrete report",
             "scene settings mortar",
+            "names",
             "error",
-            "status tolerances vec3",
+            "status tolerances vec3 part",
         ],
     ),
     (

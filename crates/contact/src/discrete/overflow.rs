@@ -3,6 +3,7 @@
 
 use super::points::ContactPoint;
 use crate::error::ContactError;
+use crate::part::Part;
 use crate::scene::{Pose, Scene};
 use crate::tolerances::LARGEST;
 use signorini_fem_mesh::{Decomposition, assemble_load};
@@ -44,9 +45,10 @@ const FORCE: &str = "units of force";
 const COMPLIANCE: &str = "units of length over force";
 
 /// Refuses what is too large; what is not a number is left to others.
-fn expect(value: f64, unit: &'static str, place: impl Fn() -> String) -> Result<(), ContactError> {
+fn expect(value: f64, unit: &'static str, part: Part, place: impl Fn() -> String) -> Result<(), ContactError> {
     if value > LARGEST {
         return Err(ContactError::TooLarge {
+            part,
             place: place(),
             value,
             unit,
@@ -62,22 +64,24 @@ pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactErr
         if let Some((values, history)) = &support.motion {
             let (factor, time) = scene.analysis.largest_factor(history);
             let size = vector::max_abs(values.as_flattened());
-            let place = || format!("support {index} at time {time} s: its displacement");
-            expect(factor * size, LENGTH, place)?;
-            let place = || format!("support {index} at time {time} s: its displacement times the stiffness");
-            expect(factor * size * spring, FORCE, place)?;
+            let part = Part::Support(index);
+            let place = || format!(" at time {time} s: its displacement");
+            expect(factor * size, LENGTH, part, place)?;
+            let place = || format!(" at time {time} s: its displacement times the stiffness");
+            expect(factor * size * spring, FORCE, part, place)?;
         }
     }
     for (index, contact) in scene.contacts.iter().enumerate() {
+        let part = Part::Contact(index);
         if let Some((value, history)) = &contact.motion {
             let (factor, time) = scene.analysis.largest_factor(history);
-            let place = || format!("obstacle {index} at time {time} s: its displacement");
-            expect(factor * vector::max_abs(value), LENGTH, place)?;
+            let place = || format!(" at time {time} s: the displacement of its obstacle");
+            expect(factor * vector::max_abs(value), LENGTH, part, place)?;
         }
         if let Some(rotation) = &contact.rotation {
             let (angle, time) = scene.analysis.largest_factor(&rotation.angle);
-            let place = || format!("obstacle {index} at time {time} s: its angle");
-            expect(angle, "radians", place)?;
+            let place = || format!(" at time {time} s: the angle of its obstacle");
+            expect(angle, "radians", part, place)?;
         }
     }
     Ok(())
@@ -98,9 +102,10 @@ pub(super) fn nodal_loads(
         let sizes = local.iter().map(|f| vector::max_abs(f));
         let size = sizes.fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });
         let (factor, time) = scene.analysis.largest_factor(&load.history);
-        let place = |more: &str| format!("load {index} at time {time} s: its largest nodal force{more}");
-        expect(factor * size, FORCE, || place(""))?;
-        expect(factor * size / spring, LENGTH, || place(" over the stiffness"))?;
+        let place = |more: &str| format!(" at time {time} s: its largest nodal force{more}");
+        let part = Part::Load(index);
+        expect(factor * size, FORCE, part, || place(""))?;
+        expect(factor * size / spring, LENGTH, part, || place(" over the stiffness"))?;
         out.push(local);
     }
     Ok(out)
@@ -109,9 +114,9 @@ pub(super) fn nodal_loads(
 /// Refuses compliances that are too large for the area of a point.
 pub(super) fn check_compliance(points: &[ContactPoint]) -> Result<(), ContactError> {
     for point in points.iter().filter(|p| p.compliance != [0.0; 2]) {
-        let place = || format!("contact {} at node {}: its compliance", point.surface, point.node());
+        let place = || format!(" at node {}: its compliance", point.node());
         for value in point.compliance {
-            expect(value / point.area, COMPLIANCE, place)?;
+            expect(value / point.area, COMPLIANCE, Part::Contact(point.surface), place)?;
         }
     }
     Ok(())
@@ -120,12 +125,13 @@ pub(super) fn check_compliance(points: &[ContactPoint]) -> Result<(), ContactErr
 /// Refuses gaps as given, and what becomes of them at the steps.
 pub(super) fn check_gaps(scene: &Scene, conditions: &[ContactPoint], poses: &[Vec<Pose>]) -> Result<(), ContactError> {
     for c in conditions {
-        let place = || format!("contact at node {}: the gap", c.node());
-        expect(c.gap.abs(), LENGTH, place)?;
+        let place = || format!(" at node {}: the gap", c.node());
+        let part = Part::Contact(c.surface);
+        expect(c.gap.abs(), LENGTH, part, place)?;
         if scene.contacts[c.surface].changes_gap() {
             for pose in &poses[c.surface] {
                 let gap = c.gap_after(scene, pose)?;
-                expect(gap.abs(), LENGTH, place)?;
+                expect(gap.abs(), LENGTH, part, place)?;
             }
         }
     }

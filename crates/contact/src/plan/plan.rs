@@ -73,7 +73,8 @@ impl Plan {
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, ContactError> {
-        Ok(Self::of(scene, &DiscreteScene::new(scene)?, settings)?.0)
+        let plan = DiscreteScene::new(scene).and_then(|discrete| Ok(Self::of(scene, &discrete, settings)?.0));
+        plan.map_err(|error| scene.names.tell(error))
     }
 
     /// The same plan with times for a machine; [`Rate::measure`] measures this one.

@@ -4,6 +4,7 @@ use super::counters::Counters;
 use super::step::StepReport;
 use super::warning::Warning;
 use crate::error::ContactError;
+use crate::names::Names;
 use crate::status::StepFailure;
 
 /// What [`Simulation::run`](crate::Simulation::run) did. Not converging is no error of a run: who needs every step to
@@ -30,6 +31,7 @@ pub struct RunReport {
     /// no step was solved, and where bodies are at rest or move as rigid ones.
     pub mesh_error: Option<f64>,
     pub(crate) warnings: Vec<Warning>,
+    pub(crate) names: Names,
 }
 
 impl RunReport {
@@ -61,7 +63,7 @@ impl RunReport {
     /// one.
     pub fn require_converged(&self) -> Result<(), ContactError> {
         require(None, self.unconverged_history)?;
-        require(self.failures.first().copied(), None)
+        require(self.failures.first().copied(), None).map_err(|error| self.names.tell(error))
     }
 }
 

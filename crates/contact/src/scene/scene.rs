@@ -7,6 +7,8 @@ use super::spring::Spring;
 use super::support::Support;
 use super::time::Analysis;
 use crate::error::ContactError;
+use crate::names::Names;
+use crate::part::Part;
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 
 /// Everything that says what is to be simulated, and nothing about how.
@@ -21,6 +23,7 @@ pub struct Scene {
     pub(crate) contacts: Vec<Contact>,
     pub(crate) partition: Partition,
     pub(crate) analysis: Analysis,
+    pub(crate) names: Names,
 }
 
 impl Scene {
@@ -35,6 +38,7 @@ impl Scene {
             contacts: Vec::new(),
             partition: Partition::Automatic,
             analysis: Analysis::statics(),
+            names: Names::default(),
         }
     }
 
@@ -105,6 +109,26 @@ impl Scene {
     /// Sets the analysis; static by default.
     pub fn with_analysis(mut self, analysis: Analysis) -> Self {
         self.analysis = analysis;
+        self
+    }
+
+    /// What parts are called where the scene comes from, in a file for instance: errors of its simulation then begin with
+    /// the names of those that they speak of. Decks come with names.
+    ///
+    /// ```
+    /// use signorini_contact::{Contact, Part, Plan, Scene, Settings};
+    /// # use signorini_fem_mesh::{Brick, Hooke, Materials, brick};
+    /// # let mesh = Brick::new([1.0; 3], [1; 3]).build()?;
+    /// # let steel = Materials::uniform(Hooke::isotropic(2e11, 0.3)?);
+    /// let scene = Scene::new(mesh, steel)
+    ///     .with_contact(Contact::rigid(brick::Z_MIN).with_normal([0.0; 3]))
+    ///     .with_names(|part| (part == Part::Contact(0)).then(|| "the floor".to_owned()));
+    /// let error = Plan::new(&scene, &Settings::default()).unwrap_err();
+    /// assert!(error.to_string().starts_with("contact 0 is the floor: contact 0: the obstacle's normal"));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_names(mut self, names: impl Fn(Part) -> Option<String> + Send + Sync + 'static) -> Self {
+        self.names = Names::new(names);
         self
     }
 

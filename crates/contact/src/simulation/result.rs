@@ -75,7 +75,8 @@ impl StepResult {
     /// # Errors
     /// [`ContactError::NotConverged`] and [`ContactError::UnconvergedHistory`].
     pub fn require_converged(&self) -> Result<(), ContactError> {
-        require(self.failure(), self.report.unconverged_history)
+        let required = require(self.failure(), self.report.unconverged_history);
+        required.map_err(|error| self.model.scene.names.tell(error))
     }
 
     /// How well all conditions hold.

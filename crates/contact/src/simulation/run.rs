@@ -30,6 +30,7 @@ impl Simulation {
         observer.started(self.plan(), self.plan().steps - self.state.step());
         let mut report = RunReport {
             unconverged_history: self.state.unconverged_history(),
+            names: self.model.scene.names.clone(),
             ..RunReport::default()
         };
         warn(&mut report, observer, warnings);

@@ -56,7 +56,8 @@ impl Simulation {
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.
     pub fn new(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
-        on_pool(|| Self::set_up(scene, settings))
+        let names = scene.names.clone();
+        on_pool(|| Self::set_up(scene, settings)).map_err(|error| names.tell(error))
     }
 
     fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {

@@ -25,7 +25,8 @@ impl Simulation {
         if let Some(last) = self.result.take().and_then(Arc::into_inner) {
             self.spare = last.recovered;
         }
-        let result = Arc::new(on_pool(|| self.take_step())?);
+        let result = on_pool(|| self.take_step()).map_err(|error| self.model.scene.names.tell(error))?;
+        let result = Arc::new(result);
         self.total += result.report.counters;
         self.result = Some(result.clone());
         Ok(result)

@@ -77,7 +77,7 @@ impl ActiveSetSolver {
         let space = ActiveSetProjector::new(coarse, contact, model.tfeti.row_weights())?;
         let free = space.factor().free_motions();
         if model.points.is_empty() && !free.is_empty() {
-            return Err(not_determined(free));
+            return Err(not_determined(model, free));
         }
         Ok(Self {
             space,

@@ -22,7 +22,7 @@ impl OrthonormalRows {
         let factor = model.tfeti.coarse_factor()?;
         let coarse = factor
             .orthonormal()
-            .ok_or_else(|| not_determined(factor.free_motions()))?;
+            .ok_or_else(|| not_determined(model, factor.free_motions()))?;
         Ok(Self {
             coarse,
             rhs: vec![0.0; model.tfeti.coarse().rows()],
@@ -50,11 +50,12 @@ impl OrthonormalRows {
 }
 
 /// The error that some rigid motions are stopped by nothing.
-pub(super) fn not_determined(motions: &[FreeMotion]) -> ContactError {
+pub(super) fn not_determined(model: &Model, motions: &[FreeMotion]) -> ContactError {
     let words: Vec<String> = motions.iter().map(ToString::to_string).collect();
     let body = motions.first().and_then(|m| m.bodies.first());
     ContactError::NotDetermined {
         body: body.map_or(0, |b| b.body),
+        node: body.map_or(0, |b| model.discrete.decomposition.subdomains()[b.subdomain].nodes[0]),
         count: motions.len(),
         motions: words.join("; "),
     }

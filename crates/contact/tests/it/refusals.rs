@@ -77,7 +77,7 @@ fn an_obstacle_that_moves_too_far_is_named() {
         let floor = Contact::rigid(brick::Z_MIN).with_motion([0.0, 0.0, 1e200], history);
         let error = refused(&clamped().with_contact(floor)).to_string();
         assert!(
-            error.contains("obstacle 0") && error.contains("displacement"),
+            error.starts_with("contact 0") && error.contains("displacement of its obstacle"),
             "{error}"
         );
     }
@@ -272,7 +272,7 @@ fn sizes_whose_squares_overflow_are_named() {
         ),
         (
             press(1.0).with_contact(floor().with_gap(1e200)),
-            "contact at node",
+            "contact 0 at node",
             "units of length",
         ),
         (press(1e200), "load 0", "units of force"),

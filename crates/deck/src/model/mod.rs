@@ -15,6 +15,7 @@ mod step;
 use crate::error::{DeckError, Location, Word};
 use crate::lexer::Named;
 use signorini_fem_mesh::{History, Hooke};
+use std::borrow::Cow;
 
 pub(crate) use keywords::read;
 pub(crate) use names::Names;
@@ -30,15 +31,15 @@ pub struct Ignored {
     /// The keyword or parameter.
     pub word: String,
     /// Why nothing is done.
-    pub why: &'static str,
+    pub why: Cow<'static, str>,
 }
 
 impl Ignored {
-    pub(crate) fn new(word: &Word, why: &'static str) -> Self {
+    pub(crate) fn new(word: &Word, why: impl Into<Cow<'static, str>>) -> Self {
         Self {
             location: word.location.clone(),
             word: word.text.clone(),
-            why,
+            why: why.into(),
         }
     }
 }
@@ -158,10 +159,28 @@ pub(crate) struct RigidBody {
 
 #[derive(Debug, Clone)]
 pub(crate) struct Pair {
-    /// `None` for bonded surfaces.
-    pub(crate) interaction: Option<Named>,
+    pub(crate) law: Law,
     pub(crate) slave: Named,
     pub(crate) master: Named,
+}
+
+/// What holds between the surfaces of a pair.
+#[derive(Debug, Clone)]
+pub(crate) enum Law {
+    /// Contact, with the name of its interaction.
+    Contact(Named),
+    Tied(Tie),
+}
+
+/// Bonded surfaces.
+#[derive(Debug, Clone)]
+pub(crate) struct Tie {
+    /// ADJUST, or the keyword.
+    pub(crate) word: Word,
+    /// Whether nodes are to be moved onto the other surface.
+    pub(crate) adjust: bool,
+    /// Distance up to which nodes are tied, if it is given.
+    pub(crate) tolerance: Option<f64>,
 }
 
 impl Model {

@@ -1,6 +1,6 @@
 //! Materials, sections, amplitudes, contact pairs and their interactions.
 
-use super::{Amplitude, Ignored, Interaction, Material, Model, Pair, RigidBody, Section, Target};
+use super::{Amplitude, Ignored, Interaction, Law, Material, Model, Pair, RigidBody, Section, Target, Tie};
 use crate::error::{DeckError, Fault, Location, Word};
 use crate::lexer::{Card, Named, label, name};
 use signorini_fem_mesh::History;
@@ -12,7 +12,7 @@ pub(super) fn inside<'a, T>(last: Option<&'a mut T>, card: &Card, what: &'static
 
 pub(super) fn twice(card: &Card, first: &Location) -> DeckError {
     card.word.fault(Fault::Repeated {
-        first: first.line,
+        first: first.clone(),
         remedy: "keep one of them",
     })
 }
@@ -205,27 +205,30 @@ pub(super) fn pair(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         let why = "matching meshes touch node by node, others by dual multipliers; there is one kind of contact here";
         model.ignored.push(Ignored::new(&kind.word, why));
     }
-    surfaces(model, card, Some(&interaction))
+    surfaces(model, card, &Law::Contact(interaction))
 }
 
 /// `*TIE`.
 pub(super) fn tie(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NAME", "POSITION TOLERANCE", "ADJUST"])?;
     card.value("NAME")?;
-    card.choice("ADJUST", &["YES", "NO"], "YES or NO")?;
-    if let Some(adjust) = card.value("ADJUST")?.filter(|adjust| adjust.name == "YES") {
-        let why = "nodes are not moved: a distance between tied surfaces stays as it is; write ADJUST=NO";
-        return Err(adjust.word.cannot(why));
-    }
-    if let Some(tolerance) = card.value("POSITIONTOLERANCE")? {
-        let why = "what faces the other surface is tied, at any distance; tie surfaces that lie on one another";
-        model.ignored.push(Ignored::new(&tolerance.word, why));
-    }
-    surfaces(model, card, None)
+    let adjust = card.choice("ADJUST", &["YES", "NO"], "YES or NO")?;
+    let tolerance = card.value("POSITIONTOLERANCE")?.map(|Named { name, word }| {
+        let distance = word.part(&name).real(&[&name], 0, "a distance").ok();
+        distance
+            .filter(|d| *d >= 0.0)
+            .ok_or_else(|| word.expected("a distance, not negative"))
+    });
+    let tie = Tie {
+        word: card.param("ADJUST").map_or(&card.word, |param| &param.word).clone(),
+        adjust: adjust != Some(1),
+        tolerance: tolerance.transpose()?,
+    };
+    surfaces(model, card, &Law::Tied(tie))
 }
 
 /// The lines of pairs of surfaces.
-fn surfaces(model: &mut Model, card: &Card, interaction: Option<&Named>) -> Result<(), DeckError> {
+fn surfaces(model: &mut Model, card: &Card, law: &Law) -> Result<(), DeckError> {
     for line in &card.lines {
         let wanted = "the dependent (slave) and the independent (master) surface";
         let fields = line.at_most(2, wanted)?;
@@ -235,10 +238,7 @@ fn surfaces(model: &mut Model, card: &Card, interaction: Option<&Named>) -> Resu
         };
         match fields[..] {
             [slave, master] if !slave.is_empty() && !master.is_empty() => model.pairs.push(Pair {
-                interaction: interaction.map(|Named { name, word }| Named {
-                    name: name.clone(),
-                    word: line.part(&word.text),
-                }),
+                law: law.clone(),
                 slave: named(slave),
                 master: named(master),
             }),

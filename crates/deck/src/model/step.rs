@@ -195,7 +195,7 @@ impl Step {
             model.ignored.push(Ignored::new(&param.word, SOLVER));
         }
         if let Some((first, _)) = &self.time {
-            let first = first.location.line;
+            let first = first.location.clone();
             let remedy = "a step has one procedure; begin another *STEP";
             return Err(card.word.fault(Fault::Repeated { first, remedy }));
         }

@@ -5,9 +5,10 @@ use signorini_fem_mesh::FacetTag;
 
 use super::faces::{FaceTable, Known};
 use super::rigid::{Motion, half_space};
+use super::ties;
 use crate::error::DeckError;
 use crate::lexer::Named;
-use crate::model::Names;
+use crate::model::{Ignored, Law, Names};
 
 /// One contact for each pair: nodes of the dependent surface touch nodes of the other one, or a rigid plane.
 pub(super) fn contacts(
@@ -15,12 +16,15 @@ pub(super) fn contacts(
     faces: &FaceTable,
     surfaces: &Names<Vec<FacetTag>>,
     motions: &[Motion],
+    ignored: &mut Vec<Ignored>,
 ) -> Result<Vec<Contact>, DeckError> {
     let model = known.model;
     let mut out = Vec::with_capacity(model.pairs.len());
     for pair in &model.pairs {
-        let interaction = |Named { name, word }: &Named| model.interactions.find("interaction", name, word);
-        let interaction = pair.interaction.as_ref().map(interaction).transpose()?;
+        let interaction = match &pair.law {
+            Law::Contact(Named { name, word }) => Some(model.interactions.find("interaction", name, word)?),
+            Law::Tied(_) => None,
+        };
         let surface = |Named { name, word }: &Named| surfaces.find("surface", name, word);
         let (dependent, other) = (surface(&pair.slave)?, surface(&pair.master)?);
         let (slave, master) = (surfaces.at(dependent), surfaces.at(other));
@@ -33,6 +37,9 @@ pub(super) fn contacts(
                 "{} and {} share faces; a face does not touch itself, so give two surfaces",
                 own.text, partner.text
             )));
+        }
+        if let (Law::Tied(tie), false) = (&pair.law, master.is_empty()) {
+            ignored.extend(ties::check(known, faces, (pair, tie), [dependent, other])?);
         }
         let mut contact = match (&master[..], interaction) {
             ([], None) => {

@@ -150,6 +150,12 @@ impl FaceTable {
         nodes.into_iter().map(place).collect()
     }
 
+    /// The triangles of a surface, the faces of quadratic elements as four each.
+    pub(super) fn triangles_of(&self, raw: &Raw, surface: u32) -> Vec<[u32; 3]> {
+        let on = self.list.iter().filter(|f| f.surfaces.contains(&surface));
+        on.flat_map(|face| raw.triangles(face.tet, face.nodes)).collect()
+    }
+
     /// The tag of each face, from 1 in the order of the faces.
     pub(super) fn tags(&self) -> Vec<FacetTag> {
         let mut known = HashMap::new();

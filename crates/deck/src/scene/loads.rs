@@ -34,6 +34,8 @@ pub(super) struct Loads {
     pressures: Vec<(f64, usize, usize)>,
     forces: Groups<BTreeMap<u32, [f64; 3]>>,
     bodies: Vec<(usize, usize, [f64; 3])>,
+    /// The targets in the order of the deck.
+    words: Vec<Word>,
 }
 
 /// A condition by what it acts on.
@@ -75,22 +77,23 @@ impl Loads {
         let mut forces = Tracks(BTreeMap::new());
         let mut pressures = Tracks(BTreeMap::new());
         let mut bodies = Tracks(BTreeMap::new());
-        let (mut order, mut gravity) = (0, BTreeMap::new());
+        let mut gravity = BTreeMap::new();
+        let mut loads = Self::default();
         for (step, given) in known.model.steps.iter().enumerate() {
-            known.forces(&mut forces, step, &given.forces, &mut order)?;
+            known.forces(&mut forces, step, &given.forces, &mut loads.words)?;
             if given.distributed.removes() {
                 pressures.remove(step);
                 bodies.remove(step);
                 gravity.clear();
             }
             for line in &given.distributed.lines {
-                order += 1;
+                let order = loads.words.len();
+                loads.words.push(line.word.clone());
                 one_gravity(&mut gravity, line)?;
                 let to = (&mut pressures, &mut bodies);
                 known.distributed(to, (step, order), line, surfaces, faces)?;
             }
         }
-        let mut loads = Self::default();
         for (&(node, component), track) in &forces.0 {
             if let Some((value, history)) = loads.histories.add(known.timeline, track)? {
                 let mut force = [0.0; 3];
@@ -190,8 +193,9 @@ impl Loads {
         }
     }
 
-    /// The loads of the scene, in the order of the deck; `tags` are those of the faces.
-    pub(super) fn lower(self, faces: &FaceTable, tags: &[FacetTag]) -> Vec<Load> {
+    /// The loads of the scene, in the order of the deck, each with the first word that asks for it; `tags` are those of
+    /// the faces.
+    pub(super) fn lower(self, faces: &FaceTable, tags: &[FacetTag]) -> Vec<(Load, Word)> {
         let mut out: Vec<(usize, LoadDensity, usize)> = Vec::new();
         for (number, (value, history, order)) in (0..).zip(&self.pressures) {
             let with = faces.list.iter().zip(tags);
@@ -208,7 +212,10 @@ impl Loads {
             out.push((order, LoadDensity::body(value), history));
         }
         out.sort_by_key(|load| load.0);
-        let load = |(_, density, history)| Load::new(density).with_history(self.histories.at(history));
+        let load = |(order, density, history): (usize, LoadDensity, usize)| {
+            let load = Load::new(density).with_history(self.histories.at(history));
+            (load, self.words[order].clone())
+        };
         out.into_iter().map(load).collect()
     }
 }
@@ -237,13 +244,14 @@ impl Known<'_> {
         tracks: &mut Tracks<(u32, usize)>,
         step: usize,
         given: &Conditions<Component>,
-        order: &mut usize,
+        words: &mut Vec<Word>,
     ) -> Result<(), DeckError> {
         if given.removes() {
             tracks.remove(step);
         }
         for line in &given.lines {
-            *order += 1;
+            let order = words.len();
+            words.push(line.word.clone());
             for node in self.sets.nodes.find(&line.target, &line.word)? {
                 let Some(node) = self.raw.in_mesh(node) else {
                     return Err(line.word.cannot(format!(
@@ -251,7 +259,7 @@ impl Known<'_> {
                         self.model.nodes[node as usize].label
                     )));
                 };
-                tracks.set((node, line.kind), (step, *order, true), line.given, &line.word)?;
+                tracks.set((node, line.kind), (step, order, true), line.given, &line.word)?;
             }
         }
         Ok(())

@@ -46,8 +46,8 @@ pub(super) fn sections(raw: &Raw, sets: &Sets) -> Result<Option<Vec<u32>>, DeckE
             let before = std::mem::replace(&mut of_element[tet as usize], index as u32);
             if before != NONE {
                 return Err(word.cannot(format!(
-                    "element {} is in the section of line {} already; an element has one section",
-                    raw.element_labels[tet as usize], model.sections[before as usize].elset.word.location.line
+                    "element {} is in the section of {} already; an element has one section",
+                    raw.element_labels[tet as usize], model.sections[before as usize].elset.word.location
                 )));
             }
         }

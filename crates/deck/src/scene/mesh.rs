@@ -2,14 +2,15 @@
 
 use std::path::Path;
 
+use signorini_contact::{ContactError, Part};
 use signorini_fem_mesh::internal::EDGES;
 use signorini_fem_mesh::vec3::tet_volume;
 use signorini_fem_mesh::{Facet, TetMesh};
 
 use super::numbers::{Numbers, Sets};
 use super::rigid::RigidBodies;
-use crate::error::{DeckError, Fault};
-use crate::model::Kind;
+use crate::error::{DeckError, Fault, Word};
+use crate::model::{Kind, Model};
 
 /// The mesh before its facets are known: elastic tetrahedra, without nodes that none of them uses.
 #[derive(Debug)]
@@ -108,6 +109,13 @@ impl Raw {
         self.tets[tet as usize].map(|n| self.points[n as usize])
     }
 
+    /// The number of a node of the mesh in the deck, where it is defined.
+    fn node_word(&self, model: &Model, node: u32) -> Word {
+        let position = self.of_node.iter().position(|n| *n == Some(node));
+        let label = self.node_labels[node as usize].to_string();
+        Word::new(&model.nodes[position.unwrap_or(0)].location, label)
+    }
+
     /// Shares of a tetrahedron in a force per volume that is constant in it, as far as its edges are straight.
     pub(super) fn shares(&self, tet: u32) -> Vec<(u32, f64)> {
         let corners = self.tets[tet as usize];
@@ -134,11 +142,34 @@ impl Raw {
         face.map(|corner| found.next().unwrap_or(corner))
     }
 
+    /// A face of a tetrahedron as triangles between neighbouring nodes.
+    pub(super) fn triangles(&self, tet: u32, face: [u32; 3]) -> Vec<[u32; 3]> {
+        let Some(mids) = self.mids.get(tet as usize) else {
+            return vec![face];
+        };
+        let corners = self.tets[tet as usize];
+        let between = |ends: [u32; 2]| {
+            let is = |edge: &[usize; 2]| edge.iter().all(|&k| ends.contains(&corners[k]));
+            EDGES.iter().position(is).map_or(ends[0], |edge| mids[edge])
+        };
+        let [a, b, c] = face;
+        let [ab, bc, ca] = [[a, b], [b, c], [c, a]].map(between);
+        vec![[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    }
+
     pub(super) fn volume(&self, tet: u32) -> f64 {
         tet_volume(&self.tet_points(tet))
     }
 
-    pub(super) fn mesh(&self, path: &Path, facets: Vec<Facet>, regions: Vec<u32>) -> Result<TetMesh, DeckError> {
+    /// The mesh; `name` says what a part is in the deck.
+    pub(super) fn mesh(
+        &self,
+        path: &Path,
+        model: &Model,
+        facets: Vec<Facet>,
+        regions: Vec<u32>,
+        name: impl Fn(Part) -> Option<String>,
+    ) -> Result<TetMesh, DeckError> {
         let whole =
             |(tet, mids): (&[u32; 4], &[u32; 6])| std::array::from_fn(|k| if k < 4 { tet[k] } else { mids[k - 4] });
         let mesh = match self.mids[..] {
@@ -149,9 +180,21 @@ impl Raw {
             }
         };
         let mesh = mesh.and_then(|mesh| mesh.with_regions(regions));
-        mesh.map_err(|source| DeckError::Mesh {
-            path: path.to_owned(),
-            source,
+        mesh.map_err(|source| {
+            let of = ContactError::from(source.clone()).parts();
+            let word = of.iter().find_map(|part| match *part {
+                Part::Tet(tet) => Some(model.elements[self.elements[tet] as usize].word()),
+                Part::Node(node) => Some(self.node_word(model, node)),
+                _ => None,
+            });
+            let Some(word) = word else {
+                let path = path.to_owned();
+                return DeckError::Mesh { path, source };
+            };
+            let named = |part: Part| Some(format!("{part} is {}", name(part)?));
+            let names: Vec<String> = of.into_iter().filter_map(named).collect();
+            let names = names.join(", ");
+            word.fault(Fault::Mesh { names, source })
         })
     }
 }

@@ -11,8 +11,10 @@ mod loads;
 mod materials;
 mod mesh;
 mod numbers;
+mod parts;
 mod rigid;
 mod supports;
+mod ties;
 mod timeline;
 
 use std::path::Path;
@@ -20,7 +22,7 @@ use std::path::Path;
 use signorini_contact::Scene;
 use signorini_fem_mesh::{FacetTag, TetMesh};
 
-use crate::error::DeckError;
+use crate::error::{DeckError, Word};
 use crate::model::{Ignored, Model, Names};
 
 pub(crate) use numbers::Numbers;
@@ -62,17 +64,24 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     faces.check_outside(&raw)?;
     let tags = faces.tags();
     let (regions, materials) = materials::materials(&raw, &sets)?;
-    let mesh = raw.mesh(path, faces.facets(&tags), regions)?;
+    let mut parts = parts::Parts::new(&raw, &sets, &regions);
+    let mesh = raw.mesh(path, model, faces.facets(&tags), regions, |part| parts.name(part))?;
     let surfaces = faces.tags_of(&tags, model);
 
-    let supports = supports::supports(known)?;
-    let contacts = contacts::contacts(known, &faces, &surfaces, &supports.motions)?;
-    let loads = loads.lower(&faces, &tags);
+    let mut supports = supports::supports(known)?;
+    let contacts = contacts::contacts(known, &faces, &surfaces, &supports.motions, &mut supports.ignored)?;
+    let (loads, words): (Vec<_>, Vec<_>) = loads.lower(&faces, &tags).into_iter().unzip();
+    let (support_names, held): (Vec<_>, Vec<_>) = supports.names.into_iter().unzip();
+    parts.steps = timeline.steps();
+    parts.tagged(&surfaces);
+    parts.loads = words.iter().map(Word::told).collect();
+    parts.supports = held.iter().map(Word::told).collect();
     let scene = materials.map(|materials| {
         let scene = Scene::new(mesh.clone(), materials).with_analysis(timeline.analysis());
         let scene = supports.list.into_iter().fold(scene, Scene::with_support);
         let scene = loads.into_iter().fold(scene, Scene::with_load);
-        contacts.into_iter().fold(scene, Scene::with_contact)
+        let scene = contacts.into_iter().fold(scene, Scene::with_contact);
+        scene.with_names(move |part| parts.name(part))
     });
     Ok(Translated {
         mesh,
@@ -83,7 +92,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         node_labels: raw.node_labels,
         element_labels: raw.element_labels,
         surfaces,
-        support_names: supports.names,
+        support_names,
         ignored: supports.ignored,
     })
 }

@@ -67,7 +67,7 @@ impl<'a> Table<'a> {
         let pairs = (0..count).map(|position| (at(position).0, position as u32));
         let numbers = Numbers::new(pairs.collect()).map_err(|[first, second]| {
             let (label, location) = at(second as usize);
-            let first = at(first as usize).1.line;
+            let first = at(first as usize).1.clone();
             Word::new(location, label.to_string()).fault(Fault::Repeated { first, remedy })
         })?;
         Ok(Self {

@@ -8,11 +8,14 @@ use super::faces::Known;
 use super::history::{Histories, Track};
 use super::rigid::Motion;
 use super::timeline::Timeline;
-use crate::error::DeckError;
+use crate::error::{DeckError, Word};
 use crate::model::{COMPONENT, Components, Condition, Given, Ignored, Target};
 
 /// Name of what is given on nodes by their numbers.
 const SINGLE: &str = "nodes";
+
+/// Name of a target, and the first word that is it.
+type Owner = (String, Word);
 
 /// A held component of a node: the target that it is given on first, and what the steps say.
 struct Held {
@@ -27,14 +30,14 @@ struct Held {
 struct Table {
     held: BTreeMap<(u32, usize), Held>,
     rigid: BTreeMap<(u32, usize), Held>,
-    owners: Vec<String>,
+    owners: Vec<Owner>,
     ignored: Vec<Ignored>,
 }
 
 /// Supports with the names of their targets, and the motions of rigid bodies.
 pub(super) struct Supports {
     pub(super) list: Vec<Support>,
-    pub(super) names: Vec<String>,
+    pub(super) names: Vec<Owner>,
     pub(super) motions: Vec<Motion>,
     /// Rotations that are held where there are none.
     pub(super) ignored: Vec<Ignored>,
@@ -105,21 +108,21 @@ impl Held {
 }
 
 impl Table {
-    fn owner(&mut self, target: &Target) -> usize {
+    fn owner(&mut self, target: &Target, word: &Word) -> usize {
         let name = match target {
             Target::Number(_) => SINGLE,
             Target::Name(name) => name,
         };
-        let known = self.owners.iter().position(|owner| owner == name);
+        let known = self.owners.iter().position(|owner| owner.0 == name);
         known.unwrap_or_else(|| {
-            self.owners.push(name.to_owned());
+            self.owners.push((name.to_owned(), word.clone()));
             self.owners.len() - 1
         })
     }
 
     /// Notes a line of a step, or of the part before the first.
     fn add(&mut self, known: Known, step: Option<usize>, line: &Condition<Components>) -> Result<(), DeckError> {
-        let owner = self.owner(&line.target);
+        let owner = self.owner(&line.target, &line.word);
         let (mut found, mut turned) = (false, None);
         for node in known.sets.nodes.find(&line.target, &line.word)? {
             let (map, key, components) = match known.raw.in_mesh(node) {
@@ -165,7 +168,7 @@ impl Table {
         Ok(())
     }
 
-    fn lower(self, timeline: &Timeline) -> Result<(Vec<Support>, Vec<String>), DeckError> {
+    fn lower(self, timeline: &Timeline) -> Result<(Vec<Support>, Vec<Owner>), DeckError> {
         let mut histories = Histories::default();
         // by target, first component, history and components: nodes and their displacements
         type Key = (usize, usize, Option<usize>, [bool; 3]);

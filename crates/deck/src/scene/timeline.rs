@@ -59,6 +59,16 @@ impl<'a> Timeline<'a> {
         Ok(Self { model, spans, times })
     }
 
+    /// Increments up to the end of each step, and where it stands.
+    pub(super) fn steps(&self) -> Vec<(usize, String)> {
+        let mut end = 0;
+        let steps = self.model.steps.iter().map(|step| {
+            end += step.time.as_ref().map_or(0, |(_, increments)| increments.count);
+            (end, step.word.told())
+        });
+        steps.collect()
+    }
+
     /// Backward Euler over all increments; a single one is static.
     pub(super) fn analysis(&self) -> Analysis {
         match self.times[..] {

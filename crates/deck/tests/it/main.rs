@@ -2,7 +2,9 @@
 
 mod broken;
 mod meaning;
+mod names;
 mod reading;
 mod refusals;
 mod same_bits;
+mod ties;
 mod write;

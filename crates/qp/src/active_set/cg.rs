@@ -15,10 +15,10 @@
 //! | `rho` | residual on the set times `z` |
 
 use crate::error::QpError;
-use crate::problem::{EqualityProjector, SymmetricOperator};
+use crate::problem::{Constrained, EqualityProjector, SymmetricOperator, for_constrained};
 use crate::tolerances::{
-    ASTRAY, ASTRAY_STEP, ENOUGH, GROWN, MOST_STEPS, MOST_STEPS_ON_PATH, NEGATIVE_CURVATURE, PASSING, PASSING_STEP,
-    ROUNDED_STEPS, TAMED, WILD,
+    ASTRAY, ASTRAY_STEP, ENOUGH, FLAT, FLAT_GRADIENT, GROWN, LENT, LONG, MOST_STEPS, MOST_STEPS_ON_PATH,
+    NEGATIVE_CURVATURE, PASSING, PASSING_STEP, ROUNDED_STEPS, TAMED, WILD,
 };
 use crate::vector;
 
@@ -69,7 +69,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         while self.report.products() < last && rho > 0.0 {
             let coupled = self.multiply_direction();
             steps += 1;
-            let Some(curvature) = self.curvature(coupled)? else {
+            let Some(curvature) = self.curvature(rho, coupled)? else {
                 break;
             };
             let longest = self.longest_step(first.all, goal.size, coupled);
@@ -166,8 +166,9 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         coupled
     }
 
-    /// `pᵀ (A q + kappa p)`; `None` where it is not positive, by rounding or because the coupling is too strong.
-    fn curvature(&mut self, coupled: bool) -> Result<Option<f64>, QpError> {
+    /// `pᵀ (A q + kappa p)`; `None` where it is not positive, by rounding or because the coupling is too strong. Where
+    /// there is none, and the way ends at the boundary of the set, some is lent.
+    fn curvature(&mut self, rho: f64, coupled: bool) -> Result<Option<f64>, QpError> {
         let work = &mut *self.work;
         let operator = self.problem.operator;
         let plain = operator.dot(&work.p, &work.ap);
@@ -175,14 +176,32 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         if !curvature.is_finite() {
             return Err(self.not_finite("the curvature"));
         }
+        let length = rho / curvature;
+        let long = curvature > 0.0 && length > LONG * work.shortest;
+        if curvature > 0.0 && !long {
+            if length < work.shortest {
+                work.shortest = length;
+                let [pp, dd] = operator.dots([(&work.p, &work.p), (&work.ap, &work.ap)]);
+                work.steepest = work.steepest.max((dd / pp).sqrt());
+            }
+            return Ok(Some(curvature));
+        }
+        work.leapt = true;
+        let pp = operator.dot(&work.p, &work.p);
+        let largest = work.steepest * pp;
+        if !coupled && curvature.abs() <= FLAT * largest {
+            let lent = LENT * if largest > 0.0 { largest } else { rho };
+            work.leap = work.leap.max(rho / lent * pp.sqrt());
+            return self.without_curvature(lent);
+        }
         if curvature > 0.0 {
+            work.leap = work.leap.max(length * pp.sqrt());
             return Ok(Some(curvature));
         }
         if coupled {
             work.coupling.failed = true;
             return Ok(None);
         }
-        let pp = operator.dot(&work.p, &work.p);
         if plain < -NEGATIVE_CURVATURE * operator.norm(&work.ap) * pp.sqrt() {
             return Err(QpError::Indefinite {
                 curvature: curvature / pp,
@@ -190,6 +209,35 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             });
         }
         Ok(None)
+    }
+
+    /// What a direction without curvature is given: nothing where the gradient along it is rounding.
+    fn without_curvature(&self, lent: f64) -> Result<Option<f64>, QpError> {
+        let (work, operator) = (&*self.work, self.problem.operator);
+        let size = operator.norm(self.problem.linear) + operator.norm(self.ax);
+        if operator.norm(&work.residual) <= FLAT_GRADIENT * size {
+            return Ok(None);
+        }
+        let mut ends = false;
+        let towards = |p: f64, lower: f64, upper: f64| {
+            if p < 0.0 {
+                lower.is_finite()
+            } else {
+                p > 0.0 && upper.is_finite()
+            }
+        };
+        for_constrained(self.set, |block| {
+            ends |= match block {
+                Constrained::Bound { i, lower, upper, .. } => towards(work.p[i], lower, upper),
+                Constrained::Disc { i, radius, .. } => radius.is_finite() && work.p[i..i + 2] != [0.0; 2],
+            };
+        });
+        if ends {
+            return Ok(Some(lent));
+        }
+        Err(QpError::Unbounded {
+            products: self.report.products(),
+        })
     }
 
     /// A step of this length: `x`, `ax` and both residuals; `ap` becomes that of the residual on the set.

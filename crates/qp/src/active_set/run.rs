@@ -6,8 +6,8 @@ use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NEGLIGIBLE, ON_PATH, PASSING_PART, PRESSED, PROGRESS, ROUNDED, SHRUNK,
-    SINK_ROUNDS, SMALL_PART, UNBALANCED,
+    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NEGLIGIBLE, ON_PATH, PASSING_PART, PRESSED, PROGRESS, ROUNDED, RUNAWAY,
+    SHRUNK, SINK_ROUNDS, SMALL_PART, UNBALANCED,
 };
 use crate::vector;
 
@@ -115,6 +115,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         work.resize(constrained);
         work.coupling.start(set, constrained);
         work.length = 0.0;
+        (work.shortest, work.steepest) = (f64::INFINITY, 0.0);
+        (work.leapt, work.leap) = (false, 0.0);
         work.active.resize(set);
         let map = problem.scale[..constrained].iter().zip(problem.linear);
         let reach = map.map(|(a, b)| (a * b).powi(2)).sum::<f64>().sqrt();
@@ -293,9 +295,10 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
 
     /// Computes `A x` afresh if it still carries the rounding errors of a much larger `x`.
     pub(crate) fn refreshes(&mut self, place: &Place) -> bool {
-        let stale = self.peak > SHRUNK * place.x_norm;
+        let peak = self.peak.max(self.at.work.leap);
+        let stale = peak > SHRUNK * place.x_norm;
         if stale {
-            self.peak = place.x_norm;
+            (self.peak, self.at.work.leap) = (place.x_norm, 0.0);
             self.moved.behind = false;
             self.at.multiply();
         }
@@ -332,6 +335,15 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             && at.set.violation(at.x) <= limit
             && 2.0 * at.work.active.crossing <= limit
             && !at.work.active.contradicted(at.set, at.x, &map, limit)
+            && self.is_gradient_small(place)
+    }
+
+    /// Whether the residual on the set, at least `rho / |z|`, is small against `b` and `A x`, after a long step: an `x` that
+    /// runs away along a direction without curvature makes any error small against itself.
+    fn is_gradient_small(&self, place: &Place) -> bool {
+        let (problem, norm) = (self.at.problem, |v: &[f64]| self.at.problem.operator.norm(v));
+        let load = norm(problem.linear);
+        !self.at.work.leapt || load == 0.0 || place.rho <= RUNAWAY * place.errors.all * (load + norm(self.at.ax))
     }
 
     /// Lets the product follow the last move, if that is yet to be done. Whether it was.

@@ -35,6 +35,7 @@ settings! {
 /// What [`active_set`](crate::active_set()) did.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
+#[must_use = "it may not have converged: see `status`"]
 pub struct ActiveSetReport {
     /// How it ended.
     pub status: Status,

@@ -31,6 +31,12 @@ pub struct ActiveSetWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     pub(crate) coupling: Coupling,
     /// Length of the last step of conjugate gradients.
     pub(crate) length: f64,
+    /// Shortest step so far, and the largest `|Ap| / |p|` of those that were the shortest.
+    pub(crate) shortest: f64,
+    pub(crate) steepest: f64,
+    /// Whether any step was long, and the farthest that one has led since `A x` was computed afresh.
+    pub(crate) leapt: bool,
+    pub(crate) leap: f64,
 }
 
 impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
@@ -55,6 +61,10 @@ impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
             active: ActiveSet::default(),
             coupling: Coupling::default(),
             length: 0.0,
+            shortest: f64::INFINITY,
+            steepest: 0.0,
+            leapt: false,
+            leap: 0.0,
         }
     }
 

@@ -44,6 +44,7 @@ settings! {
 /// Result of [`kprgp`](crate::kprgp()).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
+#[must_use = "it may not have converged: see `status`"]
 pub struct KprgpReport {
     /// How the solve ended.
     pub status: Status,

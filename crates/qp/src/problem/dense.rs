@@ -75,6 +75,41 @@ impl SymmetricOperator for Identity {
     }
 }
 
+/// A diagonal operator. With the inverses of the diagonal of `A` it is the simplest preconditioner, and its entries are
+/// the [scale](crate::active_set::ActiveSetProblem::scale) of the active-set method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Diagonal(Vec<f64>);
+
+impl Diagonal {
+    /// With these entries.
+    ///
+    /// # Errors
+    /// [`QpError::Input`] for an entry that is not finite.
+    pub fn new(entries: Vec<f64>) -> Result<Self, QpError> {
+        expect_finite("the diagonal", &entries)?;
+        Ok(Self(entries))
+    }
+
+    /// Its entries.
+    #[must_use]
+    pub fn entries(&self) -> &[f64] {
+        &self.0
+    }
+}
+
+impl SymmetricOperator for Diagonal {
+    type Scratch = ();
+    fn dim(&self) -> usize {
+        self.0.len()
+    }
+    fn scratch(&self) -> Self::Scratch {}
+    fn apply(&self, x: &[f64], y: &mut [f64], _s: &mut ()) {
+        for ((y, x), d) in y.iter_mut().zip(x).zip(&self.0) {
+            *y = d * x;
+        }
+    }
+}
+
 /// Equality constraints `G x = e` brought to orthonormal rows: `G = L C` with `L` lower triangular.
 ///
 /// ```

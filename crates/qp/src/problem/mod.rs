@@ -18,7 +18,7 @@ mod projector;
 mod set;
 
 pub(crate) use dense::solve_cholesky;
-pub use dense::{DenseEquality, DenseOperator, Identity};
+pub use dense::{DenseEquality, DenseOperator, Diagonal, Identity};
 pub use dense_projector::DenseProjector;
 pub use operator::{Equality, SymmetricOperator};
 pub use product::{ProductSet, Segment};

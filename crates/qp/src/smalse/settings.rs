@@ -52,6 +52,7 @@ pub(crate) type OuterHook<'h, S> = dyn FnMut(&[f64], &mut S) -> bool + 'h;
 /// Result of [`smalse`](crate::smalse()).
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
+#[must_use = "it may not have converged: see `status`"]
 pub struct SmalseReport {
     /// How the solve ended.
     pub status: Status,

@@ -190,16 +190,18 @@ enum Verdict {
 impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, '_, A, C, S> {
     /// Tolerances, and the first gradient.
     fn start(&mut self) -> Result<(), QpError> {
-        let (o, settings) = (&mut self.o, self.settings);
+        let settings = self.settings;
         // eps_1 = eps |P h|
-        let (reference, rounding) = reference(o, settings.tolerance, &mut self.v.ap, &mut self.products);
-        let reference = reference.max(LEAST_RESPONSE * o.norm * settings.least);
-        self.least = self.least.max(rounding / o.norm);
-        o.floor = usable(settings.tolerance.resolve(reference))?;
-        o.cap = settings.gradient_cap * reference;
+        let (load, rounding) = reference(&mut self.o, settings.tolerance, &mut self.v.ap, &mut self.products);
+        self.least = self.least.max(rounding / self.o.norm);
         self.set.project(self.x);
         self.compute_gradient();
         self.products.initial += 1;
+        // without a load the set alone pushes
+        let reference = if load > 0.0 { load } else { vector::norm(&self.v.g) };
+        let reference = reference.max(LEAST_RESPONSE * self.o.norm * settings.least);
+        self.o.floor = usable(settings.tolerance.resolve(reference))?;
+        self.o.cap = settings.gradient_cap * reference;
         self.set_equality_tolerance();
         Ok(())
     }

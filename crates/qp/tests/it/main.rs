@@ -3,6 +3,7 @@
 mod active_set;
 mod allocations;
 mod common;
+mod flat;
 mod interior_point;
 mod kkt;
 mod kprgp;

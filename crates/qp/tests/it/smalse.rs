@@ -154,7 +154,7 @@ fn the_hook_may_change_radii() {
         for i in 0..m {
             p.set.radii_mut(1).expect("discs")[i] = -friction * y[i];
         }
-        p.smalse(&tight(), &mut |_, _| false, &mut y, &mut gamma);
+        let _ = p.smalse(&tight(), &mut |_, _| false, &mut y, &mut gamma);
     }
     assert!(vector::distance(&x, &y) <= 1e-6, "{}", vector::distance(&x, &y));
 }

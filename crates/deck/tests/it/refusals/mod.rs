@@ -49,8 +49,13 @@ fn keywords() {
         "not known; those that are read: *HEADING",
     );
     behind("*Tie, name=T\n", "*Tie, name=T", "*Tie", "no surfaces");
-    let tie = "*TIE, NAME=T, ADJUST=YES";
-    behind(&format!("{tie}\nS1, S2\n"), tie, "ADJUST=YES", "nodes are not moved");
+    let tie = "*TIE, NAME=T, POSITION TOLERANCE=-1.";
+    behind(
+        &format!("{tie}\nS1, S2\n"),
+        tie,
+        "POSITION TOLERANCE=-1.",
+        "not negative",
+    );
     behind("*PART, NAME=A\n", "*PART, NAME=A", "*PART", "flat one");
     behind("*RIGID BODY\n", "*RIGID BODY", "*RIGID BODY", "ELSET is missing");
     behind(

@@ -9,7 +9,7 @@ fn mesh() {
         let line = format!("*ELEMENT, TYPE={kind}");
         behind(&format!("{line}\n"), &line, &format!("TYPE={kind}"), "C3D4");
     }
-    behind("*NODE\n1, 0., 0., 0.\n", "1, 0., 0., 0.", "1", "first in line 2");
+    behind("*NODE\n1, 0., 0., 0.\n", "1, 0., 0., 0.", "1", "part.inp:2; give");
     behind("*NODE\n0, 0., 0., 0.\n", "0, 0., 0., 0.", "0", "from 1 to 2147483647");
     behind(
         "*NODE\n9999999999, 0.\n",
@@ -180,7 +180,7 @@ fn contact() {
         "*SURFACE INTERACTION before",
     );
     let pair = "*CONTACT PAIR, INTERACTION=I";
-    behind(&format!("{pair}\nS1, S2\n"), "S1, S2", "INTERACTION=I", "there is none");
+    behind(&format!("{pair}\nS1, S2\n"), pair, "INTERACTION=I", "there is none");
     behind(&format!("{law}{pair}\nS1, S9\n"), "S1, S9", "S9", "there are: S1, S2");
     behind(
         &format!("{law}{pair}\nS1, S1\n"),

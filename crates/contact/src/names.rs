@@ -1,0 +1,161 @@
+//! The parts of a scene that an error speaks of, and what they are called where the scene comes from.
+
+use crate::error::ContactError;
+use crate::part::Part;
+use signorini_fem_mesh::loads::Function;
+use signorini_fem_mesh::{FacetTag, LoadError, MaterialError, MeshError, SurfaceError};
+use signorini_tfeti::TfetiError;
+use std::sync::Arc;
+
+type Name = dyn Fn(Part) -> Option<String> + Send + Sync;
+
+/// What parts are called, if anybody knows.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub(crate) struct Names(Option<Function<Name>>);
+
+impl Names {
+    pub(crate) fn new(name: impl Fn(Part) -> Option<String> + Send + Sync + 'static) -> Self {
+        Self(Some(Function(Arc::new(name))))
+    }
+
+    /// The error behind the names of what it speaks of.
+    pub(crate) fn tell(&self, error: ContactError) -> ContactError {
+        let (Some(name), false) = (&self.0, matches!(error, ContactError::Named { .. })) else {
+            return error;
+        };
+        let named = |part: Part| Some(format!("{part} is {}", name(part)?));
+        let names: Vec<String> = error.parts().into_iter().filter_map(named).collect();
+        if names.is_empty() {
+            return error;
+        }
+        ContactError::Named {
+            names: names.join(", "),
+            source: Box::new(error),
+        }
+    }
+}
+
+impl ContactError {
+    /// The parts of the scene that it speaks of, without repetition.
+    pub fn parts(&self) -> Vec<Part> {
+        let mut parts = match self {
+            Self::Coefficient { contact, .. }
+            | Self::Compliance { contact, .. }
+            | Self::EmptyTable { contact }
+            | Self::TableRate { contact, .. }
+            | Self::ObstacleNormal { contact, .. }
+            | Self::ObstacleSide { contact, .. }
+            | Self::NoPartner { contact, .. }
+            | Self::Tied { contact }
+            | Self::MovedPartner { contact } => vec![Part::Contact(*contact)],
+            Self::Gap { contact, node, .. }
+            | Self::MovedField { contact, node, .. }
+            | Self::ObstacleGradient { contact, node, .. }
+            | Self::FrictionAxis { contact, node, .. }
+            | Self::TurnedNormal { contact, node, .. } => vec![Part::Contact(*contact), Part::Node(*node)],
+            Self::Overlap {
+                contact, node, partner, ..
+            } => {
+                vec![Part::Contact(*contact), Part::Node(*node), Part::Node(*partner)]
+            }
+            Self::SameSide { contact, tag } => vec![Part::Contact(*contact), Part::Tag(FacetTag(*tag))],
+            Self::SharedNode { node, first, second } => {
+                vec![Part::Node(*node), Part::Contact(*first), Part::Contact(*second)]
+            }
+            Self::CoefficientAt { node, .. }
+            | Self::SlipBound { node, .. }
+            | Self::SupportInObstacle { node, .. }
+            | Self::NotDetermined { node, .. }
+            | Self::Probe { node, .. } => vec![Part::Node(*node)],
+            Self::NotHeld { step, node, .. } => vec![Part::Node(*node), Part::Step(*step)],
+            Self::Time { step, .. } | Self::UnequalSteps { step, .. } | Self::UnconvergedHistory { step } => {
+                vec![Part::Step(*step)]
+            }
+            Self::UnknownTag { what, index, .. } | Self::HistoryValue { what, index, .. } => {
+                Part::of_scene(what, *index).into_iter().collect()
+            }
+            Self::SpringStiffness { spring, .. } => vec![Part::Spring(*spring)],
+            Self::UnknownNode { support, .. } | Self::ValueCount { support, .. } => vec![Part::Support(*support)],
+            Self::TooLarge { part, .. } => vec![*part],
+            Self::Stiffness { region, .. } => vec![Part::Region(*region)],
+            Self::NotConverged(failure) => {
+                let node = failure.slide.map(|s| Part::Node(s.node));
+                [Part::Step(failure.step)].into_iter().chain(node).collect()
+            }
+            Self::Load { index, source } => {
+                let node = match source {
+                    LoadError::UnknownNode { node, .. } => Some(Part::Node(*node)),
+                    _ => None,
+                };
+                [Part::Load(*index)].into_iter().chain(node).collect()
+            }
+            Self::Mesh(error) => of_mesh(error),
+            Self::Material(MaterialError::Unknown { region, .. } | MaterialError::Repeated { region }) => {
+                vec![Part::Region(*region)]
+            }
+            Self::Surface(error) => match error {
+                SurfaceError::NoNormal { node } => vec![Part::Node(*node)],
+                SurfaceError::RepeatedTag { tag } | SurfaceError::UnknownTag { tag, .. } => vec![Part::Tag(*tag)],
+                _ => Vec::new(),
+            },
+            Self::Tfeti(error) => match error {
+                TfetiError::Material { element, .. } => vec![Part::Tet(*element)],
+                TfetiError::Spring { node, .. }
+                | TfetiError::UnknownNode { node, .. }
+                | TfetiError::ContactNodeTwice { node }
+                | TfetiError::BadFrame { node, .. }
+                | TfetiError::BadCompliance { node, .. }
+                | TfetiError::BadStretch { node, .. }
+                | TfetiError::DependentRows { node } => vec![Part::Node(*node)],
+                TfetiError::EmptySupport { support, .. }
+                | TfetiError::BadDirection { support, .. }
+                | TfetiError::MotionLength { support, .. }
+                | TfetiError::CaseNumber { support, .. } => vec![Part::Support(*support)],
+                TfetiError::BadMotion { support, node } => vec![Part::Support(*support), Part::Node(*node)],
+                TfetiError::ContradictorySupports {
+                    node, first, second, ..
+                } => {
+                    vec![Part::Node(*node), Part::Support(*first), Part::Support(*second)]
+                }
+                _ => Vec::new(),
+            },
+            Self::Named { source, .. } => source.parts(),
+            _ => Vec::new(),
+        };
+        let mut seen = Vec::with_capacity(parts.len());
+        parts.retain(|part| {
+            !seen.contains(part) && {
+                seen.push(*part);
+                true
+            }
+        });
+        parts
+    }
+}
+
+fn of_mesh(error: &MeshError) -> Vec<Part> {
+    let node = |n: &usize| u32::try_from(*n).ok().map(Part::Node);
+    match error {
+        MeshError::NotFinite { node: n, .. } | MeshError::DanglingNode { node: n, .. } => node(n).into_iter().collect(),
+        MeshError::CoincidentNodes { first, second, .. } => [first, second].into_iter().filter_map(node).collect(),
+        MeshError::NodeOutOfRange { tet, .. } => vec![Part::Tet(*tet)],
+        MeshError::RepeatedNode { tet, node }
+        | MeshError::MidNodeCorner { tet, node }
+        | MeshError::MidNodeOff { tet, node, .. } => vec![Part::Tet(*tet), Part::Node(*node)],
+        MeshError::DegenerateTet { tet, .. }
+        | MeshError::InvertedTet { tet, .. }
+        | MeshError::CurvedInside { tet, .. }
+        | MeshError::FaceShared { first: tet, .. } => vec![Part::Tet(*tet)],
+        MeshError::OverlappingTets { first, second, .. } | MeshError::FacetInside { first, second, .. } => {
+            vec![Part::Tet(*first), Part::Tet(*second)]
+        }
+        MeshError::FacetUnknown { nodes, .. } | MeshError::FacetRepeated { nodes, .. } => {
+            nodes.iter().copied().map(Part::Node).collect()
+        }
+        MeshError::MidNodeTwice { node, .. } => vec![Part::Node(*node)],
+        MeshError::MidNodesOfEdge { edge, first, second } => {
+            edge.iter().chain([first, second]).copied().map(Part::Node).collect()
+        }
+        _ => Vec::new(),
+    }
+}

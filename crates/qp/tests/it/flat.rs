@@ -1,0 +1,118 @@
+//! Operators without curvature along some directions: what runs away along them is told as unbounded, not as solved.
+
+use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
+use signorini_qp::problem::Identity;
+use signorini_qp::{
+    ActiveSetSettings, CgWorkspace, DenseEquality, DenseOperator, DenseProjector, ProductSet, QpError, Segment,
+    SmalseSettings, Status, Tolerance, active_set, kkt, projected_cg, vector,
+};
+
+use crate::common::{Quadratic, Random, product};
+
+/// Of this rank and a norm of about one, with a load that is no product of the operator.
+fn singular(n: usize, rank: usize, r: &mut Random) -> (DenseOperator, Vec<f64>) {
+    let mut a = vec![0.0; n * n];
+    for k in 0..rank {
+        let v = r.vector(n);
+        for i in 0..n {
+            for j in 0..n {
+                a[i * n + j] += v[i] * v[j] / (n as f64 * (1.0 + k as f64));
+            }
+        }
+    }
+    (DenseOperator::new(n, a).expect("symmetric"), r.vector(n))
+}
+
+fn solve(a: &DenseOperator, b: &[f64], mut set: ProductSet) -> (Result<Status, QpError>, Vec<f64>) {
+    let n = b.len();
+    let identity = Identity(n);
+    let mut work = ActiveSetWorkspace::new(a, &identity);
+    let problem = ActiveSetProblem {
+        operator: a,
+        preconditioner: &identity,
+        scale: &vec![1.0; n],
+        linear: b,
+        rhs: &[],
+    };
+    let mut projector = DenseProjector::new(0, n, Vec::new()).expect("projector");
+    let (mut x, mut ax) = (vec![0.0; n], vec![0.0; n]);
+    let settings = ActiveSetSettings::default();
+    let report = active_set(
+        &problem,
+        &mut projector,
+        &mut set,
+        &mut x,
+        &mut ax,
+        false,
+        &settings,
+        &mut work,
+        &mut |_, _| {},
+    );
+    (report.map(|r| r.status), x)
+}
+
+#[test]
+fn conjugate_gradients_tell_that_a_load_works_along_the_kernel() {
+    for seed in 0..60 {
+        let mut r = Random::new(seed);
+        let (n, rows) = (3 + r.below(6), r.below(2));
+        let (a, b) = singular(n, n - 1 - rows - r.below(2), &mut r);
+        let c = DenseEquality::orthonormal(rows, n, &r.vector(rows * n)).expect("rows");
+        let (m, e) = (Identity(n), vec![0.0; rows]);
+        let mut x = vec![0.0; n];
+        let mut work = CgWorkspace::new(&a, &c, &m);
+        let solved = projected_cg(&a, &b, &c, &e, &m, Tolerance::Relative(1e-8), 1000, &mut x, &mut work);
+        assert!(
+            matches!(solved, Err(QpError::Unbounded { .. })),
+            "seed {seed}: {solved:?}"
+        );
+        // a load that is a product has solutions
+        let b = product(&a, &r.vector(n));
+        let solved = projected_cg(&a, &b, &c, &e, &m, Tolerance::Relative(1e-8), 1000, &mut x, &mut work);
+        assert_eq!(solved.expect("solve").status, Status::Converged, "seed {seed}");
+    }
+}
+
+#[test]
+fn active_sets_tell_it_and_find_the_boundary_where_there_is_one() {
+    let mut unbounded = 0;
+    for seed in 0..120 {
+        let mut r = Random::new(seed);
+        let n = 1 + r.below(8);
+        let (a, b) = singular(n, r.below(n), &mut r);
+        let boxed = ProductSet::new(vec![Segment::bounds(vec![-1.0; n], vec![1.0; n])]).expect("set");
+        let (status, x) = solve(&a, &b, boxed.clone());
+        assert_eq!(status, Ok(Status::Converged), "seed {seed}");
+        let left = kkt::check(&a, &b, &boxed, &x, 1.0).expect("check").relative();
+        assert!(left < 1e-4, "seed {seed}: {left:e}");
+        let open = ProductSet::new(vec![Segment::lower(vec![-1.0; n])]).expect("set");
+        let (status, x) = solve(&a, &b, open.clone());
+        match status {
+            Ok(Status::Converged) => {
+                let left = kkt::check(&a, &b, &open, &x, 1.0).expect("check").relative();
+                assert!(left < 1e-2, "seed {seed}: {left:e}, {x:?}");
+            }
+            Err(QpError::Unbounded { .. }) => unbounded += 1,
+            Ok(Status::Stagnated | Status::IterationLimit) => {}
+            other => panic!("seed {seed}: {other:?}"),
+        }
+    }
+    assert!(unbounded > 30, "{unbounded}");
+}
+
+/// Neither a load nor an equality: the set alone moves `x` from zero.
+#[test]
+fn smalse_needs_no_load() {
+    let mut r = Random::new(3);
+    let (n, set) = (
+        6,
+        ProductSet::new(vec![Segment::lower(vec![0.5; 3]), Segment::Free(3)]).expect("set"),
+    );
+    let (a, _) = crate::common::spd(n, 1.5, &mut r);
+    let c = DenseEquality::orthonormal(0, n, &[]).expect("no rows");
+    let mut problem = Quadratic::new(a, vec![0.0; n], (c, Vec::new()), set);
+    let (mut x, settings) = (vec![0.0; n], SmalseSettings::default());
+    let (report, ..) = problem.smalse(&settings, &mut |_, _| false, &mut x, &mut []);
+    assert!(report.status.converged(), "{report:?}");
+    assert!(vector::norm(&x) > 0.8, "{x:?}");
+}
