@@ -74,7 +74,8 @@ pub fn disc() -> Result<([f64; 3], f64, f64), QpError> {
         .with_equality(1e-10);
     let (mut x, mut mu, mut work) = ([0.0; 3], [0.0], SmalseWorkspace::new(&a, &c));
     let (s, hook) = (&settings, &mut |_: &[f64], _: &mut ProductSet| false);
-    smalse(&a, &b, &c, &e, &mut set, 1.0, s, hook, &mut x, &mut mu, &mut work)?;
+    let report = smalse(&a, &b, &c, &e, &mut set, 1.0, s, hook, &mut x, &mut mu, &mut work)?;
+    assert!(report.status.converged(), "{report:?}");
     let multiplier = work.equality_multiplier();
     let (c, e) = (&c, &e);
     let equality = kkt::EqualityPart { c, e, multiplier };
