@@ -23,19 +23,23 @@ impl Names {
         let (Some(name), false) = (&self.0, matches!(error, ContactError::Named { .. })) else {
             return error;
         };
-        let named = |part: Part| Some(format!("{part} is {}", name(part)?));
-        let names: Vec<String> = error.parts().into_iter().filter_map(named).collect();
+        let names = error.names(&**name);
         if names.is_empty() {
             return error;
         }
-        ContactError::Named {
-            names: names.join(", "),
-            source: Box::new(error),
-        }
+        let source = Box::new(error);
+        ContactError::Named { names, source }
     }
 }
 
 impl ContactError {
+    /// What its [parts](Self::parts) are called, of those that have a name.
+    pub fn names(&self, name: impl Fn(Part) -> Option<String>) -> String {
+        let named = |part: Part| Some(format!("{part} is {}", name(part)?));
+        let names: Vec<String> = self.parts().into_iter().filter_map(named).collect();
+        names.join(", ")
+    }
+
     /// The parts of the scene that it speaks of, without repetition.
     pub fn parts(&self) -> Vec<Part> {
         let mut parts = match self {

@@ -15,10 +15,10 @@ pub(crate) const FLAT: f64 = 1e-13;
 pub(crate) const LONG: f64 = 1e4;
 /// Curvature over the largest one that a direction without any is given, so that steps along it lead to the boundary.
 pub(crate) const LENT: f64 = 1e-2;
-/// The same from which on `x` is no solution, however small the error is against it.
-pub(crate) const RUNAWAY: f64 = 1e-2;
 /// Gradient over `|b| + |A x|` that is rounding.
 pub(crate) const FLAT_GRADIENT: f64 = 1e-10;
+/// The same from which on `x` is no solution, however small the error is against it.
+pub(crate) const RUNAWAY: f64 = 1e-2;
 
 // Data of a problem
 

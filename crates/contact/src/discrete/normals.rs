@@ -76,7 +76,7 @@ pub(super) fn shape_frames(
     };
     let frame = |(&node, own): (&u32, &SurfaceFrame)| {
         let position = mesh.points()[node as usize];
-        let distance = shape.distance(position).0;
+        let (distance, gradient) = shape.distance_against(position, own.normal);
         if !distance.is_finite() {
             let (contact, value) = (index, distance);
             return Err(ContactError::Gap {
@@ -86,7 +86,6 @@ pub(super) fn shape_frames(
                 value,
             });
         }
-        let gradient = shape.gradient(position, own.normal);
         let is_unit = (norm(gradient) - 1.0).abs() <= GRADIENT;
         let frame = SurfaceFrame::from_normal(gradient.map(|c| -c)).filter(|_| is_unit);
         let frame = frame.ok_or(ContactError::ObstacleGradient {

@@ -134,16 +134,16 @@ pub(crate) fn turned_to(
     pose: &Pose,
     place: &[f64; 3],
 ) -> f64 {
-    let at = &scene.mesh.points()[node as usize];
-    let first = gradient(scene, contact, &Pose::default(), at, &normal);
-    let now = gradient(scene, contact, pose, place, &normal).filter(|now| vec3::dot(*now, normal) < -FACING);
+    let along = |pose: &Pose, place: &[f64; 3]| gradient(scene, contact, pose, place, &normal);
+    let now = along(pose, place).filter(|now| vec3::dot(*now, normal) < -FACING);
+    let first = now.and_then(|_| along(&Pose::default(), &scene.mesh.points()[node as usize]));
     first.zip(now).map_or(0.0, |(first, now)| angle(first, now))
 }
 
 /// The gradient of the distance to the obstacle of a contact, if it has a shape.
 fn gradient(scene: &Scene, contact: usize, pose: &Pose, place: &[f64; 3], against: &[f64; 3]) -> Option<[f64; 3]> {
     let shape = scene.contacts[contact].shape.as_ref()?;
-    Some(pose.forth(&shape.gradient(pose.origin(place), pose.back(against))))
+    Some(pose.forth(&shape.distance_against(pose.origin(place), pose.back(against)).1))
 }
 
 fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -123,9 +123,9 @@ impl Obstacle {
         (self.field)(place, self.side, None)
     }
 
-    /// Its gradient at a place; on edges and corners of surfaces the one that is most opposite to a direction.
-    pub(crate) fn gradient(&self, place: [f64; 3], against: [f64; 3]) -> [f64; 3] {
-        (self.field)(place, self.side, Some(against)).1
+    /// The same; on edges and corners of surfaces with the gradient that is most opposite to a direction.
+    pub(crate) fn distance_against(&self, place: [f64; 3], against: [f64; 3]) -> (f64, [f64; 3]) {
+        (self.field)(place, self.side, Some(against))
     }
 
     /// The way along a direction from a place to the obstacle, m, negative inside; the shortest distance where that

@@ -41,6 +41,7 @@ mod shapes;
 mod springs;
 mod step_doubling;
 mod supports;
+mod tables;
 mod tresca;
 mod unconverged;
 mod wedge;

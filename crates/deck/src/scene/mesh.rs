@@ -130,31 +130,27 @@ impl Raw {
 
     /// Nodes that share the force on a face of a tetrahedron evenly: its corners, or the nodes on its edges.
     pub(super) fn loaded(&self, tet: u32, face: [u32; 3]) -> [u32; 3] {
-        let Some(mids) = self.mids.get(tet as usize) else {
-            return face;
-        };
-        let corners = self.tets[tet as usize];
-        let on_face = EDGES
-            .iter()
-            .zip(mids)
-            .filter(|(edge, _)| edge.iter().all(|&k| face.contains(&corners[k])));
-        let mut found = on_face.map(|(_, mid)| *mid);
-        face.map(|corner| found.next().unwrap_or(corner))
+        self.mids_of(tet, face).unwrap_or(face)
     }
 
     /// A face of a tetrahedron as triangles between neighbouring nodes.
     pub(super) fn triangles(&self, tet: u32, face: [u32; 3]) -> Vec<[u32; 3]> {
-        let Some(mids) = self.mids.get(tet as usize) else {
+        let Some([ab, bc, ca]) = self.mids_of(tet, face) else {
             return vec![face];
         };
+        let [a, b, c] = face;
+        vec![[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+    }
+
+    /// The nodes on the edges of a face, from each corner to the next, of a quadratic tetrahedron.
+    fn mids_of(&self, tet: u32, [a, b, c]: [u32; 3]) -> Option<[u32; 3]> {
+        let mids = self.mids.get(tet as usize)?;
         let corners = self.tets[tet as usize];
         let between = |ends: [u32; 2]| {
             let is = |edge: &[usize; 2]| edge.iter().all(|&k| ends.contains(&corners[k]));
             EDGES.iter().position(is).map_or(ends[0], |edge| mids[edge])
         };
-        let [a, b, c] = face;
-        let [ab, bc, ca] = [[a, b], [b, c], [c, a]].map(between);
-        vec![[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]
+        Some([[a, b], [b, c], [c, a]].map(between))
     }
 
     pub(super) fn volume(&self, tet: u32) -> f64 {
@@ -181,8 +177,8 @@ impl Raw {
         };
         let mesh = mesh.and_then(|mesh| mesh.with_regions(regions));
         mesh.map_err(|source| {
-            let of = ContactError::from(source.clone()).parts();
-            let word = of.iter().find_map(|part| match *part {
+            let error = ContactError::from(source.clone());
+            let word = error.parts().into_iter().find_map(|part| match part {
                 Part::Tet(tet) => Some(model.elements[self.elements[tet] as usize].word()),
                 Part::Node(node) => Some(self.node_word(model, node)),
                 _ => None,
@@ -191,9 +187,7 @@ impl Raw {
                 let path = path.to_owned();
                 return DeckError::Mesh { path, source };
             };
-            let named = |part: Part| Some(format!("{part} is {}", name(part)?));
-            let names: Vec<String> = of.into_iter().filter_map(named).collect();
-            let names = names.join(", ");
+            let names = error.names(name);
             word.fault(Fault::Mesh { names, source })
         })
     }

@@ -62,11 +62,9 @@ pub(super) fn check(
         let distance = distance.abs();
         let label = raw.node_labels[node as usize];
         if distance <= tolerance {
-            farthest = if distance > farthest.0 {
-                (distance, label)
-            } else {
-                farthest
-            };
+            if distance > farthest.0 {
+                farthest = (distance, label);
+            }
         } else if dot(normal, gradient).abs() > BEFORE * norm(normal) {
             return Err(pair.slave.word.cannot(format!(
                 "node {label} is {distance:.3e} from {}, more than the position tolerance {tolerance:.3e}{}: CalculiX would \

@@ -57,11 +57,13 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
             })
         };
         let mut enough = fallen(start);
-        let most = match self.compliance.c > 0.0 {
-            // without constraints there is no other set
-            _ if self.constrained() == 0 => usize::MAX,
-            true => MOST_STEPS_ON_PATH,
-            false => MOST_STEPS,
+        // without constraints there is no other set
+        let most = if self.constrained() == 0 {
+            usize::MAX
+        } else if self.compliance.c > 0.0 {
+            MOST_STEPS_ON_PATH
+        } else {
+            MOST_STEPS
         };
         let last = goal.max_products.min(self.report.products().saturating_add(most));
         self.first_direction();

@@ -1,7 +1,7 @@
 //! The active-set method: conjugate gradients for a choice of active, free and sliding blocks, and a natural map that
 //! predicts the next choice.
 //!
-//! From above: `solver` (the loop), `moves` and `run` (what happens between one active set and the next), `descent`
+//! From above: `solver` (the loop), `start`, `moves` and `run` (what happens between one active set and the next), `descent`
 //! (safeguard where predictions run in circles), `path` and `compliance` (springs that lead to another set), `cg` and
 //! `weights` (the linear problem), `iterate` (the point), `balance` (modes that constraints alone stop), `coupling` (radii
 //! that follow), `natural_map`, `blocks` and `disc` (states); `problem`, `settings`, `view`.
@@ -24,6 +24,7 @@ mod problem;
 mod run;
 mod settings;
 mod solver;
+mod start;
 mod view;
 mod weights;
 mod workspace;

@@ -6,8 +6,8 @@ use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NEGLIGIBLE, ON_PATH, PASSING_PART, PRESSED, PROGRESS, ROUNDED, RUNAWAY,
-    SHRUNK, SINK_ROUNDS, SMALL_PART, UNBALANCED,
+    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NEGLIGIBLE, ON_PATH, PASSING_PART, PROGRESS, ROUNDED, RUNAWAY, SHRUNK,
+    SMALL_PART, UNBALANCED,
 };
 use crate::vector;
 
@@ -163,80 +163,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         }
     }
 
-    /// A feasible point that satisfies `G x = e`, a first active set and the product with the point.
-    pub(crate) fn start(&mut self, ax_known: bool) -> Result<(), QpError> {
-        self.at.mark();
-        self.path.unknown = !self.is_known();
-        self.guess();
-        let stopped = if self.repairs_suffice {
-            self.at.set_weights(false)?.is_some()
-        } else {
-            self.is_known() && self.at.project_start()
-        };
-        if !stopped {
-            // only constraints stop a mode: a balance with all of them at work tells the first active set
-            self.at.set_all_free()?;
-            self.at.projector.balance(self.at.x, self.at.problem.rhs);
-            self.follow()?;
-            self.guess();
-            if !self.repairs_suffice {
-                self.sink()?;
-            }
-        }
-        if !self.repairs_suffice {
-            self.settle_loose(true, true)?;
-            self.at.work.active.guess(self.at.set, self.at.x);
-            if stopped {
-                self.at.work.active.guess_sliding(self.at.set, self.at.x);
-            }
-        }
-        if !(stopped && self.repairs_suffice) && self.at.set_weights(false)?.is_none() {
-            self.at.set_all_free()?;
-        }
-        self.at.projector.repair(self.at.x, self.at.problem.rhs);
-        self.peak = self.at.problem.operator.norm(self.at.x);
-        if ax_known {
-            // without constraints nothing but rounding may have moved
-            let moves = self.at.constrained() > 0;
-            self.at.correct(if moves { 0.0 } else { ROUNDED * self.peak });
-        } else {
-            self.at.multiply();
-        }
-        Ok(())
-    }
-
     /// Whether constrained components are more than rounding.
-    fn is_known(&self) -> bool {
+    pub(crate) fn is_known(&self) -> bool {
         vector::norm(&self.at.x[..self.at.constrained()]) > ROUNDED * self.reach
-    }
-
-    /// Where nothing is known of the contact, bodies that constraints alone hold sink into springs until they balance,
-    /// rigid and without gluing. A spring alone has the stiffness of the preconditioner; `n` that are pressed at once
-    /// are softer by the root of `n`, for a patch of `n` points is softer than its points by as much. Where most are
-    /// pressed at once the gaps tell nothing, and `x` stays if it tells something.
-    fn sink(&mut self) -> Result<(), QpError> {
-        let (from, told) = (self.at.x.to_vec(), self.is_known());
-        let mut stiffness = 1.0;
-        for _ in 0..SINK_ROUNDS {
-            let balances = self.at.sink(stiffness);
-            let active = &mut self.at.work.active;
-            active.guess(self.at.set, self.at.x);
-            let pressed = active.free_bounds;
-            if !balances || told && pressed as f64 > PRESSED * active.free.len() as f64 {
-                vector::copy(&from, self.at.x);
-                return self.follow();
-            }
-            stiffness = 1.0 / (pressed.max(1) as f64).sqrt();
-            self.follow()?;
-        }
-        Ok(())
-    }
-
-    /// Projects `x` on the set and guesses the active set from it.
-    fn guess(&mut self) {
-        let at = &mut self.at;
-        at.set.project(at.x);
-        at.work.active.guess(at.set, at.x);
     }
 
     /// Classifies the blocks by the natural map, and enters the active set with projector and preconditioner. `None`
