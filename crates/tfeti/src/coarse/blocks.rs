@@ -74,9 +74,10 @@ impl BlockTable {
 
     /// `y = y - A x` on some rows of blocks.
     pub(crate) fn subtract(&self, numbers: &[f64], rows: Range<usize>, x: &[f64], y: &mut [f64]) {
-        let chunks = y[6 * rows.start..6 * rows.end].par_chunks_mut(6 * BLOCKS).enumerate();
+        let size = (BLOCKS * rows.len() / self.columns(rows.clone()).len().max(1)).max(1);
+        let chunks = y[6 * rows.start..6 * rows.end].par_chunks_mut(6 * size).enumerate();
         chunks.for_each(|(k, y)| {
-            let pointers = &self.pointers[rows.start + k * BLOCKS..][..=y.len() / 6];
+            let pointers = &self.pointers[rows.start + k * size..][..=y.len() / 6];
             Arch::new().dispatch(Subtract {
                 table: self,
                 pointers,

@@ -96,7 +96,7 @@ impl Clusters {
     /// Amplitudes of the subdomains from the motions of the clusters.
     pub(crate) fn prolong(&self, motions: &[f64], y: &mut [f64]) {
         let (motions, _) = motions.as_chunks::<6>();
-        let subdomains = y.as_chunks_mut::<6>().0.par_iter_mut().with_min_len(BLOCKS);
+        let subdomains = y.as_chunks_mut::<6>().0.par_iter_mut().with_min_len(BLOCKS / 4);
         subdomains
             .zip(&self.maps)
             .zip(&self.of)

@@ -284,7 +284,7 @@ impl Model {
     /// `out = J rest` on some subdomains.
     fn relax(&self, factor: &ModelFactor, own: Range<usize>, rest: &[f64], out: &mut [f64]) {
         let (rest, (out, _)) = (rest.as_chunks::<6>().0, out.as_chunks_mut::<6>());
-        let all = out[own.clone()].par_iter_mut().with_min_len(BLOCKS);
+        let all = out[own.clone()].par_iter_mut().with_min_len(BLOCKS / 4);
         let each = all.zip(&self.inverses[own.clone()]).zip(&rest[own.clone()]);
         each.for_each(|((out, inverse), rest)| *out = times(inverse, rest));
         let touching = self.touching.iter().zip(&factor.inverses);
