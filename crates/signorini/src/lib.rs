@@ -64,5 +64,7 @@ pub mod prelude {
     };
     #[cfg(feature = "vtu")]
     pub use signorini_contact::{ResultField, ResultWriter};
-    pub use signorini_fem_mesh::{Brick, Facet, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick};
+    pub use signorini_fem_mesh::{
+        Brick, Facet, FacetTag, FreeStrain, History, Hooke, LoadDensity, Materials, TetMesh, brick,
+    };
 }

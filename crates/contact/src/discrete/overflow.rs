@@ -4,9 +4,9 @@
 use super::points::ContactPoint;
 use crate::error::ContactError;
 use crate::part::Part;
-use crate::scene::{Pose, Scene};
+use crate::scene::{LoadKind, Pose, Scene};
 use crate::tolerances::LARGEST;
-use signorini_fem_mesh::{Decomposition, assemble_load};
+use signorini_fem_mesh::{Decomposition, assemble_free_strain, assemble_load};
 use signorini_qp::vector;
 use signorini_tfeti::TfetiError;
 
@@ -96,8 +96,11 @@ pub(super) fn nodal_loads(
 ) -> Result<Vec<Vec<Vec<f64>>>, ContactError> {
     let mut out = Vec::with_capacity(scene.loads.len());
     for (index, load) in scene.loads.iter().enumerate() {
-        let local = assemble_load(&scene.mesh, decomposition, &load.density)
-            .map_err(|source| ContactError::Load { index, source })?;
+        let local = match &load.kind {
+            LoadKind::Density(density) => assemble_load(&scene.mesh, decomposition, density),
+            LoadKind::FreeStrain(strain) => assemble_free_strain(&scene.mesh, decomposition, &scene.materials, strain),
+        };
+        let local = local.map_err(|source| ContactError::Load { index, source })?;
         // a NaN stays one
         let sizes = local.iter().map(|f| vector::max_abs(f));
         let size = sizes.fold(0.0, |a: f64, b| if b.is_nan() { b } else { a.max(b) });

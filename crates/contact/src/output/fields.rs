@@ -105,7 +105,7 @@ pub(super) fn body(result: &StepResult, chosen: &[ResultField], moment: Moment) 
     };
     let nodal = if stressed {
         match mesh.order() {
-            2 if !rest => nodal_stresses(mesh, result.scene().materials(), result.displacement().as_flattened())?,
+            2 if !rest => nodal_stresses(mesh, &result.materials(), result.displacement().as_flattened())?,
             _ => nodal_average(mesh, &stress)?,
         }
     } else {

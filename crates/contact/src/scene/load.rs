@@ -1,20 +1,36 @@
 //! Loads in space and time.
 
-use signorini_fem_mesh::{FacetTag, History, LoadDensity};
+use signorini_fem_mesh::{FacetTag, FreeStrain, History, LoadDensity};
 
 /// A load in space and time.
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Load {
-    pub(crate) density: LoadDensity,
+    pub(crate) kind: Kind,
     pub(crate) history: History,
+}
+
+#[derive(Debug, Clone)]
+pub(crate) enum Kind {
+    Density(LoadDensity),
+    FreeStrain(FreeStrain),
 }
 
 impl Load {
     /// A load that is constant in time.
     pub fn new(density: LoadDensity) -> Self {
+        Self::of(Kind::Density(density))
+    }
+
+    /// Strain that makes no stress: expansion by temperature, a shaft that shrinks, a bolt that is tightened. Constant
+    /// in time, too: bodies have it from the first step on.
+    pub fn free_strain(strain: FreeStrain) -> Self {
+        Self::of(Kind::FreeStrain(strain))
+    }
+
+    fn of(kind: Kind) -> Self {
         Self {
-            density,
+            kind,
             history: History::constant(1.0),
         }
     }
@@ -46,9 +62,12 @@ impl Load {
         self
     }
 
-    /// The load in space.
-    pub fn density(&self) -> &LoadDensity {
-        &self.density
+    /// The load in space; `None` of a free strain.
+    pub fn density(&self) -> Option<&LoadDensity> {
+        match &self.kind {
+            Kind::Density(density) => Some(density),
+            Kind::FreeStrain(_) => None,
+        }
     }
 
     /// Its factor in time.

@@ -26,6 +26,7 @@ pub use contact::{Contact, ContactNormal};
 pub(crate) use friction::check_laws;
 pub use friction::{Coefficient, Friction, PlaceField, RateField, SlipBound};
 pub use gap::Gap;
+pub(crate) use load::Kind as LoadKind;
 pub use load::Load;
 pub use obstacle::Obstacle;
 pub use partition::Partition;

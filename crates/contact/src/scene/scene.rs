@@ -9,7 +9,7 @@ use super::time::Analysis;
 use crate::error::ContactError;
 use crate::names::Names;
 use crate::part::Part;
-use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
+use signorini_fem_mesh::{Decomposition, History, Materials, TetMesh};
 
 /// Everything that says what is to be simulated, and nothing about how.
 #[derive(Debug, Clone)]
@@ -28,13 +28,15 @@ pub struct Scene {
 
 impl Scene {
     /// A free body without loads: static, cut into subdomains as its size asks for.
-    pub fn new(mesh: TetMesh, materials: Materials) -> Self {
+    pub fn new(mesh: TetMesh, mut materials: Materials) -> Self {
+        let constant = |(factor, strain)| Load::free_strain(strain).with_history(History::constant(factor));
+        let loads = materials.take_free_strains().into_iter().map(constant).collect();
         Self {
             mesh,
             materials,
             supports: Vec::new(),
             springs: Vec::new(),
-            loads: Vec::new(),
+            loads,
             contacts: Vec::new(),
             partition: Partition::Automatic,
             analysis: Analysis::statics(),

@@ -152,7 +152,7 @@ impl Simulation {
         if known.holds(step, own.scale) {
             return Ok(known);
         }
-        let found = discretisation_error(&self.model, &self.caches, recovered)?;
+        let found = discretisation_error(&self.model, &self.caches, &self.problem, recovered)?;
         self.controller.discretisation = Discretisation {
             relative: if own.scale > own.elastic {
                 relative(found.energy, own.scale)

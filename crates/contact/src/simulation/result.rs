@@ -8,11 +8,12 @@ use crate::result::{
     Certificate, ContactSummary, Lengths, PointState, Reactions, Recovered, SurfaceStress, coarse_mesh, is_strained,
     loads, nodal_reactions, points_at_nodes, reactions_about, tied_forces, warnings,
 };
-use crate::scene::Scene;
+use crate::scene::{LoadKind, Scene};
 use crate::status::StepFailure;
 use crate::step::StepProblem;
 use signorini_fem_mesh::recovery::{DiscretisationError, StrainRecovery};
-use signorini_fem_mesh::{Decomposition, Surface, fields};
+use signorini_fem_mesh::{Decomposition, Materials, Surface, fields};
+use std::borrow::Cow;
 use std::sync::Arc;
 
 /// What a step ended with. It lives on by itself: the simulation can take further steps beside it.
@@ -132,16 +133,21 @@ impl StepResult {
 
     /// Stress in every tetrahedron (xx, yy, zz, yz, xz, xy), Pa; not a number where the displacement is none.
     pub fn stress(&self) -> Vec<[f64; 6]> {
-        let (mesh, materials) = (self.scene().mesh(), self.scene().materials());
-        let stresses = fields::stresses(mesh, materials, self.displacement().as_flattened());
+        let mesh = self.scene().mesh();
+        let stresses = fields::stresses(mesh, &self.materials(), self.displacement().as_flattened());
         stresses.unwrap_or_else(|_| vec![[f64::NAN; 6]; mesh.tets().len()])
     }
 
     /// Elastic energy, J; not a number if the displacement is none.
     pub fn strain_energy(&self) -> f64 {
-        let (mesh, materials) = (self.scene().mesh(), self.scene().materials());
-        let energy = fields::strain_energy(mesh, materials, self.displacement().as_flattened());
+        let u = self.displacement();
+        let energy = fields::strain_energy(self.scene().mesh(), &self.materials(), u.as_flattened());
         energy.unwrap_or(f64::NAN)
+    }
+
+    /// The materials with the free strains of this step.
+    pub(crate) fn materials(&self) -> Cow<'_, Materials> {
+        materials(&self.model, &self.problem)
     }
 
     /// Estimated algebraic error (by the duality gap): how far the solver stopped from the discrete solution.
@@ -160,7 +166,7 @@ impl StepResult {
     /// # Errors
     /// [`ContactError::Field`] if the displacement is not finite.
     pub fn discretisation_error(&self) -> Result<DiscretisationError, ContactError> {
-        discretisation_error(&self.model, &self.caches, &self.recovered)
+        discretisation_error(&self.model, &self.caches, &self.problem, &self.recovered)
     }
 
     /// Reactions of the supports, with moments about the origin. See [`reactions_about`](Self::reactions_about).
@@ -247,11 +253,24 @@ impl StepResult {
 pub(super) fn discretisation_error(
     model: &Model,
     caches: &Caches,
+    problem: &StepProblem,
     recovered: &Recovered,
 ) -> Result<DiscretisationError, ContactError> {
-    let Scene { mesh, materials, .. } = &model.scene;
+    let mesh = &model.scene.mesh;
     let recovery = caches.recovery.get_or_init(|| StrainRecovery::new(mesh));
-    Ok(recovery.error(mesh, materials, &model.tfeti.nodal_mean(&recovered.torn))?)
+    let u = model.tfeti.nodal_mean(&recovered.torn);
+    Ok(recovery.error(mesh, &materials(model, problem), &u)?)
+}
+
+/// The materials of a scene with the free strains of a step.
+fn materials<'a>(model: &'a Model, problem: &StepProblem) -> Cow<'a, Materials> {
+    let mut all = Cow::Borrowed(&model.scene.materials);
+    for (load, factor) in model.scene.loads.iter().zip(&problem.factors) {
+        if let LoadKind::FreeStrain(strain) = &load.kind {
+            all = Cow::Owned(all.into_owned().with_free_strain(*factor, strain.clone()));
+        }
+    }
+    all
 }
 
 impl AccumulatedError {

@@ -15,6 +15,7 @@ mod edges_apart;
 mod effects;
 mod estimates;
 mod free_bodies;
+mod free_strain;
 mod gap_history;
 mod halving;
 mod invariance;

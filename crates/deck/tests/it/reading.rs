@@ -212,7 +212,7 @@ fn elements_of_second_order_are_read_with_their_nodes() {
     let some = "*ELSET, ELSET=SOME\n1, 2, 3, 4, 5\n*BOUNDARY\nN5, 1, 3\n*STEP\n*STATIC\n*DLOAD\nSOME, GRAV, 10., 0., 0., -1.\n*END STEP\n";
     let scene = read(&(text + some)).expect("deck").scene().expect("scene");
     let [load] = scene.loads() else { panic!("one load") };
-    let LoadDensity::NodalForces(forces) = load.density() else {
+    let Some(LoadDensity::NodalForces(forces)) = load.density() else {
         panic!("forces at nodes")
     };
     let points = straight.points();

@@ -17,4 +17,5 @@ pub use p1::Element;
 pub use piece::shape_gradients;
 
 pub(crate) use p1::Block;
+pub(crate) use p2::QuadraticElement;
 pub(crate) use piece::{Piece, integral, over_quadratic};

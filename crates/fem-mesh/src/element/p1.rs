@@ -25,6 +25,17 @@ impl Element {
             gradients: [g0, ga, gb, gc],
         }
     }
+
+    /// Forces of the nodes that a stress does work with.
+    pub(crate) fn forces(&self, stress: &[f64; 6]) -> [[f64; 3]; 4] {
+        self.gradients.map(|g| scale(self.volume, traction(stress, g)))
+    }
+}
+
+/// A stress times a vector.
+pub(crate) fn traction(stress: &[f64; 6], g: [f64; 3]) -> [f64; 3] {
+    let [xx, yy, zz, yz, xz, xy] = *stress;
+    [dot([xx, xy, xz], g), dot([xy, yy, yz], g), dot([xz, yz, zz], g)]
 }
 
 /// Gradient of a displacement, `h[i][j]` = d u_i / d x_j, from those of the shape functions and its nodal values.

@@ -5,7 +5,7 @@ use crate::mesh::{EDGES, tangents};
 use crate::quadrature::FOUR_POINTS;
 use crate::vec3::{Vec3, add, scale, sub};
 
-use super::p1::{Block, Element, nodal_stress, stiffness_block};
+use super::p1::{Block, Element, nodal_stress, stiffness_block, traction};
 
 /// Volume of the tangent tetrahedron at barycentric coordinates, and the gradients of the ten shape functions there.
 pub(crate) fn gradients(points: &[Vec3; 10], l: &[f64; 4]) -> (f64, [Vec3; 10]) {
@@ -43,6 +43,23 @@ impl QuadraticElement {
             std::array::from_fn(of_node)
         });
         Self { points, mean }
+    }
+
+    /// Forces of the nodes that a stress at barycentric coordinates does work with.
+    pub(crate) fn forces(&self, stress: impl Fn(&[f64; 4]) -> [f64; 6]) -> [Vec3; 10] {
+        let mut forces = [[0.0; 3]; 10];
+        for ((volume, gradients), l) in self.points.iter().zip(&FOUR_POINTS) {
+            let stress = stress(l);
+            let pressure = (stress[0] + stress[1] + stress[2]) / 3.0;
+            for (a, force) in forces.iter_mut().enumerate() {
+                let mut own = traction(&stress, gradients[a]);
+                if let Some(mean) = self.mean {
+                    own = add(own, scale(pressure, sub(mean[a], gradients[a])));
+                }
+                *force = add(*force, scale(*volume, own));
+            }
+        }
+        forces
     }
 
     /// Blocks of the column of node `b` in the rows that are wanted.

@@ -52,6 +52,18 @@ pub fn strains(mesh: &TetMesh, u: &[f64]) -> Result<Vec<[f64; 6]>, FieldError> {
     Ok((0..mesh.tets().len()).into_par_iter().map(strain).collect())
 }
 
+/// Strain of a displacement that makes stress in a tetrahedron, at barycentric coordinates.
+fn elastic(
+    mesh: &TetMesh,
+    materials: &Materials,
+    law: &Hooke,
+    (tet, piece): (usize, &Piece),
+    l: &[f64; 4],
+) -> [f64; 6] {
+    let place = (mesh.regions()[tet], &mesh.tets()[tet]);
+    materials.elastic(law, place, l, &piece.strain(l))
+}
+
 /// Stress of each tetrahedron, of a quadratic one at its centroid.
 ///
 /// # Errors
@@ -61,12 +73,13 @@ pub fn stresses(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<Vec<
     let u = nodal_vectors(mesh, u)?;
     let stress = |(tet, law): (usize, &&Hooke)| {
         let piece = Piece::new(mesh, tet, &u).with_law(law);
-        law.stress(&piece.strain(&CENTROID))
+        law.stress(&elastic(mesh, materials, law, (tet, &piece), &CENTROID))
     };
     Ok(laws.par_iter().enumerate().map(stress).collect())
 }
 
-/// Elastic energy, half of stress times strain integrated over the mesh: that of the stiffness matrix.
+/// Elastic energy, half of stress times strain that is not free, integrated over the mesh: without free strain that of
+/// the stiffness matrix.
 ///
 /// # Errors
 /// [`FieldError`] as [`stresses`].
@@ -76,7 +89,7 @@ pub fn strain_energy(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result
     let rule = FOUR_POINTS.map(|l| (l, 0.25));
     let energy = |tet: usize| {
         let piece = Piece::new(mesh, tet, &u).with_law(laws[tet]);
-        let density = |l: &[f64; 4]| laws[tet].energy_density(&piece.strain(l));
+        let density = |l: &[f64; 4]| laws[tet].energy_density(&elastic(mesh, materials, laws[tet], (tet, &piece), l));
         match mesh.order() {
             1 => mesh.volume(tet) * density(&CENTROID),
             _ => over_quadratic(mesh, tet, &rule, density),
@@ -106,7 +119,7 @@ pub fn nodal_stresses(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Resul
     let u = nodal_vectors(mesh, u)?;
     let at_nodes = |tet: usize| {
         let piece = Piece::new(mesh, tet, &u).with_law(laws[tet]);
-        NODES.map(|l| laws[tet].stress(&piece.strain(&l)))
+        NODES.map(|l| laws[tet].stress(&elastic(mesh, materials, laws[tet], (tet, &piece), &l)))
     };
     let values: Vec<[[f64; 6]; 10]> = (0..mesh.tets().len()).into_par_iter().map(at_nodes).collect();
     Ok(average(mesh, |tet, k| values[tet][k]))

@@ -26,10 +26,7 @@ pub fn assemble_load(
     decomposition: &Decomposition,
     load: &LoadDensity,
 ) -> Result<Vec<Vec<f64>>, LoadError> {
-    let (decomposed, meshed) = (decomposition.parts().len(), mesh.tets().len());
-    if decomposed != meshed || decomposition.nodes() != mesh.points().len() {
-        return Err(LoadError::ForeignDecomposition { decomposed, meshed });
-    }
+    expect_decomposition(mesh, decomposition)?;
     match load {
         LoadDensity::Body(value) => body(mesh, decomposition, Density::Constant(*value)),
         LoadDensity::BodyField(value) => body(mesh, decomposition, Density::Varying(&|x, _| value(x))),
@@ -44,6 +41,15 @@ pub fn assemble_load(
         }
         LoadDensity::NodalForces(forces) => nodal(mesh, decomposition, forces),
     }
+}
+
+/// Checks that a decomposition is one of the mesh.
+pub(super) fn expect_decomposition(mesh: &TetMesh, decomposition: &Decomposition) -> Result<(), LoadError> {
+    let (decomposed, meshed) = (decomposition.parts().len(), mesh.tets().len());
+    if decomposed != meshed || decomposition.nodes() != mesh.points().len() {
+        return Err(LoadError::ForeignDecomposition { decomposed, meshed });
+    }
+    Ok(())
 }
 
 fn tagged_area(mesh: &TetMesh, tag: FacetTag) -> f64 {
@@ -117,7 +123,7 @@ fn finite(place: [f64; 3], value: [f64; 3]) -> Result<[f64; 3], LoadError> {
     }
 }
 
-fn accumulate<const N: usize>(vector: &mut [f64], nodes: &[u32; N], forces: [[f64; 3]; N]) {
+pub(super) fn accumulate<const N: usize>(vector: &mut [f64], nodes: &[u32; N], forces: [[f64; 3]; N]) {
     for (&node, force) in nodes.iter().zip(forces) {
         (0..3).for_each(|i| vector[3 * node as usize + i] += force[i]);
     }

@@ -1,5 +1,6 @@
 //! Which material fills which region.
 
+use super::free_strain::FreeStrain;
 use super::hooke::Hooke;
 
 errors! {
@@ -12,12 +13,15 @@ errors! {
     }
 }
 
-/// Hooke's law of each material region.
+/// Hooke's law of each material region, and what strain is free of stress.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Materials(Kind);
+pub struct Materials {
+    laws: Laws,
+    free: Vec<(f64, FreeStrain)>,
+}
 
 #[derive(Debug, Clone, PartialEq)]
-enum Kind {
+enum Laws {
     Uniform(Box<Hooke>),
     /// Sorted by region.
     Table(Vec<(u32, Hooke)>),
@@ -26,7 +30,7 @@ enum Kind {
 impl Materials {
     /// The same law in all regions.
     pub fn uniform(hooke: Hooke) -> Self {
-        Self(Kind::Uniform(Box::new(hooke)))
+        Self::of(Laws::Uniform(Box::new(hooke)))
     }
 
     /// A law for each region listed.
@@ -37,15 +41,44 @@ impl Materials {
         table.sort_by_key(|(region, _)| *region);
         match table.windows(2).find(|pair| pair[0].0 == pair[1].0) {
             Some(pair) => Err(MaterialError::Repeated { region: pair[0].0 }),
-            None => Ok(Self(Kind::Table(table))),
+            None => Ok(Self::of(Laws::Table(table))),
         }
+    }
+
+    fn of(laws: Laws) -> Self {
+        Self { laws, free: Vec::new() }
+    }
+
+    /// Adds a free strain times a factor; several add up. [`fields`](crate::fields) and
+    /// [`recovery`](crate::recovery) take the stress of what the strain is more. The stiffness stays, and the forces
+    /// are those of [`assemble_free_strain`](crate::assemble_free_strain).
+    #[must_use]
+    pub fn with_free_strain(mut self, factor: f64, strain: FreeStrain) -> Self {
+        self.free.push((factor, strain));
+        self
+    }
+
+    /// Takes the free strains with their factors away.
+    pub fn take_free_strains(&mut self) -> Vec<(f64, FreeStrain)> {
+        std::mem::take(&mut self.free)
+    }
+
+    /// What of a strain makes stress, in a tetrahedron of this law with its region and corners at barycentric
+    /// coordinates.
+    pub(crate) fn elastic(&self, law: &Hooke, tet: (u32, &[u32; 4]), l: &[f64; 4], strain: &[f64; 6]) -> [f64; 6] {
+        let mut elastic = *strain;
+        for (factor, free) in &self.free {
+            let free = free.at(law, tet, l);
+            (0..6).for_each(|i| elastic[i] -= factor * free[i]);
+        }
+        elastic
     }
 
     /// The regions that a law is listed for, ascending; none where one law fills all regions.
     pub fn listed(&self) -> Vec<u32> {
-        match &self.0 {
-            Kind::Uniform(_) => Vec::new(),
-            Kind::Table(table) => table.iter().map(|(region, _)| *region).collect(),
+        match &self.laws {
+            Laws::Uniform(_) => Vec::new(),
+            Laws::Table(table) => table.iter().map(|(region, _)| *region).collect(),
         }
     }
 
@@ -54,9 +87,9 @@ impl Materials {
     /// # Errors
     /// [`MaterialError::Unknown`] if the region has none.
     pub fn get(&self, region: u32) -> Result<&Hooke, MaterialError> {
-        match &self.0 {
-            Kind::Uniform(hooke) => Ok(hooke),
-            Kind::Table(table) => match table.binary_search_by_key(&region, |(r, _)| *r) {
+        match &self.laws {
+            Laws::Uniform(hooke) => Ok(hooke),
+            Laws::Table(table) => match table.binary_search_by_key(&region, |(r, _)| *r) {
                 Ok(place) => Ok(&table[place].1),
                 Err(_) => {
                     let known = table.iter().map(|(r, _)| *r).collect();

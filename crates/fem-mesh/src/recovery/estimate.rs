@@ -21,7 +21,7 @@ pub struct DiscretisationError {
     pub energies: Vec<f64>,
     /// Their sum, J.
     pub energy: f64,
-    /// Elastic energy of the displacement, J.
+    /// Elastic energy of the displacement, J; where strain is free that of all strain, if that is larger.
     pub elastic_energy: f64,
 }
 
@@ -61,8 +61,14 @@ impl StrainRecovery {
         expect_entries("table of tetrahedra", self.corners.len(), mesh.tets().len())?;
         let laws = materials.of_tets(mesh.regions())?;
         let both = match mesh.order() {
-            1 => self.linear(mesh, &laws, &strains(mesh, u)?),
-            _ => energies(mesh, &laws, &nodal_vectors(mesh, u)?, &self.fits, &self.corners),
+            1 => self.linear(mesh, materials, &laws, &strains(mesh, u)?),
+            _ => energies(
+                mesh,
+                materials,
+                &laws,
+                &nodal_vectors(mesh, u)?,
+                (&self.fits, &self.corners),
+            ),
         };
         Ok(DiscretisationError {
             energy: both.iter().map(|e| e[0]).sum(),
@@ -72,7 +78,7 @@ impl StrainRecovery {
     }
 
     /// Error energy and elastic energy of each tetrahedron in a mesh of order 1.
-    fn linear(&self, mesh: &TetMesh, laws: &[&Hooke], strains: &[[f64; 6]]) -> Vec<[f64; 2]> {
+    fn linear(&self, mesh: &TetMesh, materials: &Materials, laws: &[&Hooke], strains: &[[f64; 6]]) -> Vec<[f64; 2]> {
         let at = |k: usize| {
             let mut sum = [0.0; 6];
             for place in self.pointers[k]..self.pointers[k + 1] {
@@ -93,7 +99,14 @@ impl StrainRecovery {
             let squares: f64 = corners.iter().map(|c| laws[tet].energy_density(c)).sum();
             let volume = mesh.volume(tet);
             let error = volume * (squares + laws[tet].energy_density(&sum)) / 20.0;
-            [error, volume * laws[tet].energy_density(&strains[tet])]
+            let elastic = materials.elastic(
+                laws[tet],
+                (mesh.regions()[tet], &mesh.tets()[tet]),
+                &[0.25; 4],
+                &strains[tet],
+            );
+            let [all, elastic] = [&strains[tet], &elastic].map(|e| laws[tet].energy_density(e));
+            [error, volume * all.max(elastic)]
         };
         (0..strains.len()).into_par_iter().map(of_tet).collect()
     }

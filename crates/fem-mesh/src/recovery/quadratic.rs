@@ -7,7 +7,7 @@ use nalgebra::{Cholesky, Const, SMatrix, SVector};
 use rayon::prelude::*;
 
 use crate::element::{Piece, over_quadratic};
-use crate::material::Hooke;
+use crate::material::{Hooke, Materials};
 use crate::mesh::{EDGES, TetMesh, shape};
 use crate::quadrature::{self, FOUR_POINTS};
 use crate::tolerances::PIVOT;
@@ -104,10 +104,10 @@ fn samples(mesh: &TetMesh, tet: usize) -> [Vec3; 4] {
 /// Error energy and elastic energy of each tetrahedron. `corners` are the fits of its corners.
 pub(super) fn energies(
     mesh: &TetMesh,
+    materials: &Materials,
     laws: &[&Hooke],
     u: &[Vec3],
-    fits: &[Fit],
-    corners: &[[u32; 4]],
+    (fits, corners): (&[Fit], &[[u32; 4]]),
 ) -> Vec<[f64; 2]> {
     let pieces: Vec<Piece> = (0..mesh.tets().len())
         .map(|tet| Piece::new(mesh, tet, u).with_law(laws[tet]))
@@ -133,7 +133,13 @@ pub(super) fn energies(
             let recovered = |i: usize| (0..10).map(|k| shape[k] * nodal[k][i]).sum::<f64>();
             laws[tet].energy_density(&std::array::from_fn(|i| recovered(i) - own[i]))
         };
-        let elastic = |l: &[f64; 4]| laws[tet].energy_density(&pieces[tet].strain(l));
+        let elastic = |l: &[f64; 4]| {
+            let strain = pieces[tet].strain(l);
+            let elastic = materials.elastic(laws[tet], (mesh.regions()[tet], &mesh.tets()[tet]), l, &strain);
+            laws[tet]
+                .energy_density(&strain)
+                .max(laws[tet].energy_density(&elastic))
+        };
         [
             over_quadratic(mesh, tet, &rule, error),
             over_quadratic(mesh, tet, &four, elastic),

@@ -173,7 +173,7 @@ fn a_scene_tells_what_it_was_made_of() -> Result<(), Error> {
     let [_, weight] = scene.loads() else {
         panic!("two loads")
     };
-    assert!(matches!(weight.density(), LoadDensity::Body([_, _, z]) if *z == -1.0));
+    assert!(matches!(weight.density(), Some(LoadDensity::Body([_, _, z])) if *z == -1.0));
     assert_eq!(weight.history(), &pull);
     assert_eq!(scene.partition(), &Partition::Boxes([3, 1, 1]));
     let contact = scene.contacts().first().expect("contact");
