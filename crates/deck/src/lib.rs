@@ -66,6 +66,8 @@
 //! | `*MATERIAL` | `NAME` | |
 //! | `*ELASTIC` | `TYPE=ISO`, `ORTHO`, `ENGINEERING CONSTANTS` | numbers of one temperature; axes are x, y, z |
 //! | `*DENSITY` | | for gravity |
+//! | `*EXPANSION` | `TYPE=ISO`, `ORTHO`, `ZERO` | constant coefficients; `ZERO` says nothing then |
+//! | `*INITIAL CONDITIONS` | `TYPE=TEMPERATURE` | temperatures without stress, else zero |
 //! | `*SOLID SECTION` | `ELSET`, `MATERIAL` | a region of the mesh; each element has one |
 //! | `*AMPLITUDE` | `NAME`, `TIME=STEP TIME` or `TOTAL TIME`, `VALUE=RELATIVE`, `DEFINITION=TABULAR` | straight lines, constant outside; times ascend |
 //! | `*SURFACE INTERACTION` | `NAME` | |
@@ -80,6 +82,7 @@
 //! | `*CLOAD` | `OP`, `AMPLITUDE` | forces at nodes |
 //! | `*DLOAD` | `OP`, `AMPLITUDE` | `P1` to `P4` on faces; `GRAV`, `BX`, `BY`, `BZ` in elements |
 //! | `*DSLOAD` | `OP`, `AMPLITUDE` | `P` on a surface |
+//! | `*TEMPERATURE` | `OP`, `AMPLITUDE` | at nodes; linear between the corners of a tetrahedron |
 //! | `*END STEP`, `*INCLUDE` | `INPUT` | paths are relative to the file that includes; loops are refused |
 //!
 //! Read and reported as ignored: `*NODE FILE, *EL FILE, *NODE PRINT, *EL PRINT, *CONTACT FILE, *CONTACT PRINT,

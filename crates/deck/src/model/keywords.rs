@@ -1,13 +1,13 @@
 //! Which keyword is read by whom, where it may stand, and what is said about the others.
 
 use super::step::{self, SOLVER, Step};
-use super::{Ignored, Model, elastic, mesh, property};
+use super::{Ignored, Model, elastic, mesh, property, temperature};
 use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
 
 /// What is read, as an error lists it.
-const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, \
-*SOLID SECTION, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, *TIE, *RIGID BODY, *SURFACE \
+const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, *EXPANSION, \
+*INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, *TIE, *RIGID BODY, *SURFACE \
 INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
 which are ignored and reported";
 
@@ -17,7 +17,7 @@ CONTACTOUTPUT FACEPRINT SECTIONPRINT ENERGYFILE ENERGYPRINT ENERGYOUTPUT OUTPUT 
 TIMEPOINTS";
 
 /// Keywords of these programs that have no counterpart here, and what to do.
-const REFUSED: [(&str, &str); 16] = [
+const REFUSED: [(&str, &str); 15] = [
     (
         "ASSEMBLY PART INSTANCE",
         "decks with parts and an assembly are not read; write a flat one (in Abaqus/CAE: Edit Attributes, do not use \
@@ -43,12 +43,8 @@ const REFUSED: [(&str, &str); 16] = [
     ("ORIENTATION", "the axes of materials are x, y, z"),
     ("PLASTIC CREEP HYPERELASTIC DAMPING", "materials are linear and elastic"),
     (
-        "EXPANSION CONDUCTIVITY SPECIFICHEAT TEMPERATURE",
-        "temperature plays no role here; remove it",
-    ),
-    (
-        "INITIALCONDITIONS",
-        "the body is at rest and without stress before the first step",
+        "CONDUCTIVITY SPECIFICHEAT",
+        "temperatures are given here, not computed; remove it",
     ),
     (
         "SHELLSECTION BEAMSECTION MEMBRANESECTION SPRING MASS",
@@ -101,6 +97,8 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         "MATERIAL" => Some(property::material),
         "ELASTIC" => Some(elastic::elastic),
         "DENSITY" => Some(property::density),
+        "EXPANSION" => Some(temperature::expansion),
+        "INITIALCONDITIONS" => Some(temperature::initial),
         "SOLIDSECTION" => Some(property::section),
         "AMPLITUDE" => Some(property::amplitude),
         "SURFACEINTERACTION" => Some(property::interaction),
@@ -128,11 +126,12 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
             let why = "the step before has not ended; put *END STEP before this one";
             Err(card.word.cannot(why))
         }
-        ("STATIC" | "CLOAD" | "DLOAD" | "DSLOAD" | "ENDSTEP", None) => Err(card.word.cannot(INSIDE)),
+        ("STATIC" | "CLOAD" | "DLOAD" | "DSLOAD" | "TEMPERATURE" | "ENDSTEP", None) => Err(card.word.cannot(INSIDE)),
         ("STATIC", Some(step)) => step.procedure(model, card),
         ("CLOAD", Some(step)) => step::forces(model, step, card),
         ("DLOAD", Some(step)) => step::distributed(model, step, card, false),
         ("DSLOAD", Some(step)) => step::distributed(model, step, card, true),
+        ("TEMPERATURE", Some(step)) => temperature::temperatures(model, step, card),
         ("ENDSTEP", Some(step)) => {
             card.allow(&[])?;
             card.lines_at_most(0, "no data")?;

@@ -11,6 +11,7 @@ mod mesh;
 mod names;
 mod property;
 mod step;
+mod temperature;
 
 use crate::error::{DeckError, Location, Word};
 use crate::lexer::Named;
@@ -123,6 +124,8 @@ pub(crate) struct Material {
     /// Where it is given, and the law.
     pub(crate) elastic: Option<(Location, Hooke)>,
     pub(crate) density: Option<f64>,
+    /// Where it is given, and the coefficients along x, y, z.
+    pub(crate) expansion: Option<(Location, [f64; 3])>,
 }
 
 #[derive(Debug, Clone)]
@@ -207,6 +210,8 @@ pub(crate) struct Model {
     pub(crate) rigid: Vec<RigidBody>,
     /// Supports that hold before the first step.
     pub(crate) supports: Vec<Condition<Components>>,
+    /// Temperatures without stress.
+    pub(crate) initial: Vec<Condition<()>>,
     pub(crate) steps: Vec<Step>,
     pub(crate) ignored: Vec<Ignored>,
 }

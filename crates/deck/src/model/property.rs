@@ -28,6 +28,7 @@ pub(super) fn material(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         location: card.word.location.clone(),
         elastic: None,
         density: None,
+        expansion: None,
     };
     model.materials.add(name, material);
     Ok(())

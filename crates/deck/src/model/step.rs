@@ -88,7 +88,7 @@ impl<K> Default for Conditions<K> {
 
 impl<K> Conditions<K> {
     /// Notes the parameter OP of a card: that of the first one counts.
-    fn card(&mut self, card: &Card) -> Result<(), DeckError> {
+    pub(super) fn card(&mut self, card: &Card) -> Result<(), DeckError> {
         let wanted = "OP=MOD or OP=NEW";
         let new = card.choice("OP", &["MOD", "NEW"], wanted)? == Some(1);
         match &self.first {
@@ -149,6 +149,7 @@ pub(crate) struct Step {
     pub(crate) boundary: Conditions<Components>,
     pub(crate) forces: Conditions<Component>,
     pub(crate) distributed: Conditions<DistributedKind>,
+    pub(crate) temperatures: Conditions<()>,
 }
 
 impl Step {
@@ -184,6 +185,7 @@ impl Step {
             boundary: Conditions::default(),
             forces: Conditions::default(),
             distributed: Conditions::default(),
+            temperatures: Conditions::default(),
         })
     }
 
@@ -241,7 +243,7 @@ impl Step {
 }
 
 /// The position of the amplitude that a card names.
-fn amplitude(model: &Model, card: &Card) -> Result<Option<usize>, DeckError> {
+pub(super) fn amplitude(model: &Model, card: &Card) -> Result<Option<usize>, DeckError> {
     let named = card.value("AMPLITUDE")?;
     let position = named.map(|n| model.amplitudes.find("amplitude", &n.name, &n.word));
     position.transpose()

@@ -14,6 +14,7 @@ mod numbers;
 mod parts;
 mod rigid;
 mod supports;
+mod temperatures;
 mod ties;
 mod timeline;
 
@@ -70,7 +71,10 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
 
     let mut supports = supports::supports(known)?;
     let contacts = contacts::contacts(known, &faces, &surfaces, &supports.motions, &mut supports.ignored)?;
-    let (loads, words): (Vec<_>, Vec<_>) = loads.lower(&faces, &tags).into_iter().unzip();
+    let (warm, mut cold) = temperatures::temperatures(known)?;
+    supports.ignored.append(&mut cold);
+    let loads = loads.lower(&faces, &tags).into_iter().chain(warm);
+    let (loads, words): (Vec<_>, Vec<_>) = loads.unzip();
     let (support_names, held): (Vec<_>, Vec<_>) = supports.names.into_iter().unzip();
     parts.steps = timeline.steps();
     parts.tagged(&surfaces);

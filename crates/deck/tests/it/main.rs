@@ -6,5 +6,6 @@ mod names;
 mod reading;
 mod refusals;
 mod same_bits;
+mod temperatures;
 mod ties;
 mod write;

@@ -199,7 +199,12 @@ fn many_pressures() {
 #[test]
 fn gravity_and_body_forces() {
     let whole = scene(&step("*DLOAD\nALL, GRAV, 1e9, 0., 0., -2.\nALL, BX, 3.\n"));
-    let text: Vec<String> = whole.loads().iter().map(|l| format!("{:?}", l.density())).collect();
+    let text: Vec<String> = whole
+        .loads()
+        .iter()
+        .flat_map(|l| l.density())
+        .map(|d| format!("{d:?}"))
+        .collect();
     let weight = 7.8e-9 * 1e9;
     assert_eq!(
         text,

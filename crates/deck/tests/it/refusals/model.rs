@@ -136,10 +136,10 @@ fn materials() {
         "temperature",
     );
     try_one(
-        "*MATERIAL, NAME=M\n*EXPANSION\n",
-        "*EXPANSION",
-        "*EXPANSION",
-        "temperature",
+        "*MATERIAL, NAME=M\n*CONDUCTIVITY\n",
+        "*CONDUCTIVITY",
+        "*CONDUCTIVITY",
+        "temperatures are given",
     );
     try_one("*MATERIAL, NAME=M\n*PLASTIC\n", "*PLASTIC", "*PLASTIC", "elastic");
     let both = "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n*SOLID SECTION, ELSET=ALL, MATERIAL=M\n*SOLID SECTION, MATERIAL=M, ELSET=ALL\n";

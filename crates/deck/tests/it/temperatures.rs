@@ -1,0 +1,103 @@
+//! Temperatures and coefficients of expansion: free strains.
+
+use signorini_contact::{Settings, Simulation};
+use signorini_fem_mesh::Brick;
+
+use crate::write::{cube, mesh, read};
+
+const PLANES: &str = "*BOUNDARY\nN1, 1\nN3, 2\nN5, 3\n";
+
+/// A cube on three planes of symmetry at 20 degrees; `more` belongs to its material and the model.
+fn on_planes(more: &str, steps: &str) -> String {
+    let all = "*NSET, NSET=EVERY, GENERATE\n1, 27\n*INITIAL CONDITIONS, TYPE=TEMPERATURE\nEVERY, 20.\n";
+    cube(&format!("{more}{all}{PLANES}{steps}"))
+}
+
+/// Displacements of the far corner at the end of each increment.
+fn corner(deck: &str) -> Vec<[f64; 3]> {
+    let scene = read(deck).expect("deck").scene().expect("scene");
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("simulation");
+    let mut out = Vec::new();
+    while !simulation.is_finished() {
+        out.push(simulation.step().expect("step").displacement()[26]);
+    }
+    out
+}
+
+/// Straight to the temperature of the step, which stays, and with OP=NEW straight back to the initial one.
+#[test]
+fn what_is_warmer_than_at_first_grows() {
+    let step = |cards: &str| format!("*STEP\n*STATIC\n0.5, 1.\n{cards}*END STEP\n");
+    let steps = step("*TEMPERATURE\nEVERY, 100.\n") + &step("") + &step("*TEMPERATURE, OP=NEW\n");
+    for (law, coefficients) in [
+        ("*EXPANSION, ZERO=20.\n12e-6\n", [12e-6; 3]),
+        ("*EXPANSION, TYPE=ORTHO\n1e-6, 2e-6, 3e-6, 300.\n", [1e-6, 2e-6, 3e-6]),
+    ] {
+        let found = corner(&on_planes(law, &steps));
+        for (u, rise) in found.iter().zip([40.0, 80.0, 80.0, 80.0, 40.0, 0.0]) {
+            (0..3).for_each(|c| assert!((u[c] - coefficients[c] * rise).abs() < 1e-13, "{found:?}"));
+        }
+    }
+}
+
+/// A section that expands beside one that does not, in a row between two planes: half of the suppressed stress.
+#[test]
+fn each_section_has_its_coefficient() {
+    let brick = Brick::new([2.0, 1.0, 1.0], [2, 1, 1]).build().expect("a brick");
+    let left = |tet: &usize| brick.tet_points(*tet).iter().map(|x| x[0]).sum::<f64>() < 4.0;
+    let (one, other): (Vec<_>, Vec<_>) = (0..brick.tets().len()).partition(left);
+    let set = |name: &str, tets: &[usize]| {
+        let list: String = tets.iter().map(|tet| format!("{},\n", tet + 1)).collect();
+        format!("*ELSET, ELSET={name}\n{list}")
+    };
+    let young = "*ELASTIC\n2e5, 0.3\n";
+    let deck = format!(
+        "{}{}{}*MATERIAL, NAME=A\n{young}*EXPANSION\n1e-5\n*MATERIAL, NAME=B\n{young}*SOLID SECTION, ELSET=L, MATERIAL=A\n\
+         *SOLID SECTION, ELSET=R, MATERIAL=B\n{PLANES}N2, 1\n*STEP\n*STATIC\n*TEMPERATURE\nN1, 100.\nN2, 100.\nN5, 100.\n\
+         N6, 100.\n*END STEP\n",
+        mesh(&brick),
+        set("L", &one),
+        set("R", &other),
+    );
+    let scene = read(&deck).expect("deck").scene().expect("scene");
+    assert_eq!(scene.loads().len(), 1);
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("simulation");
+    let result = simulation.step().expect("step");
+    let work: f64 = result.stress().iter().map(|s| s[0]).sum::<f64>() / result.stress().len() as f64;
+    assert!((work + 100.0).abs() < 5.0, "{work}");
+    let reaction = result.reactions().supports;
+    let push = reaction.iter().map(|r| r.resultant.force[0]).fold(0.0, f64::max);
+    assert!((push - 100.0).abs() < 5.0, "{push}");
+}
+
+#[test]
+fn what_a_temperature_cannot_say() {
+    let heat = "*STEP\n*STATIC\n*TEMPERATURE\nEVERY, 100.\n*END STEP\n";
+    let deck = read(&on_planes("", heat)).expect("deck");
+    let ignored = deck.ignored().first().expect("ignored").to_string();
+    assert!(
+        ignored.contains("EVERY: ignored: no material of a section has *EXPANSION"),
+        "{ignored}"
+    );
+    let refused = |more: &str, steps: &str| read(&on_planes(more, steps)).expect_err("refused").to_string();
+    let law = "*EXPANSION\n12e-6\n";
+    let table = format!("{law}*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n");
+    let error = refused(&table, &heat.replace("TURE\n", "TURE, AMPLITUDE=A\n"));
+    assert!(
+        error.contains("EVERY") && error.contains("count temperatures from the initial one"),
+        "{error}"
+    );
+    let error = refused("*EXPANSION\n12e-6, 0.\n13e-6, 100.\n", heat);
+    assert!(
+        error.contains("laws that depend on temperature are not read"),
+        "{error}"
+    );
+    let error = refused("*EXPANSION, TYPE=ANISO\n12e-6\n", heat);
+    assert!(error.contains("TYPE=ISO or ORTHO"), "{error}");
+    let error = refused(&format!("{law}{law}"), heat);
+    assert!(error.contains("keep one of them"), "{error}");
+    let error = refused(law, &heat.replace("100.", "warm"));
+    assert!(error.contains("a node or node set, and a temperature"), "{error}");
+    let error = refused("*INITIAL CONDITIONS, TYPE=STRESS\nALL, 1.\n", heat);
+    assert!(error.contains("TYPE=TEMPERATURE alone is read"), "{error}");
+}
