@@ -71,8 +71,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
 
     let mut supports = supports::supports(known)?;
     let contacts = contacts::contacts(known, &faces, &surfaces, &supports.motions, &mut supports.ignored)?;
-    let (warm, mut cold) = temperatures::temperatures(known)?;
-    supports.ignored.append(&mut cold);
+    let warm = temperatures::temperatures(known, &mut supports.ignored)?;
     let loads = loads.lower(&faces, &tags).into_iter().chain(warm);
     let (loads, words): (Vec<_>, Vec<_>) = loads.unzip();
     let (support_names, held): (Vec<_>, Vec<_>) = supports.names.into_iter().unzip();

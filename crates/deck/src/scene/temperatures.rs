@@ -11,8 +11,8 @@ use super::history::{Histories, Track};
 use crate::error::{DeckError, Word};
 use crate::model::{Given, Ignored};
 
-/// The loads, each with the first word that asks for it, and what is ignored.
-pub(super) fn temperatures(known: Known) -> Result<(Vec<(Load, Word)>, Vec<Ignored>), DeckError> {
+/// The loads, each with the first word that asks for it.
+pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<Vec<(Load, Word)>, DeckError> {
     let Known { model, sets, raw, .. } = known;
     let nodes = raw.node_labels.len();
     let mut first = vec![0.0; nodes];
@@ -61,7 +61,6 @@ pub(super) fn temperatures(known: Known) -> Result<(Vec<(Load, Word)>, Vec<Ignor
     for section in &model.sections {
         laws.push(model.material(section)?.expansion.as_ref().map(|law| law.1));
     }
-    let mut ignored = Vec::new();
     if laws.iter().all(Option::is_none) {
         let why = "no material of a section has *EXPANSION";
         ignored.extend(groups.values().map(|(track, _)| Ignored::new(&track.word, why)));
@@ -80,5 +79,5 @@ pub(super) fn temperatures(known: Known) -> Result<(Vec<(Load, Word)>, Vec<Ignor
         let load = |strain| Load::free_strain(strain).with_history(histories.at(history));
         out.extend(strains.into_iter().map(|strain| (load(strain), track.word.clone())));
     }
-    Ok((out, ignored))
+    Ok(out)
 }
