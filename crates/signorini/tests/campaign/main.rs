@@ -7,6 +7,7 @@
 //! SIGNORINI_SCENE=137 cargo test --release -p signorini --test campaign -- --nocapture    # one, with its levels
 //! SIGNORINI_APART=17, SIGNORINI_APARTS=500 ...                                    # the same of bodies meshed apart
 //! SIGNORINI_ROUND=17, SIGNORINI_ROUNDS=500 ...                                    # the same of discs, washers and sleeves
+//! SIGNORINI_WARM=17, SIGNORINI_WARMS=500 ...                                      # the first ones, with strain without stress
 //! SIGNORINI_RANKED=200 ...                                                       # so many of both on two ranks
 //! SIGNORINI_REPORT=folder ...                                                    # lists of all scenes, in files
 //! ```
@@ -32,6 +33,7 @@ use std::sync::{Arc, Mutex};
 const SCENES: u64 = 240;
 const APART: u64 = 120;
 const ROUND: u64 = 40;
+const WARM: u64 = 40;
 const SEED: u64 = 20_240_229;
 /// Scenes of each kind that several ranks solve.
 const RANKED: u64 = 12;
@@ -85,6 +87,16 @@ fn round_bodies_are_solved() {
         let scene = generate::round::round(seed, number);
         let outcome = run::run_apart(&scene);
         (scene.recipe, outcome)
+    });
+}
+
+/// The same for scenes of the first kind that are warmer or colder than without stress.
+#[test]
+fn bodies_that_grow_are_solved() {
+    campaign("SIGNORINI_WARM", WARM, |seed, number| {
+        let recipe = generate::warm(seed, number);
+        let outcome = run::run(&recipe);
+        (recipe, outcome)
     });
 }
 

@@ -13,6 +13,7 @@ struct Element {
     gradients: Vec<(f64, Vec<Vec3>)>,
     volume: f64,
     law: usize,
+    region: u32,
 }
 
 /// A facet with a tag, outward.
@@ -61,6 +62,7 @@ impl Mechanics {
                     },
                     volume,
                     law: if one { 0 } else { *region as usize },
+                    region: *region,
                 }
             })
             .collect();
@@ -105,6 +107,10 @@ impl Mechanics {
             ];
             (0..6).for_each(|k| strain[k] += part[k]);
         }
+        self.stressed(law, &strain)
+    }
+
+    fn stressed(&self, law: usize, strain: &[f64; 6]) -> [Vec3; 3] {
         let c = &self.laws[law];
         let s: [f64; 6] = std::array::from_fn(|i| (0..6).map(|j| c[i][j] * strain[j]).sum());
         [[s[0], s[5], s[4]], [s[5], s[1], s[3]], [s[4], s[3], s[2]]]
@@ -193,6 +199,21 @@ impl Mechanics {
                     let corners = [0, 1, 2, 3].map(|k| e.nodes[k]);
                     for (node, force) in self.spread(corners, 6.0 * e.volume, |x| eval(field, x)) {
                         put(node, force);
+                    }
+                }
+            }
+            Density::FreeStrain(strain, region, factors) => {
+                for e in self.elements.iter().filter(|e| region.is_none_or(|r| r == e.region)) {
+                    let corners = [0, 1, 2, 3].map(|k| factors[e.nodes[k] as usize]);
+                    let mean = corners.iter().sum::<f64>() / 4.0;
+                    for (corner, (part, gradients)) in e.gradients.iter().enumerate() {
+                        // the point is nearer to its corner by the root of a fifth
+                        let near = if e.nodes.len() == 4 { 0.0 } else { 0.2_f64.sqrt() };
+                        let factor = mean + near * (corners[corner] - mean);
+                        let stress = self.stressed(e.law, &strain.map(|s| factor * s));
+                        for (n, g) in e.nodes.iter().zip(gradients) {
+                            put(*n, stress.map(|row| *part * dot(row, *g)));
+                        }
                     }
                 }
             }

@@ -17,8 +17,8 @@ pub(crate) fn history(course: &Course) -> Result<History, Error> {
     })
 }
 
-fn density(density: &Density) -> LoadDensity {
-    match density.clone() {
+fn load(density: &Density) -> Load {
+    Load::new(match density.clone() {
         Density::Body(value) => LoadDensity::body(value),
         Density::BodyField(field) => LoadDensity::body_field(move |x| field.map(|p| p.value(x))),
         Density::Traction(tag, value) => LoadDensity::traction(tag, value),
@@ -27,7 +27,11 @@ fn density(density: &Density) -> LoadDensity {
         }),
         Density::Pressure(tag, value) => LoadDensity::pressure(tag, value),
         Density::Nodes(forces) => LoadDensity::nodal_forces(forces),
-    }
+        Density::FreeStrain(strain, region, factors) => {
+            let strain = FreeStrain::new(strain).with_factors(factors);
+            return Load::free_strain(region.map_or_else(|| strain.clone(), |region| strain.clone().in_region(region)));
+        }
+    })
 }
 
 pub(crate) fn friction(law: &Law) -> Friction {
@@ -120,7 +124,7 @@ pub(crate) fn scene(recipe: &Recipe) -> Result<Scene, Error> {
         scene = scene.with_support(support);
     }
     for push in &recipe.pushes {
-        let load = Load::new(density(&push.density)).with_history(history(&push.course)?);
+        let load = load(&push.density).with_history(history(&push.course)?);
         scene = scene.with_load(load);
     }
     for touch in &recipe.touches {

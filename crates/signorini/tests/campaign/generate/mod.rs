@@ -14,7 +14,7 @@ mod supports;
 
 use crate::dice::Dice;
 use crate::recipe::{Clock, Course, Density, Elastic, Fixed, Hold, Law, Push, Recipe, Where};
-use crate::vec3::{Vec3, add, cross, scale, unit};
+use crate::vec3::{Vec3, add, cross, dot, scale, unit};
 use signorini::prelude::{FacetTag, TetMesh};
 
 /// Known faults and limits that the generator stays clear of. An entry goes when its fault is mended.
@@ -63,6 +63,33 @@ pub(crate) fn recipe(seed: u64, number: u64) -> Recipe {
     supports::supports(dice, &world, &shaft, &mut recipe);
     loads::loads(dice, &world, &shaft, &mut recipe);
     settings::describe(&mut recipe);
+    recipe
+}
+
+/// The same scene, warmer or colder: with strain without stress.
+pub(crate) fn warm(seed: u64, number: u64) -> Recipe {
+    let mut recipe = recipe(seed, number);
+    let dice = &mut Dice::new(!seed, number);
+    let size = dice.decades(1e-5, 3e-3);
+    let strain = match dice.chance(0.6) {
+        true => [size, size, size, 0.0, 0.0, 0.0],
+        false => std::array::from_fn(|_| size * dice.either()),
+    };
+    let (points, slope) = (recipe.mesh.points(), dice.vector());
+    let length = points.iter().flatten().fold(f64::MIN_POSITIVE, |l, x| l.max(x.abs()));
+    let uneven = dice.chance(0.5);
+    let factor = |x: &Vec3| if uneven { dot(slope, *x) / length } else { 1.0 };
+    let factors = points.iter().map(factor).collect();
+    let regions = recipe.mesh.distinct_regions();
+    let region = dice.chance(0.3).then(|| regions[dice.whole(0, regions.len() - 1)]);
+    let end = recipe.clock.times().last().copied().unwrap_or(1.0);
+    let course = match dice.chance(0.3) {
+        true => Course::Constant(dice.either()),
+        false => Course::Table(vec![(0.0, 0.0), (0.7 * end, 1.0), (end, dice.either())]),
+    };
+    recipe.words.push("free strain".into());
+    let density = Density::FreeStrain(strain, region, factors);
+    recipe.pushes.push(Push { density, course });
     recipe
 }
 
