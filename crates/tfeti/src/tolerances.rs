@@ -23,6 +23,11 @@ pub(crate) const AGREEING: f64 = 1e-7;
 pub(crate) const ANGLE: f64 = 1e-6;
 /// Pivots and eigenvalues of small matrices, relative to the largest.
 pub(crate) const PIVOT: f64 = 1e-13;
+/// Smallest pivot of a stiffness over the largest, and over the diagonal entry that it was, up to which it means a motion
+/// without strain beside the rigid ones. Rounding left less than that in quadratic tetrahedra at Poisson's ratios from
+/// 0.49 to 0.4999; of 3,300 random bodies solved right none had less than 9e-10 and 1e-9.
+pub(crate) const FURTHER_MOTION: f64 = 1e-12;
+pub(crate) const LEFT_OF_IT: f64 = 1e-10;
 /// Pivots of coarse factors and of matrices from which directions are taken out, relative to the largest diagonal
 /// entry.
 pub(crate) const SINGULAR: f64 = 1e-14;

@@ -121,5 +121,6 @@ fn check<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
     set.validate()?;
     expect_finite("x", x)?;
     expect_finite("the linear term", problem.linear)?;
+    expect_finite("the scale", &problem.scale[..set.constrained()])?;
     expect_finite("the right side of the equality", problem.rhs)
 }

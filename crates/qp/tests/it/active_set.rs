@@ -2,10 +2,11 @@
 
 use crate::common::{Random, from_zero, spd};
 use proptest::prelude::*;
-use signorini_qp::active_set::ActiveSetReport;
+use signorini_qp::active_set::{ActiveSetProblem, ActiveSetReport, ActiveSetWorkspace};
+use signorini_qp::problem::Identity;
 use signorini_qp::{
     ActiveSetSettings, ConvexSet, DenseOperator, DenseProjector, ProductSet, QpError, Segment, Status,
-    SymmetricOperator, vector,
+    SymmetricOperator, active_set, vector,
 };
 
 /// Natural residual `x - P(x - (A x - b + Gᵀ mu))`, in its own loop.
@@ -207,6 +208,47 @@ fn wrong_input_is_refused() {
         solve(&negative, &ActiveSetSettings::default()),
         Err(QpError::Indefinite { .. })
     ));
+}
+
+/// The error names the scale, not the products that it spoils.
+#[test]
+fn a_scale_that_is_no_number_is_refused() {
+    let (a, identity) = (crate::common::pair(), Identity(2));
+    for bad in [f64::NAN, f64::INFINITY] {
+        let problem = ActiveSetProblem {
+            operator: &a,
+            preconditioner: &identity,
+            scale: &[1.0, bad],
+            linear: &[1.0, -3.0],
+            rhs: &[],
+        };
+        let mut set = ProductSet::new(vec![Segment::lower(vec![0.0; 2])]).expect("a set");
+        let (mut x, mut ax) = ([0.0; 2], [0.0; 2]);
+        let (mut projector, settings) = (no_equality(2), ActiveSetSettings::default());
+        let mut work = ActiveSetWorkspace::new(&a, &identity);
+        let hook = &mut |_: &[f64], _: &mut ProductSet| {};
+        let found = active_set(
+            &problem,
+            &mut projector,
+            &mut set,
+            &mut x,
+            &mut ax,
+            true,
+            &settings,
+            &mut work,
+            hook,
+        );
+        assert!(
+            matches!(
+                found,
+                Err(QpError::Input {
+                    what: "the scale",
+                    entry: 1
+                })
+            ),
+            "{found:?}"
+        );
+    }
 }
 
 #[test]
