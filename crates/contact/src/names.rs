@@ -1,4 +1,4 @@
-//! The parts of a scene that an error speaks of, and what they are called where the scene comes from.
+//! The parts of a scene that an error or a warning speaks of, and what they are called where the scene comes from.
 
 use crate::error::ContactError;
 use crate::part::Part;
@@ -20,24 +20,34 @@ impl Names {
 
     /// The error behind the names of what it speaks of.
     pub(crate) fn tell(&self, error: ContactError) -> ContactError {
-        let (Some(name), false) = (&self.0, matches!(error, ContactError::Named { .. })) else {
-            return error;
-        };
-        let names = error.names(&**name);
-        if names.is_empty() {
-            return error;
+        let told = matches!(error, ContactError::Named { .. });
+        match self.of(error.parts()).filter(|_| !told) {
+            Some(names) => ContactError::Named {
+                names,
+                source: Box::new(error),
+            },
+            None => error,
         }
-        let source = Box::new(error);
-        ContactError::Named { names, source }
     }
+
+    /// Those of some parts, if any has one.
+    pub(crate) fn of(&self, parts: Vec<Part>) -> Option<String> {
+        let names = listed(parts, &**self.0.as_ref()?);
+        (!names.is_empty()).then_some(names)
+    }
+}
+
+/// What parts are called, of those that have a name.
+fn listed(parts: Vec<Part>, name: impl Fn(Part) -> Option<String>) -> String {
+    let named = |part: Part| Some(format!("{part} is {}", name(part)?));
+    let names: Vec<String> = parts.into_iter().filter_map(named).collect();
+    names.join(", ")
 }
 
 impl ContactError {
     /// What its [parts](Self::parts) are called, of those that have a name.
     pub fn names(&self, name: impl Fn(Part) -> Option<String>) -> String {
-        let named = |part: Part| Some(format!("{part} is {}", name(part)?));
-        let names: Vec<String> = self.parts().into_iter().filter_map(named).collect();
-        names.join(", ")
+        listed(self.parts(), name)
     }
 
     /// The parts of the scene that it speaks of, without repetition.

@@ -130,7 +130,8 @@ impl Plan {
         };
         let judge = || {
             let warnings = sanity::warnings(scene, discrete);
-            (mesh_error::expected(scene, discrete, &warnings), warnings)
+            let error = mesh_error::expected(scene, discrete, &warnings);
+            (error, warnings.into_iter().map(|w| w.told(&scene.names)).collect())
         };
         let (forecast, (mesh_error, warnings)) = rayon::join(find, judge);
         let mut forecast = forecast?;

@@ -62,8 +62,9 @@ impl RunReport {
     /// [`ContactError::UnconvergedHistory`] and [`ContactError::NotConverged`]: step, status and remedy of the first
     /// one.
     pub fn require_converged(&self) -> Result<(), ContactError> {
-        require(None, self.unconverged_history)?;
-        require(self.failures.first().copied(), None).map_err(|error| self.names.tell(error))
+        let required =
+            require(None, self.unconverged_history).and_then(|()| require(self.failures.first().copied(), None));
+        required.map_err(|error| self.names.tell(error))
     }
 }
 

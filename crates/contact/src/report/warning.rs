@@ -1,5 +1,7 @@
 //! What is allowed but hardly meant: results and scenes that an engineer should look at.
 
+use crate::names::Names;
+use crate::part::Part;
 use std::path::PathBuf;
 
 signorini_fem_mesh::errors! {
@@ -8,7 +10,9 @@ signorini_fem_mesh::errors! {
     ///
     /// [`Plan::warnings`](crate::Plan::warnings) has those of the scene alone;
     /// [`RunReport::warnings`](crate::RunReport::warnings) has them and those of the results, each kind once, where it
-    /// was first met. An [`Observer`](crate::Observer::warning) is told as soon as they are known.
+    /// was first met. An [`Observer`](crate::Observer::warning) is told as soon as they are known. Where a scene
+    /// [has names](crate::Scene::with_names) what is said of its [parts](Self::parts) is `Named`, over the
+    /// [plain](Self::plain) one.
     ///
     /// The thresholds are a tenth of the body for displacements, 5 % for strains, an edge of a facet for slips, 0.1 for
     /// the turn of normals, the body for gaps, 3 for coefficients, 0.45 for Poisson's ratios of linear tetrahedra and
@@ -58,6 +62,52 @@ signorini_fem_mesh::errors! {
         DamagedCheckpoint { path: PathBuf, reason: String, taken: PathBuf } =
             "the newest checkpoint is damaged ({reason}); the run goes on from the one before, {}, and the damaged one \
             is kept as {}: look at the disk", taken.display(), path.display();
+        Named { names: String, source: Box<Self> } = "{names}: {source}";
+    }
+}
+
+impl Warning {
+    /// The parts of the scene that it speaks of.
+    pub fn parts(&self) -> Vec<Part> {
+        match self.plain() {
+            Self::LargeDisplacement { step, node, .. } => vec![Part::Step(*step), Part::Node(*node)],
+            Self::LargeStrain { step, tet, .. } | Self::CoarseMesh { step, tet, .. } => {
+                vec![Part::Step(*step), Part::Tet(*tet)]
+            }
+            Self::LongSlip {
+                step, contact, node, ..
+            }
+            | Self::TurnedNormal {
+                step, contact, node, ..
+            } => {
+                vec![Part::Step(*step), Part::Node(*node), Part::Contact(*contact)]
+            }
+            Self::LargeGap { contact, node, .. } | Self::LargeCoefficient { contact, node, .. } => {
+                vec![Part::Contact(*contact), Part::Node(*node)]
+            }
+            Self::UnusedMaterials { regions, .. } => regions.iter().copied().map(Part::Region).collect(),
+            Self::Locking { region, .. } => vec![Part::Region(*region)],
+            Self::DamagedCheckpoint { .. } | Self::Named { .. } => Vec::new(),
+        }
+    }
+
+    /// It behind the names of what it speaks of.
+    pub(crate) fn told(self, names: &Names) -> Self {
+        match names.of(self.parts()) {
+            Some(names) => Self::Named {
+                names,
+                source: Box::new(self),
+            },
+            None => self,
+        }
+    }
+
+    /// The warning itself, without the names before it.
+    pub fn plain(&self) -> &Self {
+        match self {
+            Self::Named { source, .. } => source.plain(),
+            _ => self,
+        }
     }
 }
 

@@ -114,8 +114,8 @@ impl Scene {
         self
     }
 
-    /// What parts are called where the scene comes from, in a file for instance: errors of its simulation then begin with
-    /// the names of those that they speak of. Decks come with names.
+    /// What parts are called where the scene comes from, in a file for instance: errors and warnings of its simulation then
+    /// begin with the names of those that they speak of. Decks come with names.
     ///
     /// ```
     /// use signorini_contact::{Contact, Part, Plan, Scene, Settings};

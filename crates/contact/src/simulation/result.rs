@@ -93,7 +93,8 @@ impl StepResult {
 
     /// The same without kinds that are known.
     pub(super) fn warnings_but(&self, known: &[Warning]) -> Vec<Warning> {
-        warnings(&self.model, self.lengths(), &self.recovered, self.step(), known)
+        let new = warnings(&self.model, self.lengths(), &self.recovered, self.step(), known);
+        new.into_iter().map(|w| w.told(&self.scene().names)).collect()
     }
 
     fn lengths(&self) -> &Lengths {
@@ -107,7 +108,8 @@ impl StepResult {
             return None;
         }
         let error = self.discretisation_error().ok()?;
-        Some((error.relative(), coarse_mesh(model, &error, self.step())))
+        let warning = coarse_mesh(model, &error, self.step());
+        Some((error.relative(), warning.map(|w| w.told(&model.scene.names))))
     }
 
     /// Sums over the contact surface.

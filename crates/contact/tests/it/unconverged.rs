@@ -91,13 +91,19 @@ fn an_observer_can_end_a_run_at_the_first_such_step() {
 fn a_resumed_run_knows_what_it_continues() {
     let mut first = rough();
     let _ = first.step().expect("step");
-    let mut second = Simulation::new(cantilever(Friction::coulomb(0.8)), Settings::default()).expect("set-up");
+    let named =
+        cantilever(Friction::coulomb(0.8)).with_names(|part| (part == Part::Step(0)).then(|| "bend".to_owned()));
+    let mut second = Simulation::new(named, Settings::default()).expect("set-up");
     second.resume(first.state().clone()).expect("resume");
     let report = second.run(&mut Silent).expect("run");
     assert!(report.failures.is_empty());
     assert_eq!(report.unconverged_history, Some(0));
     let error = report.require_converged().expect_err("an unconverged history");
-    assert!(matches!(error, ContactError::UnconvergedHistory { step: 0 }));
+    assert!(error.to_string().starts_with("step 0 is bend: "), "{error}");
+    let ContactError::Named { source, .. } = error else {
+        panic!("{error:?}");
+    };
+    assert!(matches!(*source, ContactError::UnconvergedHistory { step: 0 }));
 }
 
 /// Without friction a step depends on nothing that an earlier one found.

@@ -1,6 +1,9 @@
-//! Errors of a scene speak of the deck: its lines, sets, surfaces and numbers.
+//! Errors and warnings of a scene speak of the deck: its lines, sets, surfaces and numbers.
 
-use signorini_contact::{Settings, Simulation};
+use std::collections::HashSet;
+use std::mem::discriminant;
+
+use signorini_contact::{Scene, Settings, Silent, Simulation};
 use signorini_fem_mesh::{Brick, FacetTag, TetMesh};
 
 use crate::write::{self, read};
@@ -11,8 +14,8 @@ fn two(gap: f64) -> TetMesh {
     brick().append(&above.map_tags(|t| FacetTag(t.0 + 10))).expect("two")
 }
 
-/// What the simulation of a deck says against it, up to its last step.
-fn against(gap: f64, rest: &str) -> (String, usize) {
+/// A scene of two cubes, and how many nodes they have.
+fn scene(gap: f64, rest: &str) -> (Scene, usize) {
     let mesh = two(gap);
     let nodes = mesh.points().len();
     let rest = format!(
@@ -20,7 +23,12 @@ fn against(gap: f64, rest: &str) -> (String, usize) {
     );
     let deck = write::mesh(&mesh) + write::STEEL + &rest;
     let deck = read(&deck).expect("a deck");
-    let scene = deck.scene().expect("a scene");
+    (deck.scene().expect("a scene"), nodes)
+}
+
+/// What the simulation of a deck says against it, up to its last step.
+fn against(gap: f64, rest: &str) -> (String, usize) {
+    let (scene, nodes) = scene(gap, rest);
     let said = match Simulation::new(scene, Settings::default()) {
         Err(error) => error.to_string(),
         Ok(mut simulation) => loop {
@@ -54,6 +62,26 @@ fn contacts_loads_supports_nodes_and_steps_have_names() {
     assert!(said.starts_with("load 0 is N16 ("), "{said}");
     let (said, _) = against(0.0, &format!("{STEP}*BOUNDARY\nN16, 3, 3, 1e200\n*END STEP\n"));
     assert!(said.starts_with("support 1 is N16 ("), "{said}");
+}
+
+#[test]
+fn warnings_have_names() {
+    let step = "*STEP\n*STATIC\n0.5, 1.\n*CLOAD\nN16, 3, -1e10\n*END STEP\n";
+    let (scene, _) = scene(2.5, &format!("{step}{step}"));
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("held");
+    let warnings = simulation.plan().warnings();
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    let said = warnings[0].to_string();
+    assert!(said.starts_with("contact 0 is *CONTACT PAIR S15, S6 ("), "{said}");
+    assert_eq!(warnings[0].plain().parts(), warnings[0].parts());
+    let report = simulation.run(&mut Silent).expect("a run");
+    let said: Vec<String> = report.warnings().iter().map(ToString::to_string).collect();
+    let kinds: HashSet<_> = report.warnings().iter().map(|w| discriminant(w.plain())).collect();
+    assert!(said.len() > 3 && kinds.len() == said.len(), "each kind once: {said:#?}");
+    for said in &said[1..] {
+        assert!(said.starts_with("step ") && said.contains(" of *STEP ("), "{said}");
+        assert!(said.contains(" in ELSET=ALL ("), "{said}");
+    }
 }
 
 /// What is no mesh is told by its numbers in the deck, with the line.
