@@ -368,7 +368,7 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
         } else {
             "an element or element set, one of P1 to P4, GRAV, BX, BY, BZ, a value, and with GRAV a direction"
         };
-        let fields = line.at_most(6, wanted)?;
+        let fields = line.fields();
         let found = match (on_surface, name(fields.get(1).unwrap_or(&"")).as_str()) {
             (true, "P") => Some(DistributedKind::Surface),
             (false, "P1") => Some(DistributedKind::Face(1)),
@@ -384,6 +384,7 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
         let Some(mut kind) = found else {
             return Err(line.entry(&fields, 1).expected(wanted));
         };
+        line.at_most(6, wanted)?;
         let value = line.real(&fields, 2, wanted)?;
         if let DistributedKind::Gravity(direction) = &mut kind {
             let wanted = "a direction that is not zero: three numbers";

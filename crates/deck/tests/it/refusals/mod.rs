@@ -125,7 +125,7 @@ fn parameters() {
         "AMPLITUDE=A",
         "there is none",
     );
-    inside("*BOUNDARY, FIXED\n", "*BOUNDARY, FIXED", "FIXED", "OP, AMPLITUDE, TYPE");
+    inside("*BOUNDARY, LOST\n", "*BOUNDARY, LOST", "LOST", "OP, AMPLITUDE, TYPE");
     behind(
         "*AMPLITUDE, NAME=A, VALUE=ABSOLUTE\n",
         "*AMPLITUDE, NAME=A, VALUE=ABSOLUTE",

@@ -4,6 +4,22 @@ use super::{behind, refused};
 use crate::write::{cube, read};
 
 #[test]
+fn parameters_of_contact_that_cannot_be_had() {
+    for (line, word, remedy) in [
+        (
+            "*CONTACT PAIR, INTERACTION=I, ADJUST=0.1",
+            "ADJUST=0.1",
+            "put them where they belong",
+        ),
+        ("*FRICTION, ROUGH", "ROUGH", "a large coefficient"),
+        ("*FRICTION, TAUMAX=2.", "TAUMAX=2.", "remove it"),
+    ] {
+        let rest = format!("*SURFACE INTERACTION, NAME=I\n{line}\n");
+        behind(&rest, line, word, remedy);
+    }
+}
+
+#[test]
 fn mesh() {
     for kind in ["C3D20", "C3D8", "S3", "R2D2"] {
         let line = format!("*ELEMENT, TYPE={kind}");
@@ -168,9 +184,9 @@ fn contact() {
     behind(&format!("{law}*FRICTION\n0.3, -1e6\n"), "0.3, -1e6", "-1e6", "positive");
     behind(&format!("{law}*FRICTION\n-0.3\n"), "-0.3", "-0.3", "at least zero");
     behind(
-        &format!("{law}*FRICTION, ROUGH\n"),
-        "*FRICTION, ROUGH",
-        "ROUGH",
+        &format!("{law}*FRICTION, LOST\n"),
+        "*FRICTION, LOST",
+        "LOST",
         "SLIP TOLERANCE",
     );
     behind(

@@ -43,7 +43,15 @@ fn loads() {
     inside("*CLOAD\nN6, 1\n", "N6, 1", "N6, 1", "and a force");
     inside("*CLOAD\nN7, 1, 1.\n", "N7, 1, 1.", "N7", "there are: N1");
     inside("*DLOAD\nALL, P5, 1.\n", "ALL, P5, 1.", "P5", "P1 to P4");
-    inside("*DLOAD\nALL, CENTRIF, 1.\n", "ALL, CENTRIF, 1.", "CENTRIF", "GRAV");
+    let turning = "ALL, CENTRIF, 1., 0., 0., 0., 0., 0., 1.";
+    inside(&format!("*DLOAD\n{turning}\n"), turning, "CENTRIF", "GRAV");
+    let held = "*BOUNDARY, FIXED";
+    inside(
+        &format!("{held}\nN6, 1\n"),
+        held,
+        "FIXED",
+        "displacement that the steps before reached",
+    );
     inside("*DLOAD\nALL, P1, 1.\n", "ALL, P1, 1.", "ALL", "inside the body");
     inside("*DLOAD\nALL, P1, 1., 2.\n", "ALL, P1, 1., 2.", "2.", "a value");
     let nowhere = "ALL, GRAV, 9.8, 0., 0., 0.";
