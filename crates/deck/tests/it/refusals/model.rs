@@ -6,11 +6,6 @@ use crate::write::{cube, read};
 #[test]
 fn parameters_of_contact_that_cannot_be_had() {
     for (line, word, remedy) in [
-        (
-            "*CONTACT PAIR, INTERACTION=I, ADJUST=0.1",
-            "ADJUST=0.1",
-            "put them where they belong",
-        ),
         ("*FRICTION, ROUGH", "ROUGH", "a large coefficient"),
         ("*FRICTION, TAUMAX=2.", "TAUMAX=2.", "remove it"),
     ] {
@@ -211,7 +206,7 @@ fn contact() {
         &format!("{law}{adjust}\nS1, S2\n"),
         adjust,
         "ADJUST=0.1",
-        "SMALL SLIDING",
+        "put them where they belong",
     );
     let odd = "*CONTACT PAIR, INTERACTION=I, TYPE=SIDEWAYS";
     behind(&format!("{law}{odd}\nS1, S2\n"), odd, "TYPE=SIDEWAYS", "MORTAR");
