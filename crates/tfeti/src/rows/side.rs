@@ -87,6 +87,9 @@ impl From<u32> for Side {
 ///
 /// A node in an edge or a corner has several, with other normals or partners; rows of such a node may depend on one
 /// another.
+///
+/// Where supports hold a node and a quarter of its partner's mean in a direction along the surface, as on a plane of
+/// symmetry, that direction has no row, tied or not: couplings that are meant otherwise want supports elsewhere.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ContactConstraint {
     /// Nodes on the body whose outward normal is given.
