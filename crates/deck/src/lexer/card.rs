@@ -116,20 +116,6 @@ pub(crate) struct Card {
     pub(crate) lines: Vec<Word>,
 }
 
-/// Parameters that decks have and that cannot be had, with what to write.
-const NOT_HERE: [(&str, &str); 4] = [
-    (
-        "ADJUST",
-        "nodes are not moved; put them where they belong, and remove it",
-    ),
-    (
-        "FIXED",
-        "give the displacement that the steps before reached, and remove it",
-    ),
-    ("ROUGH", "friction slides at some force; give a large coefficient"),
-    ("TAUMAX", "friction has the limit of Coulomb alone; remove it"),
-];
-
 impl Card {
     /// Takes a keyword line, with its continuation lines, apart.
     pub(crate) fn new(location: &Location, text: &str) -> Self {
@@ -159,9 +145,6 @@ impl Card {
     pub(crate) fn allow(&self, known: &[&str]) -> Result<(), DeckError> {
         for (index, param) in self.params.iter().enumerate() {
             if !known.iter().any(|k| name(k) == param.key) {
-                if let Some((_, why)) = NOT_HERE.iter().find(|(key, _)| *key == param.key) {
-                    return Err(param.word.fault(Fault::Unsupported(why)));
-                }
                 return Err(param.word.fault(Fault::UnknownParameter {
                     keyword: self.word.text.clone(),
                     known: known.iter().map(|k| (*k).to_owned()).collect(),

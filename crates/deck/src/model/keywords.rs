@@ -7,8 +7,8 @@ use crate::lexer::Card;
 
 /// What is read, as an error lists it.
 const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, *EXPANSION, \
-*INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, *TIE, *RIGID BODY, *SURFACE \
-INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
+*INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, \
+*TIE, *RIGID BODY, *SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
 which are ignored and reported";
 
 /// Requests for output, which ask nothing of the solution.
@@ -69,6 +69,30 @@ const REFUSED: [(&str, &str); 15] = [
     ),
 ];
 
+/// Parameters of keywords that are read, likewise.
+const PARAMETERS: [(&str, &str, &str); 4] = [
+    (
+        "CONTACTPAIR",
+        "ADJUST",
+        "nodes are not moved; put them where they belong, and remove it",
+    ),
+    (
+        "BOUNDARY",
+        "FIXED",
+        "give the displacement that the steps before reached, and remove it",
+    ),
+    (
+        "FRICTION",
+        "ROUGH",
+        "friction slides at some force; give a large coefficient",
+    ),
+    (
+        "FRICTION",
+        "TAUMAX",
+        "friction has the limit of Coulomb alone; remove it",
+    ),
+];
+
 const BEFORE: &str = "this belongs to the model; put it before the first *STEP";
 const INSIDE: &str = "this belongs to a step; put it between *STEP and *END STEP";
 
@@ -86,6 +110,11 @@ pub(crate) fn read(cards: &[Card]) -> Result<Model, DeckError> {
 }
 
 fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Result<(), DeckError> {
+    for (_, name, why) in PARAMETERS.iter().filter(|(key, ..)| *key == card.key) {
+        if let Some(param) = card.param(name) {
+            return Err(param.word.fault(Fault::Unsupported(why)));
+        }
+    }
     type OfModel = fn(&mut Model, &Card) -> Result<(), DeckError>;
     let of_model: Option<OfModel> = match card.key.as_str() {
         "HEADING" => Some(|_, card| card.allow(&[])),

@@ -74,6 +74,15 @@ impl Materials {
         elastic
     }
 
+    /// Energy per volume of all of a strain or of what of it makes stress, whichever is larger, J/m³.
+    pub(crate) fn larger_energy(&self, law: &Hooke, tet: (u32, &[u32; 4]), l: &[f64; 4], strain: &[f64; 6]) -> f64 {
+        let all = law.energy_density(strain);
+        if self.free.is_empty() {
+            return all;
+        }
+        all.max(law.energy_density(&self.elastic(law, tet, l, strain)))
+    }
+
     /// The regions that a law is listed for, ascending; none where one law fills all regions.
     pub fn listed(&self) -> Vec<u32> {
         match &self.laws {

@@ -133,13 +133,8 @@ pub(super) fn energies(
             let recovered = |i: usize| (0..10).map(|k| shape[k] * nodal[k][i]).sum::<f64>();
             laws[tet].energy_density(&std::array::from_fn(|i| recovered(i) - own[i]))
         };
-        let elastic = |l: &[f64; 4]| {
-            let strain = pieces[tet].strain(l);
-            let elastic = materials.elastic(laws[tet], (mesh.regions()[tet], &mesh.tets()[tet]), l, &strain);
-            laws[tet]
-                .energy_density(&strain)
-                .max(laws[tet].energy_density(&elastic))
-        };
+        let place = (mesh.regions()[tet], &mesh.tets()[tet]);
+        let elastic = |l: &[f64; 4]| materials.larger_energy(laws[tet], place, l, &pieces[tet].strain(l));
         [
             over_quadratic(mesh, tet, &rule, error),
             over_quadratic(mesh, tet, &four, elastic),

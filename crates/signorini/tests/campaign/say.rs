@@ -29,7 +29,10 @@ fn load(density: &Density) -> Load {
         Density::Nodes(forces) => LoadDensity::nodal_forces(forces),
         Density::FreeStrain(strain, region, factors) => {
             let strain = FreeStrain::new(strain).with_factors(factors);
-            return Load::free_strain(region.map_or_else(|| strain.clone(), |region| strain.clone().in_region(region)));
+            return Load::free_strain(match region {
+                Some(region) => strain.in_region(region),
+                None => strain,
+            });
         }
     })
 }
