@@ -11,6 +11,8 @@ pub(crate) enum Digits {
 
 /// Rows of a tile.
 pub(crate) const LANES: usize = 8;
+/// Right sides that take half of the time of so many.
+pub(crate) const HALF: usize = LANES / 2;
 /// Columns of a panel: two nodes of three unknowns, or one block of six.
 pub(crate) const PANEL: usize = 6;
 

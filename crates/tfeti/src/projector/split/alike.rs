@@ -6,7 +6,7 @@
 //! regions stand together depends on the matrix only.
 
 use crate::dual::boundary::over_tasks;
-use crate::linalg::tiles::LANES;
+use crate::linalg::tiles::{HALF, LANES};
 use crate::projector::split::tree::CoarseTree;
 use crate::tolerances::{SOLVE_READS, TOGETHER};
 use std::ops::Range;
@@ -29,7 +29,7 @@ pub(super) struct Bunch {
     pub(super) regions: Vec<u32>,
     /// The process whose branch they belong to; `None` if all work on them.
     pub(super) rank: Option<u32>,
-    /// Columns: those of a register, or one.
+    /// Columns: those of a tile, half of them, or one.
     pub(super) width: usize,
     /// Rows: own unknowns, and those behind.
     pub(super) own: usize,
@@ -86,18 +86,16 @@ impl Bunches {
                 let mut sorted = family.clone();
                 sorted.sort_by_key(|&r| rank(r as usize));
                 for family in sorted.chunk_by(|a, b| rank(*a as usize) == rank(*b as usize)) {
-                    let bunches = if together {
-                        family.len().div_ceil(LANES)
-                    } else {
-                        family.len()
-                    };
-                    for k in 0..bunches {
-                        let at = |k: usize| k * family.len() / bunches;
-                        let regions = family[at(k)..at(k + 1)].to_vec();
+                    for regions in family.chunks(if together { LANES } else { 1 }) {
+                        let regions = regions.to_vec();
                         (0..)
                             .zip(&regions)
                             .for_each(|(c, &r)| of[r as usize] = [all.len() as u32, c]);
-                        let width = if together { LANES } else { 1 };
+                        let width = match regions.len() {
+                            _ if !together => 1,
+                            count if count <= HALF => HALF,
+                            _ => LANES,
+                        };
                         let [buffer, reads] = need(r);
                         let length = (own + behind + buffer) * width;
                         all.push(Bunch {

@@ -4,7 +4,8 @@
 //! read one that is rounded to single precision: half of the bytes. Arithmetic is in double precision, so that such a
 //! solve is symmetric and exact for a matrix next to the one given.
 
-use crate::linalg::tiles::{Digits, LANES, ShortTile, Tile};
+use crate::linalg::supernodes::Supernodes;
+use crate::linalg::tiles::{Digits, HALF, LANES, ShortTile, Stored, Tile};
 use crate::projector::split::alike::Bunch;
 use crate::projector::split::branches::{Branch, Pass};
 use crate::projector::split::factor::{SplitBase, SplitFactor};
@@ -213,9 +214,10 @@ impl SplitBase {
     fn eliminate_one<T: Reads>(&self, bunch: &Bunch, factor: &SplitFactor, part: &mut [f64], changing: bool) {
         let (r, [own, behind, buffer]) = (bunch.regions[0] as usize, bunch.divide(part));
         let (piece, steady) = (&self.pieces[r], T::of(&self.pieces[r].tiles));
-        if bunch.width > 1 {
-            let [own, behind, buffer] = [own, behind, buffer].map(|part| part.as_chunks_mut::<LANES>().0);
-            return piece.steady.forward(steady, own, behind, buffer);
+        match bunch.width {
+            LANES => return several::<T, LANES>(&piece.steady, steady, [own, behind, buffer], true),
+            HALF => return several::<T, HALF>(&piece.steady, steady, [own, behind, buffer], true),
+            _ => {}
         }
         if !changing {
             piece.steady.forward(steady, own, behind, buffer);
@@ -226,11 +228,21 @@ impl SplitBase {
     fn substitute_one<T: Reads>(&self, bunch: &Bunch, factor: &SplitFactor, part: &mut [f64]) {
         let (r, [own, behind, buffer]) = (bunch.regions[0] as usize, bunch.divide(part));
         let (piece, steady) = (&self.pieces[r], T::of(&self.pieces[r].tiles));
-        if bunch.width > 1 {
-            let [own, behind, buffer] = [own, behind, buffer].map(|part| part.as_chunks_mut::<LANES>().0);
-            return piece.steady.backward(steady, own, behind, buffer);
+        match bunch.width {
+            LANES => return several::<T, LANES>(&piece.steady, steady, [own, behind, buffer], false),
+            HALF => return several::<T, HALF>(&piece.steady, steady, [own, behind, buffer], false),
+            _ => {}
         }
         piece.changing.backward(T::of(&factor.tiles[r]), own, behind, buffer);
         piece.steady.backward(steady, own, behind, buffer);
+    }
+}
+
+/// `W` right sides at once, [forward](Supernodes::forward) or [backward](Supernodes::backward).
+fn several<T: Stored, const W: usize>(factor: &Supernodes, tiles: &[T], parts: [&mut [f64]; 3], forward: bool) {
+    let [own, behind, buffer] = parts.map(|part| part.as_chunks_mut::<W>().0);
+    match forward {
+        true => factor.forward(tiles, own, behind, buffer),
+        false => factor.backward(tiles, own, behind, buffer),
     }
 }
