@@ -75,7 +75,7 @@ impl Simulation {
         }
         self.controller = state.controller;
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment)?;
-        self.start(state, way.ratio());
+        self.start(state, way);
         let (mut report, recovered) = self.solve()?;
         let (model, problem) = (&self.model, &self.problem);
         if report.status == StepStatus::NotHeld {
@@ -113,15 +113,18 @@ impl Simulation {
         Ok((report, recovered))
     }
 
-    /// Start vectors of an increment, `ratio` times as long as the last one: zero, the last vectors, or the line
-    /// through the last two.
-    fn start(&mut self, state: &State, ratio: f64) {
+    /// Start vectors of an increment: zero, the last vectors, or the line through the last two.
+    fn start(&mut self, state: &State, way: &Way) {
         let (model, iterate) = (&self.model, &mut self.iterate);
         let (lambda, f_lambda) = (&state.lambda, &state.f_lambda);
-        let along = self.settings.extrapolate.then_some(ratio);
         let (rows, coarse) = (model.tfeti.dual_dim(), model.tfeti.coarse().rows());
         // before the first step everything is at rest: zero is known, too
         let from_rest = state.step() <= 1 && !lambda[0].is_empty() && lambda[1].is_empty();
+        let along = self.settings.extrapolate.then(|| {
+            let last = way.increment().start.filter(|_| from_rest);
+            let growth = last.map_or(f64::INFINITY, |last| self.problem.growth(model, last));
+            growth.min(way.ratio())
+        });
         let extrapolate = |[last, before]: &[Vec<f64>; 2], x: &mut Vec<f64>| {
             let before = (!from_rest).then_some(&before[..]);
             start_vector(last, before, rows, along, x);

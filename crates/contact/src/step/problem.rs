@@ -4,7 +4,7 @@ use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model};
 use crate::scene::{Contact, DifferenceFormula, Increment, Pose, Scene};
 use crate::state::{Peak, State};
-use crate::tolerances::{REACHED, REST, ROUNDED};
+use crate::tolerances::{REACHED, REST, ROUNDED, ROUNDING};
 use crate::vec3::dot;
 use signorini_qp::vector;
 use signorini_tfeti::LoadResponse;
@@ -97,6 +97,21 @@ impl StepProblem {
         self.linear.resize(rows, 0.0);
         vector::difference(&self.offset, &self.load, &mut self.linear);
         self.find_friction(model, state)
+    }
+
+    /// How far the loads have grown along themselves since a time, over what they were then: 0 if they stayed, infinite if
+    /// nothing tells.
+    pub(crate) fn growth(&self, model: &Model, time: f64) -> f64 {
+        let mut before = vec![0.0; self.rhs.len()];
+        for (case, load) in model.scene.loads.iter().zip(&model.loads) {
+            vector::axpy(case.history.value(time), &load.coarse, &mut before);
+        }
+        let square = vector::dot(&before, &before);
+        let growth = vector::dot(&self.rhs, &before) / square - 1.0;
+        match square > 0.0 {
+            true => growth.max(0.0) * (1.0 + ROUNDING),
+            false => f64::INFINITY,
+        }
     }
 
     /// Adds to the offsets of contact rows what is theirs: gap, position of rest, way of the obstacle.
