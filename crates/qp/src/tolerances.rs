@@ -148,8 +148,10 @@ pub(crate) const COUPLED_LEAST: f64 = 0.03;
 
 // Active set: the path of compliant constraints
 
-/// Estimated error over the first one from which on predictions lead away.
+/// Estimated error over the first one from which on predictions lead away, and on so many sets in a row.
 pub(crate) const FAR: f64 = 100.0;
+pub(crate) const AWAY: f64 = 20.0;
+pub(crate) const AWAY_SETS: usize = 3;
 /// The first compliance, in units of that of one component alone: plates of 20 to 50 times their thickness settle with
 /// it, or with the next.
 pub(crate) const START_COMPLIANCE: f64 = 1e3;
@@ -159,8 +161,9 @@ pub(crate) const PATHS: i32 = 2;
 /// Factor from one compliance to the next, and below which there is none.
 pub(crate) const LESS_COMPLIANT: f64 = 0.1;
 pub(crate) const LEAST_COMPLIANCE: f64 = 0.3;
-/// Error, relative, to which a problem on the path is solved.
+/// Error, relative, to which a problem on the path is solved, and forcing at most on sets without progress behind it.
 pub(crate) const ON_PATH: f64 = 0.1;
+pub(crate) const BEHIND_PATH: f64 = 0.01;
 
 // Active set: without progress
 

@@ -76,6 +76,8 @@ pub(crate) struct Path {
     pub(crate) since: usize,
     /// Estimated error on the first active set that was not solved when it was entered.
     pub(crate) first: Option<f64>,
+    /// Sets in a row whose error was well above that.
+    pub(crate) away: usize,
 }
 
 #[cfg(test)]

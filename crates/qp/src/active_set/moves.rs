@@ -17,10 +17,10 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
     pub(crate) fn move_on(&mut self, length: f64, place: &Place) -> Result<(), QpError> {
         let constrained = self.at.constrained();
         self.at.mark();
-        let joint = self.joint_step(length);
+        let (joint, unsure) = (self.joint_step(length), self.is_unsure());
         let at = &mut self.at;
         at.work.before.copy_from_slice(&at.x[..constrained]);
-        if self.safeguard.is_none() && self.repairs_suffice && self.progress.waited >= UNSURE {
+        if self.repairs_suffice && unsure {
             at.foresee();
         }
         self.moved.followed = (self.safeguard.is_none() || place.solved) && self.has_settled();
@@ -28,7 +28,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             self.settle()?;
         } else {
             self.settle_loose(false, self.moved.followed)?;
-            if self.safeguard.is_none() && self.progress.waited >= UNSURE {
+            if unsure {
                 self.at.foresee_moved();
             }
         }
@@ -37,6 +37,12 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         self.balance(joint, place);
         self.descend();
         Ok(())
+    }
+
+    /// Whether the solved set is to tell what is active next, not the point moved to: on bodies that bend easily forces that
+    /// pull, and are cut off, come back there.
+    fn is_unsure(&self) -> bool {
+        self.safeguard.is_none() && (self.is_near_path() || self.progress.waited >= UNSURE)
     }
 
     /// Moves `x` into the set as the natural map says, and lets the set follow.

@@ -7,7 +7,9 @@
 //! the compliance costs no product, only its end one, for large terms have rounded.
 
 use crate::problem::{ConvexSet, EqualityProjector, SymmetricOperator};
-use crate::tolerances::{FAR, LEAST_COMPLIANCE, LESS_COMPLIANT, MORE_COMPLIANT, PATHS, START_COMPLIANCE};
+use crate::tolerances::{
+    AWAY, AWAY_SETS, FAR, LEAST_COMPLIANCE, LESS_COMPLIANT, MORE_COMPLIANT, PATHS, START_COMPLIANCE,
+};
 
 use super::iterate::Lengths;
 use super::run::{Place, Progress, Run};
@@ -19,7 +21,10 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         if self.path.first.is_none() && !place.errors.within(place.limits) {
             self.path.first = Some(place.errors.all);
         }
-        let far = self.path.begun == 0 && self.path.first.is_some_and(|first| place.errors.all > FAR * first);
+        let over = self.path.first.map_or(0.0, |first| place.errors.all / first);
+        self.path.away = if over > AWAY { self.path.away + 1 } else { 0 };
+        let stays_away = self.repairs_suffice && self.path.away >= AWAY_SETS;
+        let far = self.path.begun == 0 && (over > FAR || stays_away);
         let lost = self.path.unknown && far || self.in_circles();
         lost && self.path.begun < PATHS && self.safeguard.is_none()
     }
@@ -54,6 +59,12 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             }
         }
         hardens
+    }
+
+    /// Whether supports hold the bodies, and a path has not been left for long.
+    pub(crate) fn is_near_path(&self) -> bool {
+        let soon = self.at.report.active_sets <= self.path.since + self.settings.patience;
+        self.repairs_suffice && self.path.begun > 0 && (soon || self.at.compliance.c > 0.0)
     }
 
     /// Ends the path: no springs. Whether there were any.

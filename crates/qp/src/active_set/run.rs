@@ -6,8 +6,8 @@ use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NEGLIGIBLE, ON_PATH, PASSING_PART, PROGRESS, ROUNDED, RUNAWAY, SHRUNK,
-    SMALL_PART, UNBALANCED,
+    BEHIND_PATH, FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NEGLIGIBLE, ON_PATH, PASSING_PART, PROGRESS, ROUNDED,
+    RUNAWAY, SHRUNK, SMALL_PART, UNBALANCED,
 };
 use crate::vector;
 
@@ -371,7 +371,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
     /// Conjugate gradients on the active set. Returns the length of the last step, zero if another one is not worth
     /// while.
     pub(crate) fn solve_on_set(&mut self, place: &Place) -> Result<f64, QpError> {
-        let settled = self.has_settled();
+        let (settled, near_path) = (self.has_settled(), self.is_near_path());
         let at = &mut self.at;
         if let Some(safeguard) = &mut self.safeguard {
             safeguard.enter(at.x, at.ax, &at.work.residual);
@@ -382,11 +382,13 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         at.work.coupling.begin(free, error, self.progress.waited);
         let falls = place.errors.all < self.least_error;
         let expected = |left: f64| MAGNIFIED * (self.moved.jump + left);
+        // behind a path a set that is hardly solved may lead away again
+        let forcing = match near_path && at.compliance.c == 0.0 && self.progress.waited > 0 {
+            true => self.forcing.min(BEHIND_PATH),
+            false => self.forcing,
+        };
         let goal = Goal {
-            forcing: at
-                .work
-                .coupling
-                .forcing(self.forcing, self.moved.jump, self.first_error),
+            forcing: (at.work.coupling).forcing(forcing, self.moved.jump, self.first_error),
             // of an error in other blocks than before the last move tells nothing
             expected: match settled {
                 true => self.left.zip(self.left, |left, _| expected(left)),
