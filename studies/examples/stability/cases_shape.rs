@@ -22,6 +22,27 @@ fn sliver(quality: f64) -> Result<Setup, Failure> {
     block.setup_on(mesh, materials)
 }
 
+/// A plate of 50 times its thickness, clamped along one edge, that a load presses on the floor below, and one drags along.
+fn plate() -> Result<Setup, Failure> {
+    let mesh = Brick::new([1.0, 1.0, 0.02], [32, 32, 1]).build()?;
+    let loads = vec![
+        (
+            LoadDensity::traction(brick::Z_MAX, [0.0, 0.0, -1e4]),
+            History::constant(1.0),
+        ),
+        (
+            LoadDensity::traction(brick::X_MAX, [0.0, 1e5, 0.0]),
+            History::ramp(1.0, 1.0)?,
+        ),
+    ];
+    let floor = Contact::rigid(brick::Z_MIN).with_gap(1e-4);
+    let scene = Scene::new(mesh, Materials::uniform(Hooke::isotropic(2e11, 0.3)?))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_contact(floor.with_friction(Friction::coulomb(0.3)))
+        .with_analysis(Analysis::quasistatic(1.0, 5));
+    Ok(Setup::new(scene, loads))
+}
+
 /// Shapes, units and loads.
 pub(crate) fn cases() -> Vec<Case> {
     const SHAPE: &str = "Shapes";
@@ -47,6 +68,12 @@ pub(crate) fn cases() -> Vec<Case> {
             lying([3.0 / squeeze, 1.0, 1.0], 1e6),
         ));
     }
+    cases.push(Case::new(
+        SHAPE,
+        "plate 1:50 lies down",
+        "one cell over the thickness; of the points that come near the floor many pull on some set",
+        plate,
+    ));
     for quality in [1e-2, 1e-4] {
         cases.push(Case::new(
             SHAPE,
