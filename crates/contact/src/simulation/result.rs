@@ -147,8 +147,9 @@ impl StepResult {
         energy.unwrap_or(f64::NAN)
     }
 
-    /// The materials with the free strains of this step.
-    pub(crate) fn materials(&self) -> Cow<'_, Materials> {
+    /// The materials with the free strains of this step, which the scene's do not know: what
+    /// [`fields`](signorini_fem_mesh::fields) needs for stresses.
+    pub fn materials(&self) -> Cow<'_, Materials> {
         materials(&self.model, &self.problem)
     }
 
