@@ -282,9 +282,8 @@ fn sheets_that_bend_down_touch_in_few_products() {
         let [length, _, thickness] = size;
         let pressure = 1e11 * f64::powi(thickness / length, 4);
         let ramp = History::ramp(1.0, 1.0).expect("history");
-        let hooke = Hooke::isotropic(2e11, 0.3).expect("material");
         let floor = Contact::rigid(brick::Z_MIN).with_gap(0.05 * thickness);
-        let scene = Scene::new(block(size, cells), Materials::uniform(hooke))
+        let scene = Scene::new(block(size, cells), uniform(2e11, 0.3))
             .with_support(Support::fixed(brick::X_MIN))
             .with_load(Load::pressure(brick::Z_MAX, pressure).with_history(ramp.clone()))
             .with_load(Load::traction(brick::X_MAX, [2.0 * pressure, 0.0, 0.0]).with_history(ramp))
@@ -318,9 +317,8 @@ fn plates_that_lie_down_are_solved_on_few_sets() {
         } else {
             mesh
         };
-        let hooke = Hooke::isotropic(2e11, 0.3).expect("material");
         let floor = Contact::rigid(brick::Z_MIN).with_gap(1e-4);
-        let mut scene = Scene::new(mesh, Materials::uniform(hooke))
+        let mut scene = Scene::new(mesh, uniform(2e11, 0.3))
             .with_support(Support::fixed(brick::X_MIN))
             .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -1e4]))
             .with_analysis(Analysis::quasistatic(1.0, 3));

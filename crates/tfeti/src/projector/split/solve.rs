@@ -214,10 +214,8 @@ impl SplitBase {
     fn eliminate_one<T: Reads>(&self, bunch: &Bunch, factor: &SplitFactor, part: &mut [f64], changing: bool) {
         let (r, [own, behind, buffer]) = (bunch.regions[0] as usize, bunch.divide(part));
         let (piece, steady) = (&self.pieces[r], T::of(&self.pieces[r].tiles));
-        match bunch.width {
-            LANES => return several::<T, LANES>(&piece.steady, steady, [own, behind, buffer], true),
-            HALF => return several::<T, HALF>(&piece.steady, steady, [own, behind, buffer], true),
-            _ => {}
+        if bunch.width > 1 {
+            return together(bunch.width, &piece.steady, steady, [own, behind, buffer], true);
         }
         if !changing {
             piece.steady.forward(steady, own, behind, buffer);
@@ -228,17 +226,22 @@ impl SplitBase {
     fn substitute_one<T: Reads>(&self, bunch: &Bunch, factor: &SplitFactor, part: &mut [f64]) {
         let (r, [own, behind, buffer]) = (bunch.regions[0] as usize, bunch.divide(part));
         let (piece, steady) = (&self.pieces[r], T::of(&self.pieces[r].tiles));
-        match bunch.width {
-            LANES => return several::<T, LANES>(&piece.steady, steady, [own, behind, buffer], false),
-            HALF => return several::<T, HALF>(&piece.steady, steady, [own, behind, buffer], false),
-            _ => {}
+        if bunch.width > 1 {
+            return together(bunch.width, &piece.steady, steady, [own, behind, buffer], false);
         }
         piece.changing.backward(T::of(&factor.tiles[r]), own, behind, buffer);
         piece.steady.backward(steady, own, behind, buffer);
     }
 }
 
-/// `W` right sides at once, [forward](Supernodes::forward) or [backward](Supernodes::backward).
+/// So many right sides at once, [forward](Supernodes::forward) or [backward](Supernodes::backward).
+fn together<T: Stored>(width: usize, factor: &Supernodes, tiles: &[T], parts: [&mut [f64]; 3], forward: bool) {
+    match width {
+        HALF => several::<T, HALF>(factor, tiles, parts, forward),
+        _ => several::<T, LANES>(factor, tiles, parts, forward),
+    }
+}
+
 fn several<T: Stored, const W: usize>(factor: &Supernodes, tiles: &[T], parts: [&mut [f64]; 3], forward: bool) {
     let [own, behind, buffer] = parts.map(|part| part.as_chunks_mut::<W>().0);
     match forward {
