@@ -11,7 +11,7 @@
 //! | another mesh of it | [`TetMesh::raise_order`], [`TetMesh::map_points`], [`TetMesh::append`], [`TetMesh::tag_boundary`] |
 //! | a material | [`Hooke`] (general or isotropic), [`Materials`] by region |
 //! | a stiffness | [`assemble_stiffness`], [`Element`] |
-//! | a load | [`LoadDensity`] and [`assemble_load`]; [`FreeStrain`] (temperature, tightening); [`History`] for its factor in time |
+//! | a load | [`LoadDensity`] and [`assemble_load`]; [`Eigenstrain`] (temperature, tightening); [`History`] for its factor in time |
 //! | subdomains | [`Decomposition`]: boxes, given parts, or the whole; parts by [`decomposition`] |
 //! | a contact surface | [`Surface`] with a [`SurfaceFrame`] and an area at each node |
 //! | stresses, energy, errors | [`fields`] |
@@ -105,8 +105,8 @@ pub use files::gmsh;
 #[cfg(feature = "vtu")]
 pub use files::output;
 pub use files::replace_file;
-pub use loads::{History, HistoryError, LoadDensity, LoadError, assemble_free_strain, assemble_load};
-pub use material::{FreeStrain, Hooke, HookeError, MaterialError, Materials};
+pub use loads::{History, HistoryError, LoadDensity, LoadError, assemble_eigenstrain, assemble_load};
+pub use material::{Eigenstrain, Hooke, HookeError, MaterialError, Materials};
 pub use mesh::brick::Brick;
 pub use mesh::{Facet, FacetTag, MeshError, Surface, SurfaceError, SurfaceFrame, TetMesh, brick};
 

@@ -65,6 +65,6 @@ pub mod prelude {
     #[cfg(feature = "vtu")]
     pub use signorini_contact::{ResultField, ResultWriter};
     pub use signorini_fem_mesh::{
-        Brick, Facet, FacetTag, FreeStrain, History, Hooke, LoadDensity, Materials, TetMesh, brick,
+        Brick, Eigenstrain, Facet, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick,
     };
 }

@@ -100,9 +100,11 @@ pub(crate) const LARGE: usize = 8000;
 pub(crate) const PRODUCT: u64 = 1_500_000;
 pub(crate) const SOLVE_READS: usize = 25_000;
 pub(crate) const OPERATIONS: f64 = 3e5;
-/// Most parts of a loop over subdomains: bounds work memory and useful threads. Blocks and entries of a part.
+/// Most parts of a loop over subdomains: bounds work memory and useful threads. Blocks, motions of subdomains and entries of a
+/// part.
 pub(crate) const PARTS: usize = 64;
 pub(crate) const BLOCKS: usize = 2048;
+pub(crate) const MOTIONS: usize = 512;
 pub(crate) const GLOB_TASK: u64 = 4096;
 pub(crate) const SUBDOMAIN_TASK: u64 = 512;
 /// Coarse solves between two changes of the active set; seconds for a number that they read, for an operation of a

@@ -6,7 +6,7 @@ use crate::error::ContactError;
 use crate::part::Part;
 use crate::scene::{LoadKind, Pose, Scene};
 use crate::tolerances::LARGEST;
-use signorini_fem_mesh::{Decomposition, assemble_free_strain, assemble_load};
+use signorini_fem_mesh::{Decomposition, assemble_eigenstrain, assemble_load};
 use signorini_qp::vector;
 use signorini_tfeti::TfetiError;
 
@@ -98,7 +98,7 @@ pub(super) fn nodal_loads(
     for (index, load) in scene.loads.iter().enumerate() {
         let local = match &load.kind {
             LoadKind::Density(density) => assemble_load(&scene.mesh, decomposition, density),
-            LoadKind::FreeStrain(strain) => assemble_free_strain(&scene.mesh, decomposition, &scene.materials, strain),
+            LoadKind::Eigenstrain(strain) => assemble_eigenstrain(&scene.mesh, decomposition, &scene.materials, strain),
         };
         let local = local.map_err(|source| ContactError::Load { index, source })?;
         // a NaN stays one

@@ -1,6 +1,6 @@
 //! Loads in space and time.
 
-use signorini_fem_mesh::{FacetTag, FreeStrain, History, LoadDensity};
+use signorini_fem_mesh::{Eigenstrain, FacetTag, History, LoadDensity};
 
 /// A load in space and time.
 #[derive(Debug, Clone)]
@@ -13,7 +13,7 @@ pub struct Load {
 #[derive(Debug, Clone)]
 pub(crate) enum Kind {
     Density(LoadDensity),
-    FreeStrain(FreeStrain),
+    Eigenstrain(Eigenstrain),
 }
 
 impl Load {
@@ -24,8 +24,8 @@ impl Load {
 
     /// Strain that makes no stress: expansion by temperature, a shaft that shrinks, a bolt that is tightened. Constant
     /// in time, too: bodies have it from the first step on.
-    pub fn free_strain(strain: FreeStrain) -> Self {
-        Self::of(Kind::FreeStrain(strain))
+    pub fn eigenstrain(strain: Eigenstrain) -> Self {
+        Self::of(Kind::Eigenstrain(strain))
     }
 
     fn of(kind: Kind) -> Self {
@@ -62,11 +62,11 @@ impl Load {
         self
     }
 
-    /// The load in space; `None` of a free strain.
+    /// The load in space; `None` of an eigenstrain.
     pub fn density(&self) -> Option<&LoadDensity> {
         match &self.kind {
             Kind::Density(density) => Some(density),
-            Kind::FreeStrain(_) => None,
+            Kind::Eigenstrain(_) => None,
         }
     }
 

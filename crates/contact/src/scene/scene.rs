@@ -29,8 +29,8 @@ pub struct Scene {
 impl Scene {
     /// A free body without loads: static, cut into subdomains as its size asks for.
     pub fn new(mesh: TetMesh, mut materials: Materials) -> Self {
-        let constant = |(factor, strain)| Load::free_strain(strain).with_history(History::constant(factor));
-        let loads = materials.take_free_strains().into_iter().map(constant).collect();
+        let constant = |(factor, strain)| Load::eigenstrain(strain).with_history(History::constant(factor));
+        let loads = materials.take_eigenstrains().into_iter().map(constant).collect();
         Self {
             mesh,
             materials,

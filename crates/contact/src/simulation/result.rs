@@ -147,7 +147,7 @@ impl StepResult {
         energy.unwrap_or(f64::NAN)
     }
 
-    /// The materials with the free strains of this step, which the scene's do not know: what
+    /// The materials with the eigenstrains of this step, which the scene's do not know: what
     /// [`fields`](signorini_fem_mesh::fields) needs for stresses.
     pub fn materials(&self) -> Cow<'_, Materials> {
         materials(&self.model, &self.problem)
@@ -265,12 +265,12 @@ pub(super) fn discretisation_error(
     Ok(recovery.error(mesh, &materials(model, problem), &u)?)
 }
 
-/// The materials of a scene with the free strains of a step.
+/// The materials of a scene with the eigenstrains of a step.
 fn materials<'a>(model: &'a Model, problem: &StepProblem) -> Cow<'a, Materials> {
     let mut all = Cow::Borrowed(&model.scene.materials);
     for (load, factor) in model.scene.loads.iter().zip(&problem.factors) {
-        if let LoadKind::FreeStrain(strain) = &load.kind {
-            all = Cow::Owned(all.into_owned().with_free_strain(*factor, strain.clone()));
+        if let LoadKind::Eigenstrain(strain) = &load.kind {
+            all = Cow::Owned(all.into_owned().with_eigenstrain(*factor, strain.clone()));
         }
     }
     all

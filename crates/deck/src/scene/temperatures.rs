@@ -1,10 +1,10 @@
-//! `*TEMPERATURE` of all steps as free strains: what nodes are warmer than at first, times the coefficients of expansion
+//! `*TEMPERATURE` of all steps as eigenstrains: what nodes are warmer than at first, times the coefficients of expansion
 //! of each section.
 
 use std::collections::BTreeMap;
 
 use signorini_contact::Load;
-use signorini_fem_mesh::FreeStrain;
+use signorini_fem_mesh::Eigenstrain;
 
 use super::faces::Known;
 use super::history::{Histories, Track};
@@ -67,8 +67,8 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
     }
     let mut out = Vec::new();
     for (history, (track, rises)) in groups {
-        let warm = |[x, y, z]: [f64; 3]| FreeStrain::new([x, y, z, 0.0, 0.0, 0.0]).with_factors(rises.clone());
-        let strains: Vec<FreeStrain> = match laws[..] {
+        let warm = |[x, y, z]: [f64; 3]| Eigenstrain::new([x, y, z, 0.0, 0.0, 0.0]).with_factors(rises.clone());
+        let strains: Vec<Eigenstrain> = match laws[..] {
             [Some(law), ref others @ ..] if others.iter().all(|other| *other == Some(law)) => vec![warm(law)],
             _ => {
                 let each = (0..).zip(&laws);
@@ -76,7 +76,7 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
                     .collect()
             }
         };
-        let load = |strain| Load::free_strain(strain).with_history(histories.at(history));
+        let load = |strain| Load::eigenstrain(strain).with_history(histories.at(history));
         out.extend(strains.into_iter().map(|strain| (load(strain), track.word.clone())));
     }
     Ok(out)

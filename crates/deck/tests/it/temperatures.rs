@@ -1,4 +1,4 @@
-//! Temperatures and coefficients of expansion: free strains.
+//! Temperatures and coefficients of expansion: eigenstrains.
 
 use signorini_contact::{Settings, Simulation};
 use signorini_fem_mesh::Brick;

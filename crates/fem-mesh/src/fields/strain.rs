@@ -78,7 +78,7 @@ pub fn stresses(mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<Vec<
     Ok(laws.par_iter().enumerate().map(stress).collect())
 }
 
-/// Elastic energy, half of stress times strain that is not free, integrated over the mesh: without free strain that of
+/// Elastic energy, half of stress times elastic strain, integrated over the mesh: without eigenstrain that of
 /// the stiffness matrix.
 ///
 /// # Errors

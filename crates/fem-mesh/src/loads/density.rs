@@ -86,13 +86,13 @@ errors! {
         UnknownNode { node: u32, nodes: usize } =
             "a force is given at node {node}, but there are only {nodes} nodes, numbered from 0";
         NotFinite { place: [f64; 3], value: [f64; 3] } = "the load at {place:?} is {value:?}; it must be finite";
-        FreeStrain { strain: [f64; 6] } = "a free strain is {strain:?}; it must be finite";
+        Eigenstrain { strain: [f64; 6] } = "an eigenstrain is {strain:?}; it must be finite";
         StrainRegion { region: u32, known: Vec<u32> } =
-            "a free strain is given in region {region}, but no tetrahedron is in it; the mesh has the regions {known:?}";
+            "an eigenstrain is given in region {region}, but no tetrahedron is in it; the mesh has the regions {known:?}";
         StrainFactors { given: usize, nodes: usize } =
-            "a free strain has {given} factors for {nodes} nodes; give one for each node";
+            "an eigenstrain has {given} factors for {nodes} nodes; give one for each node";
         StrainFactor { node: usize, value: f64 } =
-            "the factor of a free strain at node {node} is {value}; it must be finite";
+            "the factor of an eigenstrain at node {node} is {value}; it must be finite";
         Material(#[from] MaterialError) = "{0}";
     }
 }

@@ -1,20 +1,20 @@
 //! Loads: in space, in time, and as nodal forces of the subdomains.
 //!
 //! `density` says where a load acts, `history` how it changes in time, `function` is what a user gives for either,
-//! `assemble` turns it into consistent nodal forces, `free_strain` strain without stress.
+//! `assemble` turns it into consistent nodal forces, `eigenstrain` strain without stress.
 //!
 //! Uses: `decomposition`, `element`, `material`, `mesh`, `vec3`. In: a mesh, a decomposition, a load. Out: a force
 //! vector a subdomain.
 
 mod assemble;
 mod density;
-mod free_strain;
+mod eigenstrain;
 mod function;
 mod history;
 
 pub use assemble::assemble_load;
 pub use density::{LoadDensity, LoadError, PointField, SurfaceField};
-pub use free_strain::assemble_free_strain;
+pub use eigenstrain::assemble_eigenstrain;
 pub use function::Function;
 #[doc(hidden)]
 pub use history::interpolate;

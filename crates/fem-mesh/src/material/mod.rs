@@ -2,10 +2,10 @@
 //!
 //! Uses: nothing. In: moduli or a tensor, numbers of regions. Out: laws that are symmetric and elliptic.
 
-mod free_strain;
+mod eigenstrain;
 mod hooke;
 mod regions;
 
-pub use free_strain::FreeStrain;
+pub use eigenstrain::Eigenstrain;
 pub use hooke::{Hooke, HookeError};
 pub use regions::{MaterialError, Materials};

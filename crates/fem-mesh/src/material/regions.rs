@@ -1,6 +1,6 @@
 //! Which material fills which region.
 
-use super::free_strain::FreeStrain;
+use super::eigenstrain::Eigenstrain;
 use super::hooke::Hooke;
 
 errors! {
@@ -13,11 +13,11 @@ errors! {
     }
 }
 
-/// Hooke's law of each material region, and what strain is free of stress.
+/// Hooke's law of each material region, and its eigenstrains.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Materials {
     laws: Laws,
-    free: Vec<(f64, FreeStrain)>,
+    eigenstrains: Vec<(f64, Eigenstrain)>,
 }
 
 #[derive(Debug, Clone, PartialEq)]
@@ -46,30 +46,33 @@ impl Materials {
     }
 
     fn of(laws: Laws) -> Self {
-        Self { laws, free: Vec::new() }
+        Self {
+            laws,
+            eigenstrains: Vec::new(),
+        }
     }
 
-    /// Adds a free strain times a factor; several add up. [`fields`](crate::fields) and
+    /// Adds an eigenstrain times a factor; several add up. [`fields`](crate::fields) and
     /// [`recovery`](crate::recovery) take the stress of what the strain is more. The stiffness stays, and the forces
-    /// are those of [`assemble_free_strain`](crate::assemble_free_strain).
+    /// are those of [`assemble_eigenstrain`](crate::assemble_eigenstrain).
     #[must_use]
-    pub fn with_free_strain(mut self, factor: f64, strain: FreeStrain) -> Self {
-        self.free.push((factor, strain));
+    pub fn with_eigenstrain(mut self, factor: f64, strain: Eigenstrain) -> Self {
+        self.eigenstrains.push((factor, strain));
         self
     }
 
-    /// Takes the free strains with their factors away.
-    pub fn take_free_strains(&mut self) -> Vec<(f64, FreeStrain)> {
-        std::mem::take(&mut self.free)
+    /// Takes the eigenstrains with their factors away.
+    pub fn take_eigenstrains(&mut self) -> Vec<(f64, Eigenstrain)> {
+        std::mem::take(&mut self.eigenstrains)
     }
 
     /// What of a strain makes stress, in a tetrahedron of this law with its region and corners at barycentric
     /// coordinates.
     pub(crate) fn elastic(&self, law: &Hooke, tet: (u32, &[u32; 4]), l: &[f64; 4], strain: &[f64; 6]) -> [f64; 6] {
         let mut elastic = *strain;
-        for (factor, free) in &self.free {
-            let free = free.at(law, tet, l);
-            (0..6).for_each(|i| elastic[i] -= factor * free[i]);
+        for (factor, strain) in &self.eigenstrains {
+            let strain = strain.at(law, tet, l);
+            (0..6).for_each(|i| elastic[i] -= factor * strain[i]);
         }
         elastic
     }
@@ -77,7 +80,7 @@ impl Materials {
     /// Energy per volume of all of a strain or of what of it makes stress, whichever is larger, J/m³.
     pub(crate) fn larger_energy(&self, law: &Hooke, tet: (u32, &[u32; 4]), l: &[f64; 4], strain: &[f64; 6]) -> f64 {
         let all = law.energy_density(strain);
-        if self.free.is_empty() {
+        if self.eigenstrains.is_empty() {
             return all;
         }
         all.max(law.energy_density(&self.elastic(law, tet, l, strain)))

@@ -5,8 +5,8 @@ use signorini_fem_mesh::brick::{Brick, SIDES, X_MIN, Z_MAX, Z_MIN};
 use signorini_fem_mesh::fields::{nodal_stresses, strain_energy, strains, stresses};
 use signorini_fem_mesh::mesh::{drop_unused_nodes, merge_nodes, orient_tets};
 use signorini_fem_mesh::{
-    Decomposition, FacetTag, FreeStrain, Hooke, LoadDensity, Materials, MeshError, Surface, TetMesh,
-    assemble_free_strain, assemble_load, assemble_stiffness,
+    Decomposition, Eigenstrain, FacetTag, Hooke, LoadDensity, Materials, MeshError, Surface, TetMesh,
+    assemble_eigenstrain, assemble_load, assemble_stiffness,
 };
 
 /// A perturbed block, straight.
@@ -433,10 +433,10 @@ fn faults_of_mid_nodes_name_the_element() {
     );
 }
 
-/// Forces of a free strain are the slope of the energy with it: `E(u) = u K u / 2 - f u + E(0)`, straight or curved,
+/// Forces of an eigenstrain are the slope of the energy with it: `E(u) = u K u / 2 - f u + E(0)`, straight or curved,
 /// nearly incompressible or not.
 #[test]
-fn free_strains_load_by_the_slope_of_the_energy() {
+fn eigenstrains_load_by_the_slope_of_the_energy() {
     let linear = Brick::new([2.0, 1.0, 1.0], [4, 2, 2])
         .perturbed(0.1, 3)
         .build()
@@ -445,10 +445,10 @@ fn free_strains_load_by_the_slope_of_the_energy() {
         for poisson in [0.3, 0.4999] {
             let law = Hooke::isotropic(10.0, poisson).unwrap();
             let factors = mesh.points().iter().map(|[x, y, z]| 1.0 + x * y - z).collect();
-            let free = FreeStrain::new([3.0, 1.0, -1.0, 0.5, 0.2, 0.1]).with_factors(factors);
+            let free = Eigenstrain::new([3.0, 1.0, -1.0, 0.5, 0.2, 0.1]).with_factors(factors);
             let materials = Materials::uniform(law);
-            let force = assemble_free_strain(&mesh, &Decomposition::whole(&mesh), &materials, &free).unwrap();
-            let with = materials.clone().with_free_strain(2.0, free);
+            let force = assemble_eigenstrain(&mesh, &Decomposition::whole(&mesh), &materials, &free).unwrap();
+            let with = materials.clone().with_eigenstrain(2.0, free);
             let u = nodal(&mesh, |[x, y, z]| [x * x - y, 0.3 * z * z + x, y * z + x * z]);
             let zero = vec![0.0; u.len()];
             let work: f64 = force[0].iter().zip(&u).map(|(f, u)| f * u).sum();
@@ -461,12 +461,12 @@ fn free_strains_load_by_the_slope_of_the_energy() {
 
 /// Stress at the nodes is that of the strain that is not free.
 #[test]
-fn nodal_stresses_know_of_free_strains() {
+fn nodal_stresses_know_of_eigenstrains() {
     let law = Hooke::isotropic(10.0, 0.3).unwrap();
     let linear = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build().unwrap();
     for mesh in [linear, block()] {
         let free = [3.0, 1.0, -1.0, 0.5, 0.2, 0.1];
-        let materials = Materials::uniform(law).with_free_strain(0.5, FreeStrain::new(free));
+        let materials = Materials::uniform(law).with_eigenstrain(0.5, Eigenstrain::new(free));
         let u = nodal(&mesh, |[x, y, z]| [x, y, z]);
         let exact = law.stress(&[1.0 - 1.5, 1.0 - 0.5, 1.0 + 0.5, -0.25, -0.1, -0.05]);
         for stress in nodal_stresses(&mesh, &materials, &u).unwrap() {

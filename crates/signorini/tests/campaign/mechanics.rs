@@ -202,7 +202,7 @@ impl Mechanics {
                     }
                 }
             }
-            Density::FreeStrain(strain, region, factors) => {
+            Density::Eigenstrain(strain, region, factors) => {
                 for e in self.elements.iter().filter(|e| region.is_none_or(|r| r == e.region)) {
                     let corners = [0, 1, 2, 3].map(|k| factors[e.nodes[k] as usize]);
                     let mean = corners.iter().sum::<f64>() / 4.0;

@@ -86,7 +86,7 @@ pub(crate) enum Density {
     Pressure(FacetTag, f64),
     Nodes(Vec<(u32, Vec3)>),
     /// Strain without stress, in a region or everywhere, times a factor at each node.
-    FreeStrain([f64; 6], Option<u32>, Vec<f64>),
+    Eigenstrain([f64; 6], Option<u32>, Vec<f64>),
 }
 
 #[derive(Debug, Clone)]

@@ -27,9 +27,9 @@ fn load(density: &Density) -> Load {
         }),
         Density::Pressure(tag, value) => LoadDensity::pressure(tag, value),
         Density::Nodes(forces) => LoadDensity::nodal_forces(forces),
-        Density::FreeStrain(strain, region, factors) => {
-            let strain = FreeStrain::new(strain).with_factors(factors);
-            return Load::free_strain(match region {
+        Density::Eigenstrain(strain, region, factors) => {
+            let strain = Eigenstrain::new(strain).with_factors(factors);
+            return Load::eigenstrain(match region {
                 Some(region) => strain.in_region(region),
                 None => strain,
             });

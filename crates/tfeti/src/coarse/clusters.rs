@@ -5,7 +5,7 @@ use crate::coarse::mobility::Mobility;
 use crate::linalg::entry;
 use crate::subdomain::kernel::{Block, Kernel, displacement, mean, product, transposed};
 use crate::subdomain::matrices::Subdomains;
-use crate::tolerances::{BLOCKS, CLUSTER, LAYER, TRANSLATE};
+use crate::tolerances::{BLOCKS, CLUSTER, LAYER, MOTIONS, TRANSLATE};
 use rayon::prelude::*;
 use signorini_fem_mesh::internal::Lists;
 use signorini_fem_mesh::vec3::sub;
@@ -96,7 +96,7 @@ impl Clusters {
     /// Amplitudes of the subdomains from the motions of the clusters.
     pub(crate) fn prolong(&self, motions: &[f64], y: &mut [f64]) {
         let (motions, _) = motions.as_chunks::<6>();
-        let subdomains = y.as_chunks_mut::<6>().0.par_iter_mut().with_min_len(BLOCKS / 4);
+        let subdomains = y.as_chunks_mut::<6>().0.par_iter_mut().with_min_len(MOTIONS);
         subdomains
             .zip(&self.maps)
             .zip(&self.of)

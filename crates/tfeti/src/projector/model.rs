@@ -16,7 +16,7 @@ use crate::projector::split::order::grid_of;
 use crate::projector::split::tree::cheapest_tree;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::kernel::Block;
-use crate::tolerances::{BLOCKS, RELAXED, SWEEPS};
+use crate::tolerances::{MOTIONS, RELAXED, SWEEPS};
 use nalgebra::Matrix6;
 use rayon::prelude::*;
 use signorini_qp::internal::LineWeight;
@@ -284,7 +284,7 @@ impl Model {
     /// `out = J rest` on some subdomains.
     fn relax(&self, factor: &ModelFactor, own: Range<usize>, rest: &[f64], out: &mut [f64]) {
         let (rest, (out, _)) = (rest.as_chunks::<6>().0, out.as_chunks_mut::<6>());
-        let all = out[own.clone()].par_iter_mut().with_min_len(BLOCKS / 4);
+        let all = out[own.clone()].par_iter_mut().with_min_len(MOTIONS);
         let each = all.zip(&self.inverses[own.clone()]).zip(&rest[own.clone()]);
         each.for_each(|((out, inverse), rest)| *out = times(inverse, rest));
         let touching = self.touching.iter().zip(&factor.inverses);

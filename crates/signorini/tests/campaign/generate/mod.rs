@@ -87,8 +87,8 @@ pub(crate) fn warm(seed: u64, number: u64) -> Recipe {
         true => Course::Constant(dice.either()),
         false => Course::Table(vec![(0.0, 0.0), (0.7 * end, 1.0), (end, dice.either())]),
     };
-    recipe.words.push("free strain".into());
-    let density = Density::FreeStrain(strain, region, factors);
+    recipe.words.push("eigenstrain".into());
+    let density = Density::Eigenstrain(strain, region, factors);
     recipe.pushes.push(Push { density, course });
     recipe
 }

@@ -6,23 +6,23 @@ use super::hooke::Hooke;
 /// Stress is Hooke's law of what the strain is more than that.
 ///
 /// ```
-/// use signorini_fem_mesh::FreeStrain;
+/// use signorini_fem_mesh::Eigenstrain;
 ///
 /// // steel, 80 K warmer
-/// let warm = FreeStrain::expansion(12e-6 * 80.0);
+/// let warm = Eigenstrain::expansion(12e-6 * 80.0);
 /// // a shank along z, region 2, tightened by a thousandth of its length
-/// let tightened = FreeStrain::new([0.0, 0.0, -1e-3, 0.0, 0.0, 0.0]).in_region(2);
+/// let tightened = Eigenstrain::new([0.0, 0.0, -1e-3, 0.0, 0.0, 0.0]).in_region(2);
 /// # let _ = (warm, tightened);
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 #[must_use]
-pub struct FreeStrain {
+pub struct Eigenstrain {
     pub(crate) strain: [f64; 6],
     pub(crate) region: Option<u32>,
     pub(crate) factors: Vec<f64>,
 }
 
-impl FreeStrain {
+impl Eigenstrain {
     /// The same strain everywhere: xx, yy, zz, yz, xz, xy with engineering shear.
     pub fn new(strain: [f64; 6]) -> Self {
         Self {

@@ -4,24 +4,24 @@ use rayon::prelude::*;
 
 use crate::decomposition::{Decomposition, Subdomain};
 use crate::element::{Element, QuadraticElement};
-use crate::material::{FreeStrain, Materials};
+use crate::material::{Eigenstrain, Materials};
 use crate::mesh::TetMesh;
 
 use super::assemble::{accumulate, expect_decomposition};
 use super::density::LoadError;
 
-/// Turns a free strain into nodal forces of the subdomains, as [`assemble_load`](crate::assemble_load) does with loads:
+/// Turns an eigenstrain into nodal forces of the subdomains, as [`assemble_load`](crate::assemble_load) does with loads:
 /// the work of the stress that would suppress it, on the strains of the elements. They are in balance on each
 /// tetrahedron.
 ///
 /// # Errors
 /// [`LoadError`] if a number is not finite, the region is unknown or has no material, there is not a factor for each
 /// node, or the decomposition belongs to another mesh.
-pub fn assemble_free_strain(
+pub fn assemble_eigenstrain(
     mesh: &TetMesh,
     decomposition: &Decomposition,
     materials: &Materials,
-    strain: &FreeStrain,
+    strain: &Eigenstrain,
 ) -> Result<Vec<Vec<f64>>, LoadError> {
     expect_decomposition(mesh, decomposition)?;
     check(mesh, strain)?;
@@ -52,14 +52,14 @@ pub fn assemble_free_strain(
     Ok(decomposition.subdomains().par_iter().map(of_subdomain).collect())
 }
 
-fn check(mesh: &TetMesh, free: &FreeStrain) -> Result<(), LoadError> {
-    let FreeStrain {
+fn check(mesh: &TetMesh, eigenstrain: &Eigenstrain) -> Result<(), LoadError> {
+    let Eigenstrain {
         strain,
         region,
         factors,
-    } = free;
+    } = eigenstrain;
     if !strain.iter().all(|e| e.is_finite()) {
-        return Err(LoadError::FreeStrain { strain: *strain });
+        return Err(LoadError::Eigenstrain { strain: *strain });
     }
     let known = mesh.distinct_regions();
     if let Some(region) = region.filter(|region| !known.contains(region)) {

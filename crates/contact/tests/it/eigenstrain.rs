@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use signorini_fem_mesh::fields::nodal_stresses;
-use signorini_fem_mesh::{FreeStrain, TetMesh};
+use signorini_fem_mesh::{Eigenstrain, TetMesh};
 
 const YOUNG: f64 = 2.1e11;
 /// 80 K of steel.
@@ -34,7 +34,7 @@ fn largest(values: &[[f64; 6]]) -> f64 {
 #[test]
 fn a_block_that_may_grow_has_no_stress() {
     for (order, poisson) in [(1, 0.3), (2, 0.3), (2, 0.4999)] {
-        let scene = on_planes(block(order), poisson).with_load(Load::free_strain(FreeStrain::expansion(WARM)));
+        let scene = on_planes(block(order), poisson).with_load(Load::eigenstrain(Eigenstrain::expansion(WARM)));
         let mut simulation = Simulation::new(scene, Settings::default()).expect("simulation");
         let result = simulation.step().expect("step");
         for (u, x) in result.displacement().iter().zip(result.scene().mesh().points()) {
@@ -68,7 +68,7 @@ fn temperatures_at_nodes_bend_a_quadratic_block_without_stress() {
             .with_support(Support::components(brick::X_MIN, [true, false, false]))
             .with_support(Support::components(brick::Y_MIN, [false, true, false]))
             .with_support(Support::components(vec![held], [false, false, true]))
-            .with_load(Load::free_strain(FreeStrain::expansion(12e-6).with_factors(rise)));
+            .with_load(Load::eigenstrain(Eigenstrain::expansion(12e-6).with_factors(rise)));
         let settings = Settings::default().with_tolerance(1e-10);
         let mut simulation = Simulation::new(scene, settings).expect("simulation");
         let result = simulation.step().expect("step");
@@ -92,7 +92,7 @@ fn a_warm_bar_presses_on_the_wall_that_stops_it() {
     for order in [1, 2] {
         let scene = on_planes(block(order), 0.3)
             .with_load(
-                Load::free_strain(FreeStrain::expansion(WARM)).with_history(History::ramp(1.0, 1.0).expect("ramp")),
+                Load::eigenstrain(Eigenstrain::expansion(WARM)).with_history(History::ramp(1.0, 1.0).expect("ramp")),
             )
             .with_contact(Contact::rigid(brick::X_MAX).with_gap(gap))
             .with_analysis(Analysis::quasistatic(1.0, 4));
@@ -118,9 +118,9 @@ fn a_region_that_is_tightened_pulls_the_other() {
     let of = |tet: usize| u32::from(mesh.tet_points(tet).iter().map(|x| x[0]).sum::<f64>() > 4.0);
     let regions = (0..mesh.tets().len()).map(of).collect();
     let mesh = mesh.with_regions(regions).expect("regions");
-    let strain = FreeStrain::new([-1e-3, 0.0, 0.0, 0.0, 0.0, 0.0]).in_region(1);
+    let strain = Eigenstrain::new([-1e-3, 0.0, 0.0, 0.0, 0.0, 0.0]).in_region(1);
     let planes = |scene: Scene| scene.with_support(Support::components(brick::X_MAX, [true, false, false]));
-    let scene = planes(on_planes(mesh.clone(), 0.3)).with_load(Load::free_strain(strain.clone()));
+    let scene = planes(on_planes(mesh.clone(), 0.3)).with_load(Load::eigenstrain(strain.clone()));
     let mut simulation = Simulation::new(scene, Settings::default()).expect("simulation");
     let result = simulation.step().expect("step");
     let pull = 0.5e-3 * YOUNG;
@@ -134,7 +134,7 @@ fn a_region_that_is_tightened_pulls_the_other() {
     assert!((reaction[0] - pull).abs() < 1e-6 * pull, "{reaction:?}");
 
     // what stands in the materials is a load that is constant
-    let scene = Scene::new(mesh, uniform(YOUNG, 0.3).with_free_strain(1.0, strain)).with_boxes([2, 1, 1]);
+    let scene = Scene::new(mesh, uniform(YOUNG, 0.3).with_eigenstrain(1.0, strain)).with_boxes([2, 1, 1]);
     assert_eq!(scene.loads().len(), 1);
     let twin = [brick::X_MIN, brick::Y_MIN, brick::Z_MIN].into_iter().enumerate();
     let scene = planes(twin.fold(scene, |scene, (c, side)| {
@@ -153,22 +153,22 @@ fn strains_that_mean_nothing_are_refused() {
     let mut factors = vec![1.0; nodes];
     factors[5] = f64::NAN;
     let cases = [
-        (FreeStrain::expansion(f64::INFINITY), "load 0: a free strain is [inf"),
+        (Eigenstrain::expansion(f64::INFINITY), "load 0: an eigenstrain is [inf"),
         (
-            FreeStrain::expansion(1e-3).in_region(4),
-            "load 0: a free strain is given in region 4, but",
+            Eigenstrain::expansion(1e-3).in_region(4),
+            "load 0: an eigenstrain is given in region 4, but",
         ),
         (
-            FreeStrain::expansion(1e-3).with_factors(vec![1.0; 3]),
-            "load 0: a free strain has 3 factors for 45 nodes",
+            Eigenstrain::expansion(1e-3).with_factors(vec![1.0; 3]),
+            "load 0: an eigenstrain has 3 factors for 45 nodes",
         ),
         (
-            FreeStrain::expansion(1e-3).with_factors(factors),
-            "load 0: the factor of a free strain at node 5 is NaN",
+            Eigenstrain::expansion(1e-3).with_factors(factors),
+            "load 0: the factor of an eigenstrain at node 5 is NaN",
         ),
     ];
     for (strain, expected) in cases {
-        let scene = on_planes(block(1), 0.3).with_load(Load::free_strain(strain));
+        let scene = on_planes(block(1), 0.3).with_load(Load::eigenstrain(strain));
         let error = Simulation::new(scene, Settings::default())
             .expect_err("refused")
             .to_string();
