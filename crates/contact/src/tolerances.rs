@@ -193,6 +193,13 @@ pub(crate) const ORDERS: [f64; 2] = [0.5, 2.5];
 /// thirtieth of that error and less in compact bodies. The certificate tells where it is not, as in thin ones.
 pub(crate) const LINEAR_SLACK: f64 = 15.0;
 
+/// Products of a step that are no effort: with the inverse of a formed F it takes as many where contact is hard.
+pub(crate) const EASY: usize = 200;
+/// Products beyond those that are not worth forming F, however small it is.
+pub(crate) const LITTLE: usize = 600;
+/// Products of a step with that inverse after which it does not help: a set takes two or three.
+pub(crate) const EXPLICIT_PRODUCTS: usize = 1000;
+
 /// Stiffness of a row with all other unknowns held over that with its subdomain free, above which the natural map takes
 /// this multiple of the latter. In well shaped, compressible bodies it is 1 to 4; a natural map that is much too stiff
 /// predicts active sets from gradients alone.

@@ -68,6 +68,7 @@ pub use coarse::space::Coarse;
 pub use coarse::weights::RowWeights;
 pub use dual::operator::DualOperator;
 pub use error::TfetiError;
+pub use preconditioner::explicit::ExplicitInverse;
 pub use preconditioner::operator::DualPreconditioner;
 pub use processes::communicator::{Alone, CommunicationError, Communicator};
 pub use processes::exchange::Traffic;
@@ -90,6 +91,7 @@ pub mod internal {
     pub use crate::coarse::space::CoarseScratch;
     pub use crate::dual::boundary::PanelScratch;
     pub use crate::linalg::{of_length, zeros};
+    pub use crate::preconditioner::explicit::ExplicitScratch;
     pub use crate::preconditioner::operator::DualPreconditionerScratch;
     pub use crate::processes::threads::on_ranks;
     pub use crate::projector::active_set::ActiveSetFactor;

@@ -56,6 +56,13 @@ pub(crate) const ALIKE: f64 = 4.0;
 /// Added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come out
 /// large, but `B^T` takes them to zero.
 pub(crate) const DEPENDENT: f64 = 0.3;
+/// Weight of `Gᵀ G` beside `F`, by their traces: the inverse of the sum is that of `F` on the kernel of `G` to about its
+/// inverse.
+pub(crate) const EXPLICIT_WEIGHT: f64 = 1e4;
+/// Pivot of a row in such an `F`, over its largest entry, up to which the row depends on others.
+pub(crate) const LEFT_OF_ROW: f64 = 1e-11;
+/// Added to the diagonal of a matrix until it can be factored, relative to its largest entry.
+pub(crate) const SHIFTS: [f64; 4] = [1e-13, 1e-9, 1e-6, 1e-4];
 /// Rows up to which a group has few: a node in a corner of three rough obstacles has nine, and the gluing of its copies.
 pub(crate) const DEPENDENT_FEW: usize = 30;
 /// The same in a group of many rows, where contact points share nodes: on few is there a null space, and what is added
@@ -92,6 +99,9 @@ pub(crate) const BANDWIDTH: [f64; 2] = [6e10, 1.2e10];
 pub(crate) const PRODUCTS: usize = 2000;
 /// Bytes of dense matrices that still stay in the caches of one processor.
 pub(crate) const CACHE: u64 = 16 << 20;
+/// Most rows of an `F` that is formed, and active sets that its inverse is for.
+pub(crate) const EXPLICIT_ROWS: usize = 3000;
+pub(crate) const EXPLICIT_SETS: f64 = 30.0;
 /// Columns solved at once when a dense block is formed, at least six.
 pub(crate) const COLUMNS: usize = 48;
 /// Node copies of a loop, operations of a product with `F`, numbers of a coarse solve and operations of a coarse factor

@@ -6,7 +6,7 @@
 pub struct Counters {
     /// Products with F, recoveries included.
     pub products: usize,
-    /// Products with F spent on estimating norms, counted apart.
+    /// Products with F spent on estimating norms and on forming it, counted apart.
     pub setup_products: usize,
     /// Applications of the preconditioner.
     pub preconditionings: usize,

@@ -116,6 +116,7 @@ impl Simulation {
     /// Start vectors of an increment: zero, the last vectors, or the line through the last two.
     fn start(&mut self, state: &State, way: &Way) {
         let (model, iterate) = (&self.model, &mut self.iterate);
+        iterate.effort = state.effort;
         let (lambda, f_lambda) = (&state.lambda, &state.f_lambda);
         let (rows, coarse) = (model.tfeti.dual_dim(), model.tfeti.coarse().rows());
         // before the first step everything is at rest: zero is known, too
@@ -147,6 +148,7 @@ impl Simulation {
             time: problem.time,
             halved: way.halved(),
             between: way.goes_on(),
+            effort: self.iterate.effort,
             ..Kept::default()
         };
         if history {

@@ -14,9 +14,11 @@ use crate::error::ContactError;
 use crate::model::Model;
 use crate::report::StepReport;
 use crate::scene::Friction;
-use crate::settings::Settings;
+use crate::settings::{Preconditioner, Settings};
 use crate::status::StepStatus;
-use crate::tolerances::{CONTRADICTION, LINEAR_SLACK, SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS};
+use crate::tolerances::{
+    CONTRADICTION, EASY, EXPLICIT_PRODUCTS, LINEAR_SLACK, LITTLE, SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS,
+};
 use signorini_fem_mesh::decomposition::is_strongly_graded;
 use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::{
@@ -27,12 +29,18 @@ use signorini_tfeti::{ActiveSetProjector, DualOperator};
 
 /// Solves of a step with contradicting points released.
 const TURNS: usize = 8;
+/// The effort of steps that a formed F did not help.
+const NO_HELP: usize = usize::MAX;
 
 pub(crate) struct ActiveSetSolver {
     /// Of several processes, where vectors can be spread.
     part: Option<SystemPart>,
     space: ActiveSetProjector,
     preconditioner: SelectedPreconditioner,
+    /// The one that is not in use, of that of the settings and the inverse of a formed F.
+    other: Option<SelectedPreconditioner>,
+    /// What forming F costs in products; `None` if that is not to be.
+    explicit_cost: Option<usize>,
     scale: Vec<f64>,
     set: ProductSet,
     work: ActiveSetWorkspace<DualOperator, SelectedPreconditioner>,
@@ -79,9 +87,18 @@ impl ActiveSetSolver {
         if model.points.is_empty() && !free.is_empty() {
             return Err(not_determined(model, free));
         }
+        // rows that depend on one another leave F singular, and bodies that contact alone holds other sets than they need
+        let definite = gluing.dependent_nodes().is_empty() && space.loose().is_empty();
+        let explicit_cost = match settings.preconditioner {
+            Preconditioner::None => None,
+            _ if model.points.is_empty() || !definite => None,
+            _ => model.tfeti.explicit_cost().map(|cost| cost.max(LITTLE)),
+        };
         Ok(Self {
             space,
             work: ActiveSetWorkspace::new(dual, &preconditioner),
+            other: None,
+            explicit_cost,
             preconditioner,
             set: model.set_with(scale.len() - contact)?,
             scale,
@@ -117,7 +134,29 @@ impl ActiveSetSolver {
         report.counters.inequality_solves = usize::from(contact);
         self.start.resize(iterate.lambda.len(), 0.0);
         vector::copy(&iterate.lambda, &mut self.start);
-        let status = self.active_sets(task, iterate, &mut report)?;
+        let cost = self.explicit_cost.filter(|_| iterate.effort < NO_HELP);
+        let mut status = Status::IterationLimit;
+        if cost.is_none_or(|cost| iterate.effort < cost) {
+            self.use_explicit(false, task, &mut report);
+            let most = cost.map_or(usize::MAX, |cost| cost - iterate.effort + EASY);
+            status = self.active_sets(task, iterate, most, &mut report)?;
+            let effort = report.counters.products.saturating_sub(EASY);
+            iterate.effort = iterate.effort.saturating_add(effort);
+            if status == Status::Stagnated {
+                vector::copy(&self.start, &mut iterate.lambda);
+                iterate.known = false;
+            }
+        }
+        let is_open = |status| matches!(status, Status::IterationLimit | Status::Stagnated);
+        if let Some(cost) = cost.filter(|_| is_open(status)) {
+            iterate.effort = cost;
+            if self.use_explicit(true, task, &mut report) {
+                status = self.active_sets(task, iterate, EXPLICIT_PRODUCTS, &mut report)?;
+            }
+            if is_open(status) {
+                iterate.effort = NO_HELP;
+            }
+        }
         report.status = step_status(status);
         task.model.tfeti.check_processes()?;
         if contact && !report.status.converged() {
@@ -126,6 +165,24 @@ impl ActiveSetSolver {
         iterate.known = true;
         self.amplitudes(task, iterate);
         Ok(report)
+    }
+
+    /// Takes the inverse of a formed F, or the preconditioner of the settings. Whether it is the one asked for.
+    fn use_explicit(&mut self, explicit: bool, task: Task<'_>, report: &mut StepReport) -> bool {
+        if matches!(self.preconditioner, SelectedPreconditioner::Explicit(_)) == explicit {
+            return true;
+        }
+        if self.other.is_none() {
+            self.other = SelectedPreconditioner::explicit(task.model, self.part.as_ref());
+            report.counters.setup_products += task.model.tfeti.dual_dim();
+        }
+        let Some(other) = &mut self.other else {
+            return false;
+        };
+        std::mem::swap(&mut self.preconditioner, other);
+        let dual = self.part.as_ref().map_or(task.model.tfeti.dual(), SystemPart::dual);
+        self.work = ActiveSetWorkspace::new(dual, &self.preconditioner);
+        true
     }
 
     /// Rigid amplitudes that go with an iterate of which `F lambda` is known.
@@ -143,6 +200,7 @@ impl ActiveSetSolver {
         &mut self,
         task: Task<'_>,
         iterate: &mut Iterate,
+        most: usize,
         report: &mut StepReport,
     ) -> Result<Status, ContactError> {
         let Task { model, problem, .. } = task;
@@ -162,7 +220,7 @@ impl ActiveSetSolver {
         let least = least.max(vector::norm(&problem.handed_on));
         let contact = !model.points.is_empty();
         let tolerance = task.settings.tolerance * if contact { 1.0 } else { LINEAR_SLACK };
-        let settings = self.settings.clone().with_tolerance(tolerance);
+        let settings = self.settings.clone().with_tolerance(tolerance).limited_to(most);
         let settings = settings.with_error_floor(least).with_contact_error_floor(least_contact);
         let coulomb = is_coulomb(model);
         if coulomb {

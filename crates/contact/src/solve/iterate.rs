@@ -28,6 +28,8 @@ pub(crate) struct Iterate {
     pub(crate) multiplier: Vec<f64>,
     /// Rigid amplitudes `alpha` of (5.27), set by the solver.
     pub(crate) alpha: Vec<f64>,
+    /// Products beyond those of easy solves, over all steps so far: where they are many, F is formed.
+    pub(crate) effort: usize,
 }
 
 /// Status of a step from the status of a quadratic program.

@@ -5,8 +5,8 @@ use crate::model::Model;
 use crate::settings::Preconditioner as Choice;
 use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView};
 use signorini_qp::{SymmetricOperator, vector};
-use signorini_tfeti::DualPreconditioner;
-use signorini_tfeti::internal::{DualPreconditionerScratch, SystemPart};
+use signorini_tfeti::internal::{DualPreconditionerScratch, ExplicitScratch, SystemPart};
+use signorini_tfeti::{DualPreconditioner, ExplicitInverse};
 
 /// A preconditioner of the dual problem.
 #[derive(Debug)]
@@ -15,6 +15,16 @@ pub(crate) enum SelectedPreconditioner {
     Scalar { dim: usize, factor: f64 },
     /// Lumped or Dirichlet.
     Stiffness(Box<DualPreconditioner>),
+    /// Of a formed F.
+    Explicit(Box<ExplicitInverse>),
+}
+
+/// Work memory of the one that it is of.
+#[derive(Debug)]
+pub(crate) enum Scratch {
+    Scalar,
+    Stiffness(DualPreconditionerScratch),
+    Explicit(ExplicitScratch),
 }
 
 impl SelectedPreconditioner {
@@ -37,6 +47,15 @@ impl SelectedPreconditioner {
         })
     }
 
+    /// The inverse of F, which is formed; `None` if that fails.
+    pub(crate) fn explicit(model: &Model, part: Option<&SystemPart>) -> Option<Self> {
+        let own = model.tfeti.explicit_inverse()?;
+        Some(Self::Explicit(Box::new(match part {
+            Some(part) => own.of_part(part),
+            None => own,
+        })))
+    }
+
     fn stiffness(own: DualPreconditioner, part: Option<&SystemPart>) -> Self {
         Self::Stiffness(Box::new(match part {
             Some(part) => own.of_part(part),
@@ -49,39 +68,48 @@ impl SelectedPreconditioner {
 const SAMPLE: usize = 300;
 
 impl SymmetricOperator for SelectedPreconditioner {
-    type Scratch = Option<DualPreconditionerScratch>;
+    type Scratch = Scratch;
 
     fn dim(&self) -> usize {
         match self {
             Self::Scalar { dim, .. } => *dim,
             Self::Stiffness(p) => p.dim(),
+            Self::Explicit(p) => p.dim(),
         }
     }
 
     fn scratch(&self) -> Self::Scratch {
         match self {
-            Self::Scalar { .. } => None,
-            Self::Stiffness(p) => Some(p.scratch()),
+            Self::Scalar { .. } => Scratch::Scalar,
+            Self::Stiffness(p) => Scratch::Stiffness(p.scratch()),
+            Self::Explicit(p) => Scratch::Explicit(p.scratch()),
         }
     }
 
     fn apply(&self, x: &[f64], y: &mut [f64], s: &mut Self::Scratch) {
         match (self, s) {
-            (Self::Stiffness(p), Some(s)) => p.apply(x, y, s),
+            (Self::Stiffness(p), Scratch::Stiffness(s)) => p.apply(x, y, s),
+            (Self::Explicit(p), Scratch::Explicit(s)) => p.apply(x, y, s),
             (Self::Scalar { factor, .. }, _) => {
                 vector::copy(x, y);
                 vector::scale(*factor, y);
             }
             // a scratch of another preconditioner
-            (Self::Stiffness(_), None) => y.fill(0.0),
+            _ => y.fill(0.0),
         }
     }
 }
 
 impl ActiveSetPreconditioner for SelectedPreconditioner {
     fn enter(&self, set: &ActiveSetView<'_>, s: &mut Self::Scratch) {
-        if let (Self::Stiffness(p), Some(s)) = (self, s) {
-            p.enter(set, s);
+        match (self, s) {
+            (Self::Stiffness(p), Scratch::Stiffness(s)) => p.enter(set, s),
+            (Self::Explicit(p), Scratch::Explicit(s)) => p.enter(set, s),
+            _ => {}
         }
+    }
+
+    fn knows_added(&self) -> bool {
+        matches!(self, Self::Explicit(_))
     }
 }

@@ -34,6 +34,8 @@ pub struct State {
     pub(crate) unconverged: Option<usize>,
     /// How often a step was halved to get the last increment.
     pub(crate) halved: u32,
+    /// Products beyond those of easy solves.
+    pub(crate) effort: usize,
     /// What its numbers refer to; `None` if that is not to be compared.
     pub(crate) origin: Option<Fingerprint>,
     /// Of each product what it was made from and came to be, see [`seal`].
@@ -82,6 +84,8 @@ pub(crate) struct Kept {
     /// How often the step was halved to get the increment, and whether the step goes on after it.
     pub(crate) halved: u32,
     pub(crate) between: bool,
+    /// Products beyond those of easy solves, over all steps.
+    pub(crate) effort: usize,
 }
 
 impl State {
@@ -99,7 +103,7 @@ impl State {
     /// then compares sizes only. Multipliers are start values there; tangential displacements and slip rates are taken
     /// for those of the points with the same numbers.
     pub fn without_origin(mut self) -> Self {
-        self.origin = None;
+        (self.origin, self.effort) = (None, 0);
         self
     }
 
@@ -154,6 +158,7 @@ impl State {
         self.rate = new.rate;
         self.sliding = new.sliding;
         self.halved = new.halved;
+        self.effort = new.effort;
         if !new.between {
             self.step += 1;
             if let Some(origin) = &mut self.origin {

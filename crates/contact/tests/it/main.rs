@@ -15,6 +15,7 @@ mod edges_apart;
 mod effects;
 mod eigenstrain;
 mod estimates;
+mod explicit;
 mod free_bodies;
 mod gap_history;
 mod halving;

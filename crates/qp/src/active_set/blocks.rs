@@ -222,7 +222,7 @@ impl ActiveSet {
         found
     }
 
-    fn for_sliding(&self, set: &ProductSet, mut f: impl FnMut(usize, f64, f64)) {
+    pub(crate) fn for_sliding(&self, set: &ProductSet, mut f: impl FnMut(usize, f64, f64)) {
         for_discs(set, |i, k, _| {
             if let Disc::Sliding { kappa, damp, .. } = self.discs[k] {
                 f(i, kappa, damp);

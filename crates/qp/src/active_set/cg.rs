@@ -23,6 +23,7 @@ use crate::tolerances::{
 use crate::vector;
 
 use super::iterate::{Iterate, Lengths, natural_map};
+use super::view::ActiveSetPreconditioner;
 
 /// How far the errors are to fall on an active set.
 pub(crate) struct Goal {
@@ -39,7 +40,7 @@ pub(crate) struct Goal {
     pub(crate) size: f64,
 }
 
-impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'_, A, C, M> {
+impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Iterate<'_, A, C, M> {
     /// Runs until the goal is reached; `z` is ready, with `rho`. Returns the length of the last step if another one
     /// is worth while; its direction is then `p`.
     pub(crate) fn conjugate_gradients(&mut self, rho: f64, goal: &Goal) -> Result<f64, QpError> {

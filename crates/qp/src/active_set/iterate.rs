@@ -10,6 +10,7 @@ use super::compliance::Compliance;
 use super::natural_map::NaturalMap;
 use super::problem::ActiveSetProblem;
 use super::settings::ActiveSetReport;
+use super::view::ActiveSetPreconditioner;
 use super::workspace::ActiveSetWorkspace;
 
 /// A length of a vector and that of its constrained part.
@@ -55,7 +56,7 @@ pub(crate) struct Iterate<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) step: f64,
 }
 
-impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'_, A, C, M> {
+impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Iterate<'_, A, C, M> {
     /// Components up to the last constrained one.
     pub(crate) fn constrained(&self) -> usize {
         self.work.restricted.len()
@@ -152,15 +153,20 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'
         let (set, constrained) = (&*self.set, restricted.len());
         saved.copy_from_slice(&residual[..constrained]);
         residual[..constrained].copy_from_slice(restricted);
-        active.damp(set, &mut residual[..constrained]);
-        self.compliance.damp(&mut residual[..constrained]);
+        let damps = !self.problem.preconditioner.knows_added();
+        if damps {
+            active.damp(set, &mut residual[..constrained]);
+            self.compliance.damp(&mut residual[..constrained]);
+        }
         self.problem.preconditioner.apply(residual, z, scratch);
         let part = &mut z[..constrained];
         active.restrict(set, part);
-        active.damp(set, part);
-        self.compliance.damp(part);
-        self.compliance.add_own(self.problem.scale, restricted, part);
-        active.add_own(set, restricted, part);
+        if damps {
+            active.damp(set, part);
+            self.compliance.damp(part);
+            self.compliance.add_own(self.problem.scale, restricted, part);
+            active.add_own(set, restricted, part);
+        }
         self.projector.project_step(z);
         self.report.preconditionings += 1;
         residual[..constrained].copy_from_slice(restricted);

@@ -185,7 +185,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             Err(QpError::CoarseDeficient { .. }) => return Ok(None),
             Err(error) => return Err(error),
         }
-        let view = ActiveSetView::new(at.set, &at.work.active);
+        let springs = (at.compliance.c, at.problem.scale);
+        let view = ActiveSetView::new(at.set, &at.work.active, springs);
         let preconditioner = at.problem.preconditioner;
         preconditioner.enter(&view, &mut at.work.preconditioner);
         at.start_residual();

@@ -32,6 +32,15 @@ settings! {
     }
 }
 
+impl ActiveSetSettings {
+    /// With no more products than these.
+    #[must_use]
+    pub fn limited_to(mut self, products: usize) -> Self {
+        self.max_products = self.max_products.min(products);
+        self
+    }
+}
+
 /// What [`active_set`](crate::active_set()) did.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]

@@ -21,11 +21,13 @@ pub enum Freedom {
 pub struct ActiveSetView<'a> {
     set: &'a ProductSet,
     active: &'a ActiveSet,
+    /// What springs in series add to the diagonal over the inverse of `scale`, and that.
+    springs: (f64, &'a [f64]),
 }
 
 impl<'a> ActiveSetView<'a> {
-    pub(crate) fn new(set: &'a ProductSet, active: &'a ActiveSet) -> Self {
-        Self { set, active }
+    pub(crate) fn new(set: &'a ProductSet, active: &'a ActiveSet, springs: (f64, &'a [f64])) -> Self {
+        Self { set, active, springs }
     }
 
     /// Hands each constrained block in order to `f`: first component, number of components, freedom. Unconstrained
@@ -48,6 +50,22 @@ impl<'a> ActiveSetView<'a> {
     }
 }
 
+impl ActiveSetView<'_> {
+    /// Hands each component to `f` that the method adds something to the diagonal of `A` at, and this: the curvature of
+    /// circles on which points slide, and springs on a path.
+    pub fn for_each_added(&self, mut f: impl FnMut(usize, f64)) {
+        let (c, scale) = self.springs;
+        if c > 0.0 {
+            let springs = scale.iter().enumerate().take(self.set.constrained());
+            springs.filter(|s| *s.1 > 0.0).for_each(|(i, scale)| f(i, c / scale));
+        }
+        self.active.for_sliding(self.set, |i, kappa, _| {
+            f(i, kappa);
+            f(i + 1, kappa);
+        });
+    }
+}
+
 /// A preconditioner of the active-set method.
 ///
 /// What approximates the inverse of `A` on one active set need not do so on another: active components drop out of
@@ -56,6 +74,12 @@ pub trait ActiveSetPreconditioner: SymmetricOperator {
     /// The next products are on this set: they start from vectors that vanish where it is active, and only the free
     /// part of their result counts. Stays symmetric on such vectors.
     fn enter(&self, _active: &ActiveSetView<'_>, _s: &mut Self::Scratch) {}
+
+    /// Whether it knows what the method [adds to the diagonal](ActiveSetView::for_each_added); else the method damps it
+    /// there.
+    fn knows_added(&self) -> bool {
+        false
+    }
 }
 
 impl ActiveSetPreconditioner for Identity {}

@@ -4,8 +4,9 @@ use crate::error::QpError;
 use crate::problem::{EqualityProjector, SymmetricOperator};
 
 use super::iterate::Iterate;
+use super::view::ActiveSetPreconditioner;
 
-impl<A: SymmetricOperator, C: EqualityProjector, M: SymmetricOperator> Iterate<'_, A, C, M> {
+impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Iterate<'_, A, C, M> {
     /// Hands the weights of the active set to the projector; whether it factored anew, `None` if they do not hold
     /// every mode.
     ///

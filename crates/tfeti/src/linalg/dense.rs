@@ -7,7 +7,7 @@ use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::linalg::matmul::matmul;
 use faer::linalg::matmul::triangular::{self, BlockStructure};
-use faer::linalg::triangular_solve::solve_lower_triangular_in_place;
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::mat::{MatMut, MatRef};
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, Par};
@@ -104,6 +104,22 @@ pub(crate) fn subtract_columns(out: &mut [f64], a: &[f64], height: usize, width:
         -1.0,
         Par::Seq,
     );
+}
+
+/// `L^-1 x` in the rows of the columns that [`cholesky_columns`] left of `L`, less what they do to those behind.
+pub(crate) fn forward(a: &[f64], height: usize, width: usize, x: &mut [f64]) {
+    let (triangle, below) = MatRef::from_column_major_slice(&a[..height * width], height, width).split_at_row(width);
+    let (mut own, behind) = MatMut::from_column_major_slice_mut(&mut x[..height], height, 1).split_at_row_mut(width);
+    solve_lower_triangular_in_place(triangle, own.rb_mut(), Par::Seq);
+    matmul(behind, Accum::Add, below, own.rb(), -1.0, Par::Seq);
+}
+
+/// `L^-T x` likewise, from what is known in the rows behind.
+pub(crate) fn backward(a: &[f64], height: usize, width: usize, x: &mut [f64]) {
+    let (triangle, below) = MatRef::from_column_major_slice(&a[..height * width], height, width).split_at_row(width);
+    let (mut own, behind) = MatMut::from_column_major_slice_mut(&mut x[..height], height, 1).split_at_row_mut(width);
+    matmul(own.rb_mut(), Accum::Add, below.transpose(), behind.rb(), -1.0, Par::Seq);
+    solve_upper_triangular_in_place(triangle.transpose(), own, Par::Seq);
 }
 
 /// Inverse of a symmetric positive definite matrix in both triangles. `Err(pivot)` as in [`cholesky`].

@@ -12,7 +12,7 @@ use std::sync::Arc;
 #[doc(hidden)]
 #[derive(Debug)]
 pub struct SystemPart {
-    rows: Arc<RowPart>,
+    pub(crate) rows: Arc<RowPart>,
     pub(crate) map: Arc<BoundaryMap>,
     dual: DualOperator,
     coarse: Coarse,

@@ -1,0 +1,236 @@
+//! The inverse of `F` on an active set, for systems of so few rows that `F` can be formed.
+//!
+//! A product for each row forms `H = F + w Gᵀ G`, which is definite; with a large `w` its inverse is that of `F` where
+//! `G x = 0`. Rows that no active set takes away are eliminated once, the Schur complement of the contact rows is
+//! factored on each set. A body that bends far more easily than it is pressed in (a plate on a floor) leaves no other
+//! choice: on part of its contact rows the stiffness of their nodes is nowhere near an inverse.
+
+use crate::dual::part::RowPart;
+use crate::linalg::dense;
+use crate::system::part::SystemPart;
+use crate::system::tfeti::Tfeti;
+use crate::tolerances::{EXPLICIT_ROWS, EXPLICIT_SETS, EXPLICIT_WEIGHT, LEFT_OF_ROW, SHIFTS};
+use signorini_qp::SymmetricOperator;
+use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView, Freedom};
+use std::sync::Arc;
+
+/// A preconditioner for `F` that is nearly its inverse on the kernel of `G`, on each active set.
+#[derive(Debug)]
+pub struct ExplicitInverse {
+    /// Columns of the rows behind the contact rows in the factor of `H`, in which the contact rows come last.
+    columns: Vec<f64>,
+    /// The Schur complement of the contact rows, lower triangle.
+    schur: Vec<f64>,
+    rows: usize,
+    contact: usize,
+    /// Where vectors are parts.
+    part: Option<Arc<RowPart>>,
+}
+
+/// Work memory of an [`ExplicitInverse`].
+#[derive(Debug)]
+pub struct ExplicitScratch {
+    /// Free directions of the contact rows on the active set: rows and components.
+    directions: Vec<[(usize, f64); 2]>,
+    /// What the method adds to the diagonal.
+    added: Vec<f64>,
+    /// Factor of the Schur complement in them.
+    factor: Vec<f64>,
+    whole: Vec<f64>,
+    /// In the order of the factor of `H`.
+    ordered: Vec<f64>,
+    reduced: Vec<f64>,
+}
+
+impl Tfeti {
+    /// What forming `F` and some active sets with its inverse cost in products with `F`, the same for any number of
+    /// processes; `None` where there are too many rows.
+    pub fn explicit_cost(&self) -> Option<usize> {
+        let (rows, contact) = (self.dual_dim(), self.gluing().ranges().contact().end);
+        let product: f64 = self.gather(self.dual().flops() as f64).ok()?.iter().sum();
+        let cubes = (rows as f64).powi(3) + EXPLICIT_SETS * (contact as f64).powi(3);
+        (rows <= EXPLICIT_ROWS).then_some(rows + (cubes / (3.0 * product.max(1.0))) as usize)
+    }
+
+    /// Forms `F`, by as many products as there are rows. `None` if rounding leaves it indefinite.
+    pub fn explicit_inverse(&self) -> Option<ExplicitInverse> {
+        let (rows, contact) = (self.dual_dim(), self.gluing().ranges().contact().end);
+        let others = rows - contact;
+        let ordered = |column: &[f64], out: &mut [f64]| {
+            let (own, behind) = column.split_at(contact);
+            out[..others].copy_from_slice(behind);
+            out[others..].copy_from_slice(own);
+        };
+        let (dual, coarse) = (self.dual(), self.coarse());
+        let (mut x, mut y, mut s) = (vec![0.0; rows], vec![0.0; rows], dual.scratch());
+        let mut matrix = vec![0.0; rows * rows];
+        for (k, out) in matrix.chunks_exact_mut(rows.max(1)).enumerate() {
+            let row = (k + contact) % rows;
+            x[row] = 1.0;
+            dual.apply(&x, &mut y, &mut s);
+            x[row] = 0.0;
+            ordered(&y, out);
+        }
+        let mut motions = vec![0.0; coarse.rows()];
+        let mut transposed = vec![0.0; rows * coarse.rows()];
+        for (k, out) in transposed.chunks_exact_mut(rows.max(1)).enumerate() {
+            motions[k] = 1.0;
+            coarse.transpose_times(&motions, &mut y);
+            motions[k] = 0.0;
+            ordered(&y, out);
+        }
+        let trace: f64 = matrix.iter().step_by(rows + 1).sum();
+        let square: f64 = transposed.iter().map(|v| v * v).sum();
+        let weight = if square > 0.0 {
+            EXPLICIT_WEIGHT * trace / square
+        } else {
+            0.0
+        };
+        let modes = coarse.rows();
+        dense::add_product_transposed(&mut matrix, weight, &transposed, &transposed, rows, modes, rows);
+        shift_diagonal(&mut matrix, rows, SHIFTS[0]);
+        let columns = &mut matrix[..rows * others];
+        dense::cholesky_columns(columns, rows, others, 0.0).ok()?;
+        let mut schur = Vec::with_capacity(contact * contact);
+        for column in matrix[rows * others..].chunks_exact(rows.max(1)) {
+            schur.extend_from_slice(&column[others..]);
+        }
+        matrix.truncate(rows * others);
+        matrix.shrink_to_fit();
+        dense::subtract_columns(&mut schur, &matrix, rows, others);
+        Some(ExplicitInverse {
+            columns: matrix,
+            schur,
+            rows,
+            contact,
+            part: None,
+        })
+    }
+}
+
+fn largest_diagonal(matrix: &[f64], size: usize) -> f64 {
+    matrix.iter().step_by(size + 1).copied().fold(0.0, f64::max)
+}
+
+/// Adds a multiple of the largest entry to the diagonal.
+fn shift_diagonal(matrix: &mut [f64], size: usize, shift: f64) {
+    let added = shift * largest_diagonal(matrix, size);
+    matrix.iter_mut().step_by(size + 1).for_each(|v| *v += added);
+}
+
+impl ExplicitInverse {
+    /// The same for vectors of which each rank keeps a part.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn of_part(self, part: &SystemPart) -> Self {
+        let part = Some(part.rows.clone());
+        Self { part, ..self }
+    }
+
+    /// The Schur complement in some directions, lower triangle, with a multiple of its largest entry on the diagonal.
+    fn reduce(&self, (directions, added): (&[[(usize, f64); 2]], &[f64]), shift: f64, out: &mut Vec<f64>) {
+        let entry = |i: usize, j: usize| self.schur[i.max(j) + i.min(j) * self.contact];
+        let size = directions.len();
+        out.clear();
+        out.resize(size * size, 0.0);
+        for (j, b) in directions.iter().enumerate() {
+            for (i, a) in directions.iter().enumerate().skip(j) {
+                let products = a.iter().flat_map(|a| b.iter().map(move |b| (a, b)));
+                out[i + j * size] = products.map(|(a, b)| a.1 * b.1 * entry(a.0, b.0)).sum();
+            }
+            out[j * (size + 1)] += b.iter().map(|b| b.1 * b.1 * added[b.0]).sum::<f64>();
+        }
+        shift_diagonal(out, size, shift);
+    }
+
+    fn solve(&self, x: &[f64], y: &mut [f64], s: &mut ExplicitScratch) {
+        let others = self.rows - self.contact;
+        let (own, behind) = x.split_at(self.contact);
+        s.ordered[..others].copy_from_slice(behind);
+        s.ordered[others..].copy_from_slice(own);
+        dense::forward(&self.columns, self.rows, others, &mut s.ordered);
+        let size = s.directions.len();
+        let contact = &mut s.ordered[others..];
+        let along = s
+            .directions
+            .iter()
+            .map(|d| d.iter().map(|(row, v)| v * contact[*row]).sum());
+        s.reduced.clear();
+        s.reduced.extend::<Vec<f64>>(along.collect());
+        dense::forward(&s.factor, size, size, &mut s.reduced);
+        dense::backward(&s.factor, size, size, &mut s.reduced);
+        contact.fill(0.0);
+        for (direction, value) in s.directions.iter().zip(&s.reduced) {
+            direction.iter().for_each(|(row, v)| contact[*row] += v * value);
+        }
+        dense::backward(&self.columns, self.rows, others, &mut s.ordered);
+        y[..self.contact].copy_from_slice(&s.ordered[others..]);
+        y[self.contact..].copy_from_slice(&s.ordered[..others]);
+    }
+}
+
+impl SymmetricOperator for ExplicitInverse {
+    type Scratch = ExplicitScratch;
+
+    fn dim(&self) -> usize {
+        self.part.as_ref().map_or(self.rows, |part| part.len())
+    }
+
+    fn scratch(&self) -> ExplicitScratch {
+        ExplicitScratch {
+            directions: Vec::new(),
+            added: vec![0.0; self.contact],
+            factor: Vec::new(),
+            whole: vec![0.0; if self.part.is_some() { self.rows } else { 0 }],
+            ordered: vec![0.0; self.rows],
+            reduced: Vec::new(),
+        }
+    }
+
+    fn apply(&self, x: &[f64], y: &mut [f64], s: &mut ExplicitScratch) {
+        let Some(part) = &self.part else {
+            return self.solve(x, y, s);
+        };
+        let mut whole = std::mem::take(&mut s.whole);
+        part.complete(x, &mut whole);
+        let own = whole.clone();
+        self.solve(&own, &mut whole, s);
+        y.copy_from_slice(&part.take(&whole));
+        s.whole = whole;
+    }
+}
+
+impl ActiveSetPreconditioner for ExplicitInverse {
+    fn knows_added(&self) -> bool {
+        true
+    }
+
+    fn enter(&self, view: &ActiveSetView<'_>, s: &mut ExplicitScratch) {
+        let alone = |row: usize| [(row, 1.0), (row, 0.0)];
+        let (directions, mut next) = (&mut s.directions, 0);
+        directions.clear();
+        view.for_each(|row, count, freedom| {
+            directions.extend((next..row).map(alone));
+            next = row + count;
+            match freedom {
+                Freedom::Held => {}
+                Freedom::Free => directions.extend((row..next).map(alone)),
+                Freedom::Along(tau) => directions.push([(row, tau[0]), (row + 1, tau[1])]),
+            }
+        });
+        directions.extend((next..self.contact).map(alone));
+        s.added.fill(0.0);
+        view.for_each_added(|row, value| s.added[row] += value);
+        // rows may depend on one another
+        for shift in SHIFTS {
+            self.reduce((&s.directions, &s.added), shift, &mut s.factor);
+            let size = s.directions.len();
+            let least = LEFT_OF_ROW * largest_diagonal(&s.factor, size);
+            if dense::cholesky(&mut s.factor, size, least).is_ok() {
+                return;
+            }
+        }
+        s.directions.clear();
+        s.factor.clear();
+    }
+}
