@@ -103,7 +103,7 @@ signorini_fem_mesh::errors! {
         Overlap { contact: usize, node: u32, partner: u32, depth: f64, size: f64 } =
             "contact {contact}: node {node} lies {depth:.3e} inside the other body, seen from its partner \
             {partner}, deeper than its facets are large ({size:.3e}); give sides that face each other across the \
-            gap, or, if they are to be pressed apart, tell how far by with_gap";
+            gap; where Contact::between is to press them apart, tell how far by with_gap";
         SameSide { contact: usize, tag: u32 } =
             "contact {contact}: the tag {tag} is on both sides; give each side its own (TetMesh::map_tags before \
             append keeps those of two bodies apart)";
@@ -163,8 +163,11 @@ signorini_fem_mesh::errors! {
             it, with smaller steps or other settings";
         Checkpoint { reason: String } = "checkpoint: {reason}";
         CheckpointFile { what: &'static str, path: std::path::PathBuf, source: std::io::Error } =
-            "checkpoint: cannot {what} {}: {source}; those stored before stay: make room, correct the rights of the \
-            folder or give another one, then go on", path.display();
+            "checkpoint: cannot {what} {}: {source}; {}", path.display(), match source.kind() {
+                std::io::ErrorKind::NotFound => "there is none at this path: look for the folder",
+                _ => "those stored before stay: make room, correct the rights of the folder or give another one, then \
+                    go on",
+            };
         Probe { node: u32, nodes: usize } =
             "probe: node {node} does not exist, the mesh has {nodes} nodes, numbered from 0";
         ResultTable { path: std::path::PathBuf, line: usize, found: String, expected: String } =

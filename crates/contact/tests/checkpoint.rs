@@ -319,6 +319,20 @@ fn checkpoints_that_cannot_be_used_are_named_and_left() {
     assert_eq!(folder.names(), ["step-00000001.state"]);
 }
 
+/// Reading what is not there asks for no room.
+#[test]
+fn a_state_that_is_not_there_is_looked_for() {
+    let folder = Folder::new("none");
+    let text = State::load(folder.0.join("one.state"))
+        .map(|_| ())
+        .expect_err("none")
+        .to_string();
+    assert!(
+        text.contains("one.state") && text.contains("path") && !text.contains("room"),
+        "{text}"
+    );
+}
+
 /// The third checkpoint finds a full disk (a device that takes no byte): an error with file and remedy, those before
 /// stay, and the run goes on from them once there is room.
 #[cfg(target_os = "linux")]

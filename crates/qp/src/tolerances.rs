@@ -171,6 +171,11 @@ pub(crate) const BEHIND_PATH: f64 = 0.01;
 pub(crate) const UNSURE: usize = 4;
 /// Times that a body which constraints alone hold is balanced with a set that follows.
 pub(crate) const BALANCE_ROUNDS: usize = 3;
+/// Part of a round's way that the next one goes back, from which on they swing about their limit; rounds then, and the
+/// least part of a way that is gone.
+pub(crate) const SWING: f64 = 0.3;
+pub(crate) const SWINGING_ROUNDS: usize = 8;
+pub(crate) const LEAST_PART: f64 = 0.1;
 /// Factor on patience for moves in a row that find no balance, from which on there seems to be none.
 pub(crate) const UNBALANCED: usize = 2;
 /// With the safeguard: factor on the forcing; factor on patience and sets; very short steps in a row that end it.

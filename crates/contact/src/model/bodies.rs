@@ -6,6 +6,7 @@
 
 use crate::discrete::DiscreteScene;
 use signorini_fem_mesh::internal::DisjointSets;
+use signorini_qp::vector;
 use signorini_tfeti::Tfeti;
 
 /// To which body rows and subdomains belong. With one body there are no tables.
@@ -68,6 +69,16 @@ impl Bodies {
         for row in rows {
             out[self.of_row(row)] += x[row] * x[row];
         }
+    }
+
+    /// The squares of a torn vector, summed over the subdomains of each body.
+    pub(crate) fn torn_squares(&self, tfeti: &Tfeti, x: &[f64]) -> Vec<f64> {
+        let mut out = vec![0.0; self.count.max(1)];
+        for subdomain in 0..tfeti.subdomains() {
+            let own = &x[tfeti.torn_range(subdomain)];
+            out[self.of_subdomain(subdomain)] += vector::dot(own, own);
+        }
+        out
     }
 }
 

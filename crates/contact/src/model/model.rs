@@ -9,7 +9,7 @@ use crate::scene::{Friction, Scene};
 use crate::settings::Settings;
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti::internal::CopyStiffness;
-use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder, TiedRows};
+use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder, TfetiError, TiedRows};
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -27,6 +27,8 @@ pub(crate) struct Model {
     pub(crate) tfeti: Tfeti,
     pub(crate) bodies: Bodies,
     pub(crate) loads: Vec<LoadResponse>,
+    /// Of each load that is an eigenstrain the squares of its nodal forces on each body, N²; empty of others.
+    pub(crate) strained: Vec<Vec<f64>>,
     /// Without contact, multipliers that [hand each load on](Self::hand_on) to the supports; solvers find what is left.
     /// Empty with contact.
     pub(crate) handed_on: Vec<Vec<f64>>,
@@ -43,14 +45,15 @@ pub(crate) struct Model {
 }
 
 impl Model {
-    /// What prescribed displacements in `offset` (row units) would do to their nodes with all others held: for each
-    /// body the norm of these forces, N. Empty if no support and no tie moves.
-    pub(crate) fn prescribed_force(&self, offset: &[f64]) -> Vec<f64> {
+    /// What prescribed displacements in `offset` (row units), and eigenstrains with these `factors` of the loads, would
+    /// do to their nodes with all others held: for each body the norm of these forces, N. Empty if no support and no tie
+    /// moves, and where there is no eigenstrain.
+    pub(crate) fn prescribed_force(&self, offset: &[f64], factors: &[f64]) -> Vec<f64> {
         let ranges = self.tfeti.gluing().ranges();
         let supports = (!self.discrete.supports.motions.is_empty()).then(|| ranges.dirichlet.clone());
         let ties = self.plan.effects.moving_ties.then(|| ranges.tied.clone());
         let moved = [supports, ties].into_iter().flatten();
-        if moved.clone().next().is_none() {
+        if moved.clone().next().is_none() && self.strained.iter().all(Vec::is_empty) {
             return Vec::new();
         }
         let stiffness = self.moved_stiffness.get_or_init(|| {
@@ -64,6 +67,11 @@ impl Model {
         let mut out = vec![0.0; self.bodies.count().max(1)];
         for (row, k) in moved.flatten().zip(stiffness) {
             out[self.bodies.of_row(row)] += (k * offset[row]).powi(2);
+        }
+        for (factor, forces) in factors.iter().zip(&self.strained) {
+            out.iter_mut()
+                .zip(forces)
+                .for_each(|(v, square)| *v += factor * factor * square);
         }
         out.iter_mut().for_each(|v| *v = v.sqrt());
         out
@@ -98,14 +106,30 @@ impl Model {
             .with_contact(&discrete.constraints)
             .with_communicator(&settings.communicator)
             .build()?;
-        let loads = std::mem::take(&mut discrete.loads).into_iter();
+        let loads = std::mem::take(&mut discrete.loads).into_iter().zip(&scene.loads);
         let loads = loads
-            .map(|local| match discrete.points.is_empty() {
-                true => tfeti.torn_load(&local),
-                false => tfeti.load_response(&local),
+            .map(|(local, load)| {
+                let mut response = match discrete.points.is_empty() {
+                    true => tfeti.torn_load(&local)?,
+                    false => tfeti.load_response(&local)?,
+                };
+                // strain that makes no stress is in balance, and no rounding is to push a body that nothing holds
+                if load.density().is_none() {
+                    response.coarse.fill(0.0);
+                }
+                Ok::<_, TfetiError>(response)
             })
-            .collect::<Result<_, _>>()?;
+            .collect::<Result<Vec<_>, _>>()?;
         tfeti.check_processes()?;
+        let bodies = Bodies::new(&tfeti, &discrete);
+        let strained = loads
+            .iter()
+            .zip(&scene.loads)
+            .map(|(response, load)| match load.density() {
+                Some(_) => Vec::new(),
+                None => bodies.torn_squares(&tfeti, &response.force),
+            });
+        let strained = strained.collect();
         let points = constrained_points(&discrete.points, tfeti.gluing());
         let mut with_rows = vec![None; discrete.points.len()];
         let rows = tfeti.gluing().contact().iter().enumerate();
@@ -120,13 +144,14 @@ impl Model {
         ])
         .map_err(signorini_qp::QpError::from)?;
         Ok(Self {
-            bodies: Bodies::new(&tfeti, &discrete),
+            bodies,
             standing: discrete.stands.iter().map(|&point| with_rows[point]).collect(),
             scene,
             plan,
             discrete,
             tfeti,
             loads,
+            strained,
             handed_on: Vec::new(),
             points,
             set,

@@ -10,12 +10,7 @@ fn units(model: &Model, problem: &StepProblem, start: &[f64]) -> Vec<f64> {
     let bodies = &model.bodies;
     let mut squares = vec![0.0; bodies.count()];
     bodies.add_squares(start, 0..start.len(), &mut squares);
-    let force = problem.forces(model);
-    let mut loads = vec![0.0; bodies.count()];
-    for subdomain in 0..model.tfeti.subdomains() {
-        let own = &force[model.tfeti.torn_range(subdomain)];
-        loads[bodies.of_subdomain(subdomain)] += signorini_qp::vector::dot(own, own);
-    }
+    let loads = bodies.torn_squares(&model.tfeti, &problem.forces(model));
     // where supports move a body, warm starts may be rounding errors
     let prescribed = |b: usize| problem.prescribed_force.get(b).copied().unwrap_or(0.0);
     let known = |b: usize| squares[b].max(loads[b]).sqrt().max(problem.rest(b));

@@ -44,8 +44,8 @@ pub(crate) struct StepProblem {
     pub(crate) peaks: Vec<Peak>,
     /// Coefficient of friction at each point, 0 without; empty where there is no friction at all.
     pub(crate) coefficients: Vec<f64>,
-    /// What supports that move a body would do to its nodes with all others held, norm for each body, N; empty if
-    /// none moves.
+    /// What supports that move a body, and eigenstrain, would do to its nodes with all others held, norm for each body,
+    /// N; empty if there are none.
     pub(crate) prescribed_force: Vec<f64>,
     /// Slip bound of Tresca friction at each point, N, 0 without.
     pub(crate) tresca: Vec<f64>,
@@ -81,7 +81,7 @@ impl StepProblem {
         let cases: Vec<(usize, f64)> = histories.map(|h| h.value(time)).enumerate().collect();
         self.offset = model.tfeti.prescribed_offsets_in(take(&mut self.offset), &cases);
         self.part_ties(model);
-        self.prescribed_force = model.prescribed_force(&self.offset);
+        self.prescribed_force = model.prescribed_force(&self.offset, &self.factors);
         self.prescribed.clear();
         let several = model.plan.effects.partners || model.scene.mesh.order() == 2;
         if model.plan.effects.motion && several {
@@ -103,11 +103,21 @@ impl StepProblem {
     /// nothing tells.
     pub(crate) fn growth(&self, model: &Model, time: f64) -> f64 {
         let mut before = vec![0.0; self.rhs.len()];
-        for (case, load) in model.scene.loads.iter().zip(&model.loads) {
-            vector::axpy(case.history.value(time), &load.coarse, &mut before);
+        let (mut along, mut square) = (0.0, 0.0);
+        let loads = model.scene.loads.iter().zip(&model.loads).zip(&model.strained);
+        for (((case, load), strained), now) in loads.zip(&self.factors) {
+            let factor = case.history.value(time);
+            vector::axpy(factor, &load.coarse, &mut before);
+            let size: f64 = strained.iter().sum();
+            along += now * factor * size;
+            square += factor * factor * size;
         }
-        let square = vector::dot(&before, &before);
-        let growth = vector::dot(&self.rhs, &before) / square - 1.0;
+        // eigenstrains count where nothing else does
+        let pushed = vector::dot(&before, &before);
+        if pushed > 0.0 {
+            (along, square) = (vector::dot(&self.rhs, &before), pushed);
+        }
+        let growth = along / square - 1.0;
         match square > 0.0 {
             true => growth.max(0.0) * (1.0 + ROUNDING),
             false => f64::INFINITY,

@@ -175,3 +175,21 @@ fn strains_that_mean_nothing_are_refused() {
         assert!(error.starts_with(expected), "{error}");
     }
 }
+
+/// Nothing but a side of the other touches two warm blocks, one on the other: what rounding leaves of forces in balance
+/// pushes neither, and all forces are zero.
+#[test]
+fn warm_bodies_that_nothing_holds_rest() {
+    for friction in [Friction::None, Friction::coulomb(0.2)] {
+        let mesh = with_second(&block(1), &lifted(&block(1), LENGTHS[2]));
+        let contact = Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(friction);
+        let scene = Scene::new(mesh, uniform(YOUNG, 0.3))
+            .with_subdomains(6)
+            .with_load(Load::eigenstrain(Eigenstrain::expansion(WARM)))
+            .with_contact(contact);
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("simulation");
+        let result = simulation.step().expect("step");
+        assert!(result.report().status.converged() && result.report().counters.products <= 3);
+        assert!(largest(&result.stress()) < 1e-9 * YOUNG * WARM);
+    }
+}

@@ -3,6 +3,7 @@
 mod accuracy;
 mod bar;
 mod bodies;
+mod brake;
 mod column;
 mod common;
 mod compliance;

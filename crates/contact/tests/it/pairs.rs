@@ -302,6 +302,9 @@ fn what_cannot_be_paired_is_refused() {
             matches!(error, ContactError::Overlap { contact: 0, depth, .. } if (depth - 2.0).abs() < 1e-9),
             "{error}"
         );
+        // a gap is no remedy for a tie
+        let remedy = "where Contact::between is to press them apart, tell how far by with_gap";
+        assert!(error.to_string().contains(remedy), "{error}");
     }
     let error = fails(column([2; 3]), joint().with_motion([1.0, 0.0, 0.0], ramp()));
     assert!(matches!(error, ContactError::MovedPartner { contact: 0 }), "{error}");

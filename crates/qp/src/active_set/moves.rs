@@ -2,7 +2,9 @@
 
 use crate::error::QpError;
 use crate::problem::{EqualityProjector, SymmetricOperator};
-use crate::tolerances::{BALANCE_ROUNDS, NEGLIGIBLE, SHORT, SHORTEST, UNSURE, VERY_SHORT};
+use crate::tolerances::{
+    BALANCE_ROUNDS, LEAST_PART, NEGLIGIBLE, SHORT, SHORTEST, SWING, SWINGING_ROUNDS, UNSURE, VERY_SHORT,
+};
 use crate::vector;
 
 use super::iterate::natural_map;
@@ -59,34 +61,44 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         Ok(())
     }
 
-    /// The same such that constrained components balance. At the `start` there is no natural map yet.
+    /// The same such that constrained components balance. At the `start` there is no natural map yet. A set that follows
+    /// and a balance that follows the set may swing ever wider (friction that takes more than all of a pressure away):
+    /// then it follows a point between.
     pub(crate) fn settle_loose(&mut self, start: bool, follow: bool) -> Result<(), QpError> {
         let constrained = self.at.constrained();
         let from = self.at.x[..constrained].to_vec();
-        let rounds = if follow { BALANCE_ROUNDS } else { 1 };
+        let mut rounds = if follow { BALANCE_ROUNDS } else { 1 };
+        let mut swings = Swings::default();
         self.moved.unrest = 0.0;
-        for round in 1..=rounds {
+        let mut round = 1;
+        loop {
             let at = &mut self.at;
             let last = at.x[..constrained].to_vec();
             at.x[..constrained].copy_from_slice(&from);
+            let mut balances = true;
             if !start {
                 let map = natural_map(at.problem, &at.work.residual, at.step);
                 at.work.active.aim(at.set, at.x, &map);
-                let balances = at.project();
-                if round == rounds {
-                    self.moved.unbalanced = if balances { 0 } else { self.moved.unbalanced + 1 };
-                }
+                balances = at.project();
             } else if !at.project_start() {
                 at.project();
             }
             if round > 1 {
                 self.moved.unrest = vector::distance(&at.x[..constrained], &last);
+                if swings.note(&last, &at.x[..constrained]) {
+                    rounds = SWINGING_ROUNDS;
+                }
             }
-            if round < rounds {
-                self.follow()?;
+            if round >= rounds {
+                if !start {
+                    self.moved.unbalanced = if balances { 0 } else { self.moved.unbalanced + 1 };
+                }
+                return Ok(());
             }
+            swings.calm(&mut at.x[..constrained]);
+            self.follow()?;
+            round += 1;
         }
-        Ok(())
     }
 
     /// The next step of conjugate gradients, which shares its product with the move: without constraints there is no
@@ -179,6 +191,44 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         if rises && more {
             safeguard.back(at.x, at.ax);
             self.moved.jump = f64::INFINITY;
+        }
+    }
+}
+
+/// Rounds in which a point that balances and a set that follows it swing about their limit: parts of ways as Irons and Tuck
+/// (Int. J. Numer. Meth. Eng. 1, 1969) take them.
+#[derive(Default)]
+struct Swings {
+    /// The last two ways from the point that was followed to the one that balances.
+    ways: [Vec<f64>; 2],
+    /// Part of the way at which the last point to be followed was taken.
+    part: f64,
+}
+
+impl Swings {
+    /// After a round that led from one point to another. Whether it went back most of the way of the round before.
+    fn note(&mut self, from: &[f64], to: &[f64]) -> bool {
+        self.ways.swap(0, 1);
+        self.ways[1].clear();
+        self.ways[1].extend(to.iter().zip(from).map(|(a, b)| a - b));
+        let [before, now] = &self.ways;
+        if before.is_empty() {
+            self.part = 1.0;
+            return false;
+        }
+        let change: Vec<f64> = now.iter().zip(before).map(|(a, b)| a - b).collect();
+        let square = vector::dot(&change, &change);
+        let swings = vector::dot(now, before) < -SWING * vector::dot(before, before);
+        if square > 0.0 && (swings || self.part < 1.0) {
+            self.part = (-self.part * vector::dot(before, &change) / square).clamp(LEAST_PART, 1.0);
+        }
+        swings
+    }
+
+    /// The point to be followed next, from the one that balances.
+    fn calm(&self, x: &mut [f64]) {
+        if self.part < 1.0 && !self.ways[1].is_empty() {
+            vector::axpy(self.part - 1.0, &self.ways[1], x);
         }
     }
 }
