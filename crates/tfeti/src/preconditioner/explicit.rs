@@ -14,6 +14,9 @@ use signorini_qp::SymmetricOperator;
 use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView, Freedom};
 use std::sync::Arc;
 
+/// A direction of a contact row, or of two that make a disc: rows and components.
+type Direction = [(usize, f64); 2];
+
 /// A preconditioner for `F` that is nearly its inverse on the kernel of `G`, on each active set.
 #[derive(Debug)]
 pub struct ExplicitInverse {
@@ -30,8 +33,8 @@ pub struct ExplicitInverse {
 /// Work memory of an [`ExplicitInverse`].
 #[derive(Debug)]
 pub struct ExplicitScratch {
-    /// Free directions of the contact rows on the active set: rows and components.
-    directions: Vec<[(usize, f64); 2]>,
+    /// Those of the contact rows that are free on the active set.
+    directions: Vec<Direction>,
     /// What the method adds to the diagonal.
     added: Vec<f64>,
     /// Factor of the Schur complement in them.
@@ -128,7 +131,7 @@ impl ExplicitInverse {
     }
 
     /// The Schur complement in some directions, lower triangle, with a multiple of its largest entry on the diagonal.
-    fn reduce(&self, (directions, added): (&[[(usize, f64); 2]], &[f64]), shift: f64, out: &mut Vec<f64>) {
+    fn reduce(&self, (directions, added): (&[Direction], &[f64]), shift: f64, out: &mut Vec<f64>) {
         let entry = |i: usize, j: usize| self.schur[i.max(j) + i.min(j) * self.contact];
         let size = directions.len();
         out.clear();
