@@ -35,8 +35,7 @@
 //!
 //! ```
 //! use signorini_qp::{
-//!     ConvexSet, KprgpSettings, NormSettings, ProductSet, Segment, SymmetricOperator, Tolerance, kkt, kprgp,
-//!     norm_estimate,
+//!     ConvexSet, KprgpSettings, ProductSet, Segment, SymmetricOperator, Tolerance, kkt, kprgp, norm_estimate,
 //! };
 //! use signorini_qp::kprgp::KprgpWorkspace;
 //! use signorini_qp::problem::BlockState;
@@ -63,7 +62,7 @@
 //! let stiffness = Stiffness(n);
 //! let load = vec![-0.01; n];
 //! let obstacle = ProductSet::new(vec![Segment::lower(vec![-1.0; n])])?;
-//! let norm = norm_estimate(&stiffness, &NormSettings::default())?.upper;
+//! let norm = norm_estimate(&stiffness)?.upper;
 //! let mut x = vec![0.0; n];
 //! let mut work = KprgpWorkspace::new(&stiffness);
 //! let tolerance = Tolerance::Relative(1e-8);
@@ -80,8 +79,8 @@
 //!
 //! # Settings
 //!
-//! Each setter of [`ActiveSetSettings`], [`KprgpSettings`], [`SmalseSettings`] and [`NormSettings`] tells meaning,
-//! scale, range, default and the letter in the paper. All are dimensionless: a problem in other units takes the same
+//! Each setter of [`ActiveSetSettings`], [`KprgpSettings`] and [`SmalseSettings`] tells meaning, scale, range, default
+//! and the letter in the paper. All are dimensionless: a problem in other units takes the same
 //! steps.
 //!
 //! # Determinism
@@ -104,7 +103,7 @@ mod tolerances;
 pub mod vector;
 
 pub use active_set::{ActiveSetSettings, active_set};
-pub use check::{NormSettings, kkt, laws, norm_estimate};
+pub use check::{kkt, laws, norm_estimate};
 pub use error::{QpError, SetError};
 pub use fixed_point::{FixedPointReport, Verdict, successive_approximations};
 pub use kprgp::{KprgpSettings, kprgp};

@@ -34,6 +34,10 @@ pub(crate) const SINGULAR_PIVOT: f64 = 1e-12;
 
 // Checks
 
+/// Estimate of a norm: most products, residual over the Ritz value at which it stops, factor on its upper value.
+pub(crate) const NORM_PRODUCTS: usize = 20;
+pub(crate) const NORM_ACCURACY: f64 = 0.02;
+pub(crate) const NORM_MARGIN: f64 = 1.02;
 /// Off-diagonal entry of Lanczos over the largest Ritz value at which the space is exhausted.
 pub(crate) const EXHAUSTED: f64 = 1e-14;
 /// Distance from a bound, over `|x|`, at which the independent check counts a component as on it.

@@ -14,7 +14,7 @@ use signorini_qp::internal::Contraction;
 use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
 use signorini_qp::{
-    NormSettings, ProductSet, Projected, Segment, SmalseSettings, Status, Tolerance, norm_estimate, smalse, vector,
+    ProductSet, Projected, Segment, SmalseSettings, Status, Tolerance, norm_estimate, smalse, vector,
 };
 use signorini_tfeti::{DualOperator, OrthonormalCoarse};
 
@@ -47,7 +47,7 @@ impl SmalseSolver {
         let rows = OrthonormalRows::new(model)?;
         let operator = model.tfeti.dual();
         let projected = Projected::new(operator, &rows.coarse)?;
-        let estimate = norm_estimate(&projected, &NormSettings::default())?;
+        let estimate = norm_estimate(&projected)?;
         Ok(Self {
             work: SmalseWorkspace::new(operator, &rows.coarse),
             set: model.set.clone(),

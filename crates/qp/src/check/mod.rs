@@ -10,4 +10,4 @@ pub mod kkt;
 pub mod laws;
 mod norm;
 
-pub use norm::{NormEstimate, NormSettings, norm_estimate};
+pub use norm::{NormEstimate, norm_estimate};

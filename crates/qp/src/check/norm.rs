@@ -13,22 +13,8 @@
 
 use crate::error::QpError;
 use crate::problem::SymmetricOperator;
-use crate::settings::settings;
-use crate::tolerances::EXHAUSTED;
+use crate::tolerances::{EXHAUSTED, NORM_ACCURACY, NORM_MARGIN, NORM_PRODUCTS};
 use crate::vector;
-
-settings! {
-    /// Settings of [`norm_estimate`].
-    #[derive(Debug, Clone, Copy, PartialEq)]
-    NormSettings or QpError {
-        /// Products spent at most.
-        max_products, with_max_products: usize = 20, in "[2, 200]";
-        /// Residual, relative to the Ritz value, at which the estimate stops.
-        accuracy, with_accuracy: f64 = 0.02, in "(0, 1)";
-        /// Factor on the upper value.
-        margin, with_margin: f64 = 1.02, in "[1, 2]";
-    }
-}
 
 /// Result of [`norm_estimate`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +22,7 @@ settings! {
 pub struct NormEstimate {
     /// Largest Ritz value: never above the norm.
     pub lower: f64,
-    /// Safe upper value: `margin * (lower + residual)`. Use this one as step bound.
+    /// Safe upper value: 1.02 times the sum of `lower` and its residual. Use this one as step bound.
     pub upper: f64,
     /// Products spent.
     pub products: usize,
@@ -48,24 +34,22 @@ pub struct NormEstimate {
 /// once an operator. Dimension 0 and the zero operator give 0.
 ///
 /// # Errors
-/// Settings out of range; a product that is not finite.
-pub fn norm_estimate<A: SymmetricOperator>(operator: &A, settings: &NormSettings) -> Result<NormEstimate, QpError> {
-    settings.validate()?;
-    let m = settings.max_products;
+/// A product that is not finite.
+pub fn norm_estimate<A: SymmetricOperator>(operator: &A) -> Result<NormEstimate, QpError> {
     let n = operator.dim();
     let mut scratch = operator.scratch();
     let mut q: Vec<f64> = (0..n).map(start_entry).collect();
     let length = vector::norm(&q);
     vector::scale(if length > 0.0 { 1.0 / length } else { 0.0 }, &mut q);
     let (mut before, mut w) = (vec![0.0; n], vec![0.0; n]);
-    let mut diagonal: Vec<f64> = Vec::with_capacity(m);
-    let mut off: Vec<f64> = Vec::with_capacity(m);
+    let mut diagonal: Vec<f64> = Vec::with_capacity(NORM_PRODUCTS);
+    let mut off: Vec<f64> = Vec::with_capacity(NORM_PRODUCTS);
     let mut estimate = NormEstimate {
         lower: 0.0,
         upper: 0.0,
         products: 0,
     };
-    for k in 0..m.min(n) {
+    for k in 0..NORM_PRODUCTS.min(n) {
         operator.apply(&q, &mut w, &mut scratch);
         estimate.products += 1;
         if let Some(&beta) = off.last() {
@@ -84,8 +68,8 @@ pub fn norm_estimate<A: SymmetricOperator>(operator: &A, settings: &NormSettings
         let lower = largest_eigenvalue(&diagonal, &off);
         let residual = beta * last_weight(&diagonal, &off, lower).sqrt().min(1.0);
         estimate.lower = lower;
-        estimate.upper = settings.margin * (lower + residual);
-        if beta <= EXHAUSTED * lower.abs() || (k >= 4 && residual <= settings.accuracy * lower) {
+        estimate.upper = NORM_MARGIN * (lower + residual);
+        if beta <= EXHAUSTED * lower.abs() || (k >= 4 && residual <= NORM_ACCURACY * lower) {
             break;
         }
         off.push(beta);
@@ -183,13 +167,10 @@ mod tests {
         }
         let exact = 2.0 + 2.0 * (std::f64::consts::PI / (n as f64 + 1.0)).cos();
         let a = DenseOperator::new(n, a).expect("matrix");
-        let e = norm_estimate(&a, &NormSettings::default()).expect("estimate");
+        let e = norm_estimate(&a).expect("estimate");
         assert!(e.lower <= exact * (1.0 + 1e-12) && e.upper >= exact, "{e:?} {exact}");
         assert!(e.upper <= 1.1 * exact && e.products <= 20);
         let zero = DenseOperator::new(3, vec![0.0; 9]).expect("matrix");
-        assert_eq!(
-            norm_estimate(&zero, &NormSettings::default()).expect("estimate").upper,
-            0.0
-        );
+        assert_eq!(norm_estimate(&zero).expect("estimate").upper, 0.0);
     }
 }

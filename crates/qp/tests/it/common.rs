@@ -164,7 +164,7 @@ pub(crate) struct Quadratic {
 impl Quadratic {
     pub(crate) fn new(a: DenseOperator, b: Vec<f64>, (c, e): (DenseEquality, Vec<f64>), set: ProductSet) -> Self {
         let projected = Projected::new(&a, &c).expect("dimensions");
-        let norm = norm_estimate(&projected, &Default::default()).expect("norm");
+        let norm = norm_estimate(&projected).expect("norm");
         let norm = norm.upper.max(1e-3);
         Self { a, b, c, e, set, norm }
     }
