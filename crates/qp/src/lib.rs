@@ -12,8 +12,7 @@
 //! |---|---|---|---|
 //! | [`kprgp()`] | set | Kucera 2007, 2008; MPRGP of Dostal and Schoeberl 2005 for bounds | 4 |
 //! | [`smalse()`] | set and equality | Algorithm 4.1 of Haslinger, Kucera, Vlach, Baniotopoulos; Dostal 2009 | 6 |
-//! | [`active_set()`] | set and equality | projected, preconditioned CG on predicted active sets; no penalty | 6 |
-//! | [`projected_cg()`] | equality | Farhat, Mandel, Roux 1994 | 5 |
+//! | [`active_set()`] | set, equality | projected, preconditioned CG on predicted active sets; no penalty | 6 |
 //! | [`norm_estimate`] | none | Lanczos with a safe upper bound | 3, for the call |
 //! | [`kkt::check`] | set, equality | independent check, shares no code with the solvers | 2, for the call |
 //!
@@ -94,7 +93,6 @@ mod error;
 mod fixed_point;
 pub mod kprgp;
 pub mod problem;
-mod projected_cg;
 mod report;
 #[doc(hidden)]
 pub mod settings;
@@ -111,7 +109,6 @@ pub use problem::{
     ConvexSet, DenseEquality, DenseOperator, DenseProjector, Equality, EqualityProjector, ProductSet, Projected,
     Segment, SymmetricOperator,
 };
-pub use projected_cg::{CgReport, CgWorkspace, projected_cg};
 pub use report::{Products, Status, Steps, Tolerance};
 pub use smalse::{SmalseSettings, smalse};
 

@@ -76,18 +76,6 @@ pub(crate) const LEAST_RESPONSE: f64 = 0.01;
 /// Outer steps with a stagnating inner solver after which the solve ends.
 pub(crate) const STAGNATIONS: usize = 3;
 
-// Conjugate gradients on an equality
-
-/// Projected load, over the load, that is rounding, and the projected gradient, likewise, that suffices then.
-pub(crate) const VANISHED_LOAD: f64 = 1e-12;
-pub(crate) const SOLVED_BY_EQUALITY: f64 = 1e-14;
-/// Projected load over `|P A x|` below which it is no reference.
-pub(crate) const NEGLIGIBLE_LOAD: f64 = 1e-10;
-/// Iterations without progress after which the solve ends.
-pub(crate) const CG_PATIENCE: usize = 300;
-/// Residual over the first one below which a curvature that is not positive is rounding.
-pub(crate) const CG_ROUNDING: f64 = 1e-8;
-
 // Active set: the point
 
 /// Distance from a circle, over the radius, at which a point may slide. Wider than [`ON_CIRCLE`]: projectors round

@@ -49,7 +49,7 @@ const CRATES: [(&str, &[&str]); 6] = [
         "qp",
         &[
             "smalse",
-            "kprgp active_set projected_cg fixed_point check",
+            "kprgp active_set fixed_point check",
             "problem",
             "report",
             "settings vector",

@@ -6,7 +6,9 @@
 
 use crate::model::Model;
 use crate::tolerances::{SHARED_MOVES, SHARED_ROUNDS, SHARED_STOP};
-use signorini_qp::{CgWorkspace, DenseEquality, SymmetricOperator, Tolerance, projected_cg, vector};
+use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
+use signorini_qp::problem::Diagonal;
+use signorini_qp::{ActiveSetSettings, DenseProjector, ProductSet, SymmetricOperator, active_set, vector};
 use std::collections::BTreeMap;
 
 /// The rows of points that share nodes.
@@ -19,8 +21,8 @@ pub(crate) struct SharedNodes {
     tied: std::ops::Range<usize>,
     /// Of each displacement component of a node, relative.
     compliance: Vec<f64>,
-    /// Diagonal of the matrix.
-    diagonal: Vec<f64>,
+    /// Inverse of the diagonal of the matrix.
+    inverse: Diagonal,
 }
 
 impl SharedNodes {
@@ -48,13 +50,13 @@ impl SharedNodes {
             stiffness[node as usize] += model.copies().weight(k);
         }
         let compliance: Vec<f64> = stiffness.iter().flat_map(|s| [1.0 / s; 3]).collect();
-        let square = |row: &Vec<(usize, f64)>| row.iter().map(|&(at, v)| v * v * compliance[at]).sum();
-        let diagonal = rows.iter().map(square).collect();
+        let square = |row: &Vec<(usize, f64)>| row.iter().map(|&(at, v)| v * v * compliance[at]).sum::<f64>();
+        let inverse = Diagonal::new(rows.iter().map(square).map(f64::recip).collect()).ok()?;
         Some(Self {
             rows,
             tied,
             compliance,
-            diagonal,
+            inverse,
         })
     }
 
@@ -63,12 +65,14 @@ impl SharedNodes {
         targets.extend_from_slice(&offset[self.tied.clone()]);
         let value = |row: &Vec<(usize, f64)>, v: &[f64]| row.iter().map(|&(at, c)| c * v[at]).sum::<f64>();
         let size = vector::max_abs(&targets).max(vector::max_abs(v));
-        let diagonal = Diagonal(&self.diagonal);
-        // no equality
-        let Ok(free) = DenseEquality::orthonormal(0, self.dim(), &[]) else {
+        // neither a set nor an equality
+        let (n, mut set) = (self.dim(), ProductSet::free(self.dim()));
+        let Ok(mut projector) = DenseProjector::new(0, n, Vec::new()) else {
             return;
         };
-        let mut work = CgWorkspace::new(self, &free, &diagonal);
+        let settings = ActiveSetSettings::default().with_tolerance(SHARED_STOP);
+        let settings = settings.with_max_products(SHARED_MOVES);
+        let mut work = ActiveSetWorkspace::new(self, &self.inverse);
         let mut moved = vec![0.0; v.len()];
         for _ in 0..SHARED_ROUNDS {
             let rows = self.rows.iter().zip(&targets);
@@ -76,19 +80,25 @@ impl SharedNodes {
             if vector::max_abs(&missing) <= SHARED_STOP * size {
                 return;
             }
-            let mut y = vec![0.0; self.dim()];
-            let stop = Tolerance::Relative(SHARED_STOP);
+            let problem = ActiveSetProblem {
+                operator: self,
+                preconditioner: &self.inverse,
+                scale: self.inverse.entries(),
+                linear: &missing,
+                rhs: &[],
+            };
+            let (mut y, mut product) = (vec![0.0; n], vec![0.0; n]);
             // as far as rows depend on one another the result is one of many
-            let solved = projected_cg(
-                self,
-                &missing,
-                &free,
-                &[],
-                &diagonal,
-                stop,
-                SHARED_MOVES,
+            let solved = active_set(
+                &problem,
+                &mut projector,
+                &mut set,
                 &mut y,
+                &mut product,
+                true,
+                &settings,
                 &mut work,
+                &mut |_, _| {},
             );
             if solved.is_err() {
                 return;
@@ -123,25 +133,6 @@ impl SymmetricOperator for SharedNodes {
         self.spread(x, moved);
         for (row, y) in self.rows.iter().zip(y) {
             *y = row.iter().map(|&(at, c)| c * moved[at]).sum();
-        }
-    }
-}
-
-/// The inverse of a diagonal matrix.
-struct Diagonal<'a>(&'a [f64]);
-
-impl SymmetricOperator for Diagonal<'_> {
-    type Scratch = ();
-
-    fn dim(&self) -> usize {
-        self.0.len()
-    }
-
-    fn scratch(&self) {}
-
-    fn apply(&self, x: &[f64], y: &mut [f64], (): &mut ()) {
-        for ((y, x), diagonal) in y.iter_mut().zip(x).zip(self.0) {
-            *y = x / diagonal;
         }
     }
 }

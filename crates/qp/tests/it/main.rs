@@ -3,12 +3,12 @@
 mod active_set;
 mod allocations;
 mod common;
+mod equality;
 mod flat;
 mod interior_point;
 mod kkt;
 mod kprgp;
 mod obstacle_string;
-mod projected_cg;
 mod radius_slopes;
 mod refusals;
 mod rounded_steps;
