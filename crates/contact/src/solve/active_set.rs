@@ -148,7 +148,8 @@ impl ActiveSetSolver {
             }
         }
         let is_open = |status| matches!(status, Status::IterationLimit | Status::Stagnated);
-        if let Some(cost) = cost.filter(|_| is_open(status)) {
+        let hard = |cost| iterate.effort >= cost || status == Status::Stagnated;
+        if let Some(cost) = cost.filter(|&cost| is_open(status) && hard(cost)) {
             iterate.effort = cost;
             if self.use_explicit(true, task, &mut report) {
                 status = self.active_sets(task, iterate, EXPLICIT_PRODUCTS, &mut report)?;
