@@ -193,7 +193,8 @@ pub(crate) const ORDERS: [f64; 2] = [0.5, 2.5];
 /// thirtieth of that error and less in compact bodies. The certificate tells where it is not, as in thin ones.
 pub(crate) const LINEAR_SLACK: f64 = 15.0;
 
-/// Products of a step that are no effort: with the inverse of a formed F it takes as many where contact is hard.
+/// Products of a step that are no effort in any case: with the inverse of a formed F it takes as many where contact is
+/// hard.
 pub(crate) const EASY: usize = 200;
 /// Products beyond those that are not worth forming F, however small it is.
 pub(crate) const LITTLE: usize = 600;

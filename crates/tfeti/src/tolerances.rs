@@ -99,7 +99,7 @@ pub(crate) const BANDWIDTH: [f64; 2] = [6e10, 1.2e10];
 pub(crate) const PRODUCTS: usize = 2000;
 /// Bytes of dense matrices that still stay in the caches of one processor.
 pub(crate) const CACHE: u64 = 16 << 20;
-/// Most rows of an `F` that is formed, and active sets that its inverse is for.
+/// Most rows of an `F` that is formed, and active sets of a step with its inverse.
 pub(crate) const EXPLICIT_ROWS: usize = 3000;
 pub(crate) const EXPLICIT_SETS: f64 = 30.0;
 /// Columns solved at once when a dense block is formed, at least six.

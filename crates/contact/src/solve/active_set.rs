@@ -39,8 +39,8 @@ pub(crate) struct ActiveSetSolver {
     preconditioner: SelectedPreconditioner,
     /// The one that is not in use, of that of the settings and the inverse of a formed F.
     other: Option<SelectedPreconditioner>,
-    /// What forming F costs in products; `None` if that is not to be.
-    explicit_cost: Option<usize>,
+    /// What forming F costs in products, and a step with its inverse; `None` if that is not to be.
+    explicit_cost: Option<[usize; 2]>,
     scale: Vec<f64>,
     set: ProductSet,
     work: ActiveSetWorkspace<DualOperator, SelectedPreconditioner>,
@@ -92,7 +92,7 @@ impl ActiveSetSolver {
         let explicit_cost = match settings.preconditioner {
             Preconditioner::None => None,
             _ if model.points.is_empty() || !definite => None,
-            _ => model.tfeti.explicit_cost().map(|cost| cost.max(LITTLE)),
+            _ => model.tfeti.explicit_cost(),
         };
         Ok(Self {
             space,
@@ -134,13 +134,15 @@ impl ActiveSetSolver {
         report.counters.inequality_solves = usize::from(contact);
         self.start.resize(iterate.lambda.len(), 0.0);
         vector::copy(&iterate.lambda, &mut self.start);
-        let cost = self.explicit_cost.filter(|_| iterate.effort < NO_HELP);
+        let costs = self.explicit_cost.filter(|_| iterate.effort < NO_HELP);
+        let cost = costs.map(|[forming, _]| forming.max(LITTLE));
+        let easy = costs.map_or(0, |[_, step]| step.max(EASY));
         let mut status = Status::IterationLimit;
         if cost.is_none_or(|cost| iterate.effort < cost) {
             self.use_explicit(false, task, &mut report);
-            let most = cost.map_or(usize::MAX, |cost| cost - iterate.effort + EASY);
+            let most = cost.map_or(usize::MAX, |cost| cost - iterate.effort + easy);
             status = self.active_sets(task, iterate, most, &mut report)?;
-            let effort = report.counters.products.saturating_sub(EASY);
+            let effort = report.counters.products.saturating_sub(easy);
             iterate.effort = iterate.effort.saturating_add(effort);
             if status == Status::Stagnated {
                 vector::copy(&self.start, &mut iterate.lambda);

@@ -46,13 +46,17 @@ pub struct ExplicitScratch {
 }
 
 impl Tfeti {
-    /// What forming `F` and some active sets with its inverse cost in products with `F`, the same for any number of
-    /// processes; `None` where there are too many rows.
-    pub fn explicit_cost(&self) -> Option<usize> {
-        let (rows, contact) = (self.dual_dim(), self.gluing().ranges().contact().end);
+    /// What forming `F` costs in products with it, and what a step on some active sets with its inverse does, the same
+    /// for any number of processes; `None` where there are too many rows.
+    pub fn explicit_cost(&self) -> Option<[usize; 2]> {
+        let rows = self.dual_dim();
+        let [n, contact] = [rows, self.gluing().ranges().contact().end].map(|n| n as f64);
         let product: f64 = self.gather(self.dual().flops() as f64).ok()?.iter().sum();
-        let cubes = (rows as f64).powi(3) + EXPLICIT_SETS * (contact as f64).powi(3);
-        (rows <= EXPLICIT_ROWS).then_some(rows + (cubes / (3.0 * product.max(1.0))) as usize)
+        // factors, and three solves a set
+        let forming = n.powi(3) / 3.0;
+        let step = EXPLICIT_SETS * (contact.powi(3) / 3.0 + 6.0 * n * n);
+        let [forming, step] = [forming, step].map(|operations| (operations / product.max(1.0)) as usize);
+        (rows <= EXPLICIT_ROWS).then_some([rows + forming, step])
     }
 
     /// Forms `F`, by as many products as there are rows. `None` if rounding leaves it indefinite.
