@@ -33,7 +33,7 @@ pub struct ExplicitInverse {
 /// Work memory of an [`ExplicitInverse`].
 #[derive(Debug)]
 pub struct ExplicitScratch {
-    /// Those of the contact rows that are free on the active set.
+    /// Those of the contact rows that are free on the active set; before the first one all are.
     directions: Vec<Direction>,
     /// What the method adds to the diagonal.
     added: Vec<f64>,
@@ -115,6 +115,10 @@ impl Tfeti {
     }
 }
 
+fn alone(row: usize) -> Direction {
+    [(row, 1.0), (row, 0.0)]
+}
+
 fn largest_diagonal(matrix: &[f64], size: usize) -> f64 {
     matrix.iter().step_by(size + 1).copied().fold(0.0, f64::max)
 }
@@ -150,20 +154,31 @@ impl ExplicitInverse {
         shift_diagonal(out, size, shift);
     }
 
-    fn solve(&self, x: &[f64], y: &mut [f64], s: &mut ExplicitScratch) {
+    /// The factor for the directions and what is added.
+    fn factor(&self, s: &mut ExplicitScratch) {
+        let size = s.directions.len();
+        // rows may depend on one another
+        for shift in SHIFTS {
+            self.reduce((&s.directions, &s.added), shift, &mut s.factor);
+            let least = LEFT_OF_ROW * largest_diagonal(&s.factor, size);
+            if dense::cholesky(&mut s.factor, size, least).is_ok() {
+                return;
+            }
+        }
+        s.directions.clear();
+        s.factor.clear();
+    }
+
+    fn solve(&self, x: &mut [f64], s: &mut ExplicitScratch) {
         let others = self.rows - self.contact;
-        let (own, behind) = x.split_at(self.contact);
+        let (own, behind) = x.split_at_mut(self.contact);
         s.ordered[..others].copy_from_slice(behind);
         s.ordered[others..].copy_from_slice(own);
         dense::forward(&self.columns, self.rows, others, &mut s.ordered);
-        let size = s.directions.len();
-        let contact = &mut s.ordered[others..];
-        let along = s
-            .directions
-            .iter()
-            .map(|d| d.iter().map(|(row, v)| v * contact[*row]).sum());
+        let (size, contact) = (s.directions.len(), &mut s.ordered[others..]);
+        let along = |direction: &Direction| direction.iter().map(|(row, v)| v * contact[*row]).sum::<f64>();
         s.reduced.clear();
-        s.reduced.extend::<Vec<f64>>(along.collect());
+        s.reduced.extend(s.directions.iter().map(along));
         dense::forward(&s.factor, size, size, &mut s.reduced);
         dense::backward(&s.factor, size, size, &mut s.reduced);
         contact.fill(0.0);
@@ -171,8 +186,8 @@ impl ExplicitInverse {
             direction.iter().for_each(|(row, v)| contact[*row] += v * value);
         }
         dense::backward(&self.columns, self.rows, others, &mut s.ordered);
-        y[..self.contact].copy_from_slice(&s.ordered[others..]);
-        y[self.contact..].copy_from_slice(&s.ordered[..others]);
+        own.copy_from_slice(&s.ordered[others..]);
+        behind.copy_from_slice(&s.ordered[..others]);
     }
 }
 
@@ -184,24 +199,26 @@ impl SymmetricOperator for ExplicitInverse {
     }
 
     fn scratch(&self) -> ExplicitScratch {
-        ExplicitScratch {
-            directions: Vec::new(),
+        let mut scratch = ExplicitScratch {
+            directions: (0..self.contact).map(alone).collect(),
             added: vec![0.0; self.contact],
             factor: Vec::new(),
             whole: vec![0.0; if self.part.is_some() { self.rows } else { 0 }],
             ordered: vec![0.0; self.rows],
             reduced: Vec::new(),
-        }
+        };
+        self.factor(&mut scratch);
+        scratch
     }
 
     fn apply(&self, x: &[f64], y: &mut [f64], s: &mut ExplicitScratch) {
         let Some(part) = &self.part else {
-            return self.solve(x, y, s);
+            y.copy_from_slice(x);
+            return self.solve(y, s);
         };
         let mut whole = std::mem::take(&mut s.whole);
         part.complete(x, &mut whole);
-        let own = whole.clone();
-        self.solve(&own, &mut whole, s);
+        self.solve(&mut whole, s);
         y.copy_from_slice(&part.take(&whole));
         s.whole = whole;
     }
@@ -213,7 +230,6 @@ impl ActiveSetPreconditioner for ExplicitInverse {
     }
 
     fn enter(&self, view: &ActiveSetView<'_>, s: &mut ExplicitScratch) {
-        let alone = |row: usize| [(row, 1.0), (row, 0.0)];
         let (directions, mut next) = (&mut s.directions, 0);
         directions.clear();
         view.for_each(|row, count, freedom| {
@@ -228,16 +244,6 @@ impl ActiveSetPreconditioner for ExplicitInverse {
         directions.extend((next..self.contact).map(alone));
         s.added.fill(0.0);
         view.for_each_added(|row, value| s.added[row] += value);
-        // rows may depend on one another
-        for shift in SHIFTS {
-            self.reduce((&s.directions, &s.added), shift, &mut s.factor);
-            let size = s.directions.len();
-            let least = LEFT_OF_ROW * largest_diagonal(&s.factor, size);
-            if dense::cholesky(&mut s.factor, size, least).is_ok() {
-                return;
-            }
-        }
-        s.directions.clear();
-        s.factor.clear();
+        self.factor(s);
     }
 }
