@@ -134,32 +134,7 @@ impl ActiveSetSolver {
         report.counters.inequality_solves = usize::from(contact);
         self.start.resize(iterate.lambda.len(), 0.0);
         vector::copy(&iterate.lambda, &mut self.start);
-        let costs = self.explicit_cost.filter(|_| iterate.effort < NO_HELP);
-        let cost = costs.map(|[forming, _]| forming.max(LITTLE));
-        let easy = costs.map_or(0, |[_, step]| step.max(EASY));
-        let mut status = Status::IterationLimit;
-        if cost.is_none_or(|cost| iterate.effort < cost) {
-            self.use_explicit(false, task, &mut report);
-            let most = cost.map_or(usize::MAX, |cost| cost - iterate.effort + easy);
-            status = self.active_sets(task, iterate, most, &mut report)?;
-            let effort = report.counters.products.saturating_sub(easy);
-            iterate.effort = iterate.effort.saturating_add(effort);
-            if status == Status::Stagnated {
-                vector::copy(&self.start, &mut iterate.lambda);
-                iterate.known = false;
-            }
-        }
-        let is_open = |status| matches!(status, Status::IterationLimit | Status::Stagnated);
-        let hard = |cost| iterate.effort >= cost || status == Status::Stagnated;
-        if let Some(cost) = cost.filter(|&cost| is_open(status) && hard(cost)) {
-            iterate.effort = cost;
-            if self.use_explicit(true, task, &mut report) {
-                status = self.active_sets(task, iterate, EXPLICIT_PRODUCTS, &mut report)?;
-            }
-            if is_open(status) {
-                iterate.effort = NO_HELP;
-            }
-        }
+        let status = self.active_sets_or_explicit(task, iterate, &mut report)?;
         report.status = step_status(status);
         task.model.tfeti.check_processes()?;
         if contact && !report.status.converged() {
@@ -168,6 +143,43 @@ impl ActiveSetSolver {
         iterate.known = true;
         self.amplitudes(task, iterate);
         Ok(report)
+    }
+
+    /// Active sets with the preconditioner of the settings, and where that takes more products than forming F is worth, or
+    /// stagnates, with the inverse of F.
+    fn active_sets_or_explicit(
+        &mut self,
+        task: Task<'_>,
+        iterate: &mut Iterate,
+        report: &mut StepReport,
+    ) -> Result<Status, ContactError> {
+        let costs = self.explicit_cost.filter(|_| iterate.effort < NO_HELP);
+        let cost = costs.map(|[forming, _]| forming.max(LITTLE));
+        let easy = costs.map_or(usize::MAX, |[_, step]| step.max(EASY));
+        let mut status = Status::IterationLimit;
+        if cost.is_none_or(|cost| iterate.effort < cost) {
+            self.use_explicit(false, task, report);
+            let most = cost.map_or(usize::MAX, |cost| cost - iterate.effort + easy);
+            status = self.active_sets(task, iterate, most, report)?;
+            let effort = report.counters.products.saturating_sub(easy);
+            iterate.effort = iterate.effort.saturating_add(effort);
+        }
+        let is_open = |status| matches!(status, Status::IterationLimit | Status::Stagnated);
+        let hard = |cost| iterate.effort >= cost || status == Status::Stagnated;
+        if let Some(cost) = cost.filter(|&cost| is_open(status) && hard(cost)) {
+            iterate.effort = cost;
+            if status == Status::Stagnated {
+                vector::copy(&self.start, &mut iterate.lambda);
+                iterate.known = false;
+            }
+            if self.use_explicit(true, task, report) {
+                status = self.active_sets(task, iterate, EXPLICIT_PRODUCTS, report)?;
+            }
+            if is_open(status) {
+                iterate.effort = NO_HELP;
+            }
+        }
+        Ok(status)
     }
 
     /// Takes the inverse of a formed F, or the preconditioner of the settings. Whether it is the one asked for.
