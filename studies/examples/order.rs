@@ -10,14 +10,10 @@ use clap::Parser;
 use signorini::contact::StepResult;
 use signorini::fem_mesh::fields::{energy_of_difference, strain_energy};
 use signorini::prelude::*;
-use signorini_studies::brick::{GAP, LENGTHS, by_centre, steel};
+use signorini_studies::brick::{GAP, LENGTHS, LIMITS, by_centre, steel};
 use signorini_studies::options::positive;
 use signorini_studies::run::pool;
 use signorini_studies::{Failure, aligned, exit};
-
-/// Normal and friction force at half load with a coefficient of 0.2 that meshes tend to, N: by Richardson's
-/// extrapolation of linear elements with 15, 30, 60 cells a metre, good to 2e-5 and 1e-3.
-pub const LIMITS: [f64; 2] = [2.6228e9, -8.38e7];
 
 /// Options of `order`.
 #[derive(Debug, Clone, PartialEq, Parser)]

@@ -21,6 +21,9 @@ pub const GAP: f64 = 0.1;
 pub const TOP: [f64; 3] = [0.0, 0.0, -30e8];
 /// Traction on the free end, Pa.
 pub const END: [f64; 3] = [9e8, 0.0, -15e8];
+/// Normal and friction force at half load with a coefficient of 0.2 that meshes tend to, N: by Richardson's
+/// extrapolation of linear elements with 15, 30, 60 cells a metre, good to 2e-5 and 1e-3.
+pub const LIMITS: [f64; 2] = [2.6228e9, -8.38e7];
 /// Time steps of the benchmark in one second.
 pub const STEPS: usize = 50;
 /// Cells along the edge of a subdomain in the benchmark: H/h.

@@ -7,6 +7,8 @@ mod accuracy;
 mod bodies;
 #[path = "../../examples/brick/main.rs"]
 mod brick;
+#[path = "../../examples/calculix.rs"]
+mod calculix;
 #[path = "../../examples/cases/main.rs"]
 mod cases;
 #[path = "../../examples/effects/main.rs"]

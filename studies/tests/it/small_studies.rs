@@ -1,13 +1,15 @@
 //! The smaller studies, each with a number it must find.
 
 use clap::Parser;
+use signorini_studies::brick::LIMITS;
 use signorini_studies::record::RunRecord;
 
 use crate::bodies::{self, BodiesOptions, COEFFICIENT};
+use crate::calculix::{self, CalculixOptions};
 use crate::frictionless::{self, FrictionlessOptions};
 use crate::order::{self, OrderOptions};
 use crate::parts::{self, PartRun, PartsOptions};
-use crate::{folder, options, read};
+use crate::{assert_close, folder, options, read};
 
 #[test]
 fn frictionless_touches_where_the_reference_does_with_fewer_products() {
@@ -208,4 +210,47 @@ fn a_bracket_of_wanted_sizes_moves_as_it_must() {
         .expect("mm");
     assert!((moved / 0.0662 - 1.0).abs() < 0.02, "{text}");
     assert!(runs[0].steps.iter().all(|step| step.converged()), "{text}");
+}
+
+/// Against the same brick by the builder: other loads (pressures), another floor.
+#[test]
+fn decks_beside_calculix_are_the_static_brick() {
+    let line = format!(
+        "calculix --linear 4 --quadratic 2 --ccx no-such-program --out {}",
+        folder("calculix").display()
+    );
+    let mut out = Vec::new();
+    let rows = calculix::execute(&options::<CalculixOptions>(&line), &mut out).expect("run");
+    assert!(
+        String::from_utf8(out)
+            .expect("text")
+            .contains("no-such-program is not found")
+    );
+    let exact = rows.iter().filter(|row| row.law.slopes == [None; 2]);
+    let found: Vec<[f64; 3]> = exact.map(|row| row.force.expect("converged")).collect();
+    let line = "order --mesh 1/4,2/2 --rounds 1";
+    let known = order::execute(&options::<OrderOptions>(line), &mut Vec::new()).expect("run");
+    assert_eq!((found.len(), known.len()), (2, 2));
+    for (found, known) in found.iter().zip(&known) {
+        let [normal, friction] = [0, 1].map(|k| LIMITS[k] * (1.0 + known.errors[k]));
+        assert_close(found[2], normal, 1e-6);
+        assert_close(found[0], friction, 1e-5);
+    }
+}
+
+/// The only other code that is run here; nothing is tested where it is not installed.
+#[test]
+fn calculix_finds_the_same_forces_for_the_same_law() {
+    let line = format!("calculix --linear 4 --quadratic 2 --out {}", folder("ccx").display());
+    let rows = calculix::execute(&options::<CalculixOptions>(&line), &mut Vec::new()).expect("run");
+    let find = |own: bool, name: &str| rows.iter().find(|r| r.own == own && r.law.name == name && r.order == 1);
+    for (own, other) in [
+        ("exact", "mortar"),
+        ("node to surface, recommended", "node to surface, recommended"),
+    ] {
+        let Some(other) = find(false, other) else { return };
+        let [own, other] = [find(true, own).and_then(|r| r.force), other.force].map(|force| force.expect("converged"));
+        assert_close(own[2], other[2], 1e-3);
+        assert_close(own[0], other[0], 0.03);
+    }
 }

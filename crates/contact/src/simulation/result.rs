@@ -3,6 +3,7 @@
 use crate::error::ContactError;
 use crate::estimate::{Caches, Solved};
 use crate::model::Model;
+use crate::plan::FrictionKind;
 use crate::report::{AccumulatedError, AlgebraicError, StepReport, Warning, require};
 use crate::result::{
     Certificate, ContactSummary, Lengths, PointState, Reactions, Recovered, SurfaceStress, coarse_mesh, is_strained,
@@ -14,6 +15,7 @@ use crate::step::StepProblem;
 use signorini_fem_mesh::recovery::{DiscretisationError, StrainRecovery};
 use signorini_fem_mesh::{Decomposition, Materials, Surface, fields};
 use std::borrow::Cow;
+use std::fmt;
 use std::sync::Arc;
 
 /// What a step ended with. It lives on by itself: the simulation can take further steps beside it.
@@ -249,6 +251,27 @@ impl StepResult {
     /// Sum of all loads at this step, N.
     pub fn load_resultant(&self) -> [f64; 3] {
         loads(&self.model, &self.problem, |_| [0.0; 3]).force
+    }
+}
+
+/// A line: the time, how many contact points touch and slide, and the certificate; of a step that did not converge its
+/// status, too.
+impl fmt::Display for StepResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        // seven digits
+        write!(f, "t = {} s: ", self.time() as f32)?;
+        if self.model.plan.effects.contact {
+            let ContactSummary { active, slip, .. } = self.summary;
+            write!(f, "{active} of {} points touch, ", self.points().len())?;
+            if self.model.plan.effects.friction != FrictionKind::None {
+                write!(f, "{slip} slide, ")?;
+            }
+        }
+        write!(f, "certificate {:.0e}", self.certificate().largest())?;
+        match self.failure() {
+            Some(failure) => write!(f, ", {}", failure.status),
+            None => Ok(()),
+        }
     }
 }
 
