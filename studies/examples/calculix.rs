@@ -156,20 +156,21 @@ pub fn execute(options: &CalculixOptions, out: &mut impl Write) -> Result<Vec<Ro
                 options.out.join(name).with_extension("inp")
             };
             let mut run = |own: bool, solve: &dyn Fn(&Path) -> Result<Option<[f64; 3]>, Failure>| {
-                let path = job(if own { "signorini" } else { "calculix" });
+                let path = job(code(own));
                 save(&path, &deck(&mesh, law, own)?)?;
                 let start = Instant::now();
                 let force = solve(&path)?;
-                let (seconds, nodes) = (start.elapsed().as_secs_f64(), mesh.points().len());
-                rows.push(Row {
+                let row = Row {
                     order,
                     cells,
-                    nodes,
+                    nodes: mesh.points().len(),
                     own,
                     law,
                     force,
-                    seconds,
-                });
+                    seconds: start.elapsed().as_secs_f64(),
+                };
+                eprintln!("{}: {:.2} s", path.display(), row.seconds);
+                rows.push(row);
                 Ok::<_, Failure>(())
             };
             let [own, linear, quadratic] = law.runs;
@@ -189,6 +190,10 @@ pub fn execute(options: &CalculixOptions, out: &mut impl Write) -> Result<Vec<Ro
         options.out.display()
     )?;
     Ok(rows)
+}
+
+fn code(own: bool) -> &'static str {
+    if own { "signorini" } else { "calculix" }
 }
 
 fn table(rows: &[Row]) -> String {
@@ -212,7 +217,7 @@ fn table(rows: &[Row]) -> String {
             row.order.to_string(),
             row.cells.to_string(),
             row.nodes.to_string(),
-            if row.own { "signorini" } else { "CalculiX" }.to_owned(),
+            code(row.own).to_owned(),
             row.law.name.to_owned(),
             error(2, normal),
             error(0, friction),
