@@ -1,29 +1,28 @@
-//! Quasistatic contact with Coulomb friction: scenes, plans, time steps, fixed-point loops and certificates.
+//! Quasistatic contact with Coulomb friction: scenes, plans, time steps and certificates.
 //!
-//! Elastic bodies, cut into subdomains or not, are loaded slowly and may touch a rigid foundation or each other. A
-//! [`Scene`] says what there is, a [`Simulation`] solves it step by step, and a [`StepResult`] holds what a step ended
-//! with. Only the effects that a scene has are set up: without friction there are no tangential rows, without history
-//! no traces.
+//! Elastic bodies are loaded slowly and may touch rigid obstacles or each other. A [`Scene`] describes the problem, a
+//! [`Simulation`] solves it step by step, and each step returns a [`StepResult`]. Only the effects that a scene has are
+//! set up: without friction, for instance, there are no tangential rows.
 //!
 //! | you want | you use |
 //! |---|---|
-//! | a body on a foundation | [`Scene`], [`Support`], [`Load`], [`Contact`] with a [`Gap`] and a [`Friction`] law |
+//! | a body on a rigid obstacle | [`Scene`], [`Support`], [`Load`], [`Contact`] with a [`Gap`] and a [`Friction`] law |
 //! | bodies that touch each other | [`Contact::between`] |
 //! | friction that depends on place or slip rate | [`Coefficient`], [`SlipBound`] |
-//! | time steps | [`Analysis`] with a [`DifferenceFormula`]; one state alone: [`Analysis::Static`] |
-//! | to know the cost before any work | [`Plan`], [`plan::Estimate`] |
-//! | the solver | [`Settings`]; [`Method::ActiveSet`] is the default, [`Method::paper`] the paper's |
+//! | time steps | [`Analysis`] with a [`DifferenceFormula`]; for one state [`Analysis::Static`] |
+//! | to know the cost in advance | [`Plan`], [`plan::Estimate`] |
+//! | another solver or tolerance | [`Settings`]; [`Method::ActiveSet`] is the default, [`Method::paper`] the paper's |
 //! | forces, states, stress, reactions | [`StepResult`], [`PointState`], [`result`] |
-//! | to know whether a result is right | [`Certificate`]; [`StepStatus`] says whether and why not |
-//! | to know how accurate it is, and to stop there | [`Accuracy`], [`report`], [`StepDoubling`] |
+//! | to know whether a result is right | [`Certificate`]; [`StepStatus`] tells why not |
+//! | to estimate or prescribe its accuracy | [`Accuracy`], [`report`], [`StepDoubling`] |
 //! | files for ParaView and a table | `ResultWriter` (feature `vtu`) |
-//! | to be told of absurd results | [`Warning`]: [`Plan::warnings`], [`RunReport::warnings`] |
-//! | to follow or end a run | [`Observer`], [`Flow`], [`Progress`] |
+//! | warnings of suspicious input or results | [`Warning`]: [`Plan::warnings`], [`RunReport::warnings`] |
+//! | to follow or stop a run | [`Observer`], [`Flow`], [`Progress`] |
 //! | to stop and continue | [`State`]; with feature `checkpoint` bytes, and `Simulation::run_or_resume` |
 //!
 //! # Example
 //!
-//! A beam is pressed on a floor and its end pulled along it; the coefficient falls with the slip rate.
+//! A beam is pressed on a floor and its end is pulled along it; the coefficient of friction falls with the slip rate.
 //!
 //! ```
 //! use signorini_contact::{
@@ -55,21 +54,21 @@
 //!
 //! # Conventions
 //!
-//! - SI units in names of this documentation; any consistent ones will do, and give the same digits.
-//! - Forces are those on the body. A normal force is at most zero: the foundation presses, it does not pull.
-//! - A step leads to a time `t_i`; steps count from 0, and before the first the body is at rest without forces.
-//! - Mesh nodes are `u32`, as in a mesh; a field has one `[f64; 3]` a node.
+//! - This documentation names SI units; any consistent units give the same digits.
+//! - Forces act on the body. Normal contact forces are at most zero: obstacles press, they do not pull.
+//! - A step leads to a time `t_i`. Steps are counted from 0; before the first one the body is at rest without forces.
+//! - Mesh nodes are `u32`; a vector field has one `[f64; 3]` per node.
 //!
 //! # What can go wrong
 //!
-//! [`Simulation::new`] refuses scenes that cannot be meant (materials without regions, contradictory supports, loads
-//! that nothing can hold) with a [`ContactError`] that names the place and a remedy. Not converging is no error: a step
-//! then ends with another [`StepStatus`] than `Converged`, its result holds the last iterate, and the certificate says
-//! how far it is. Later steps whose friction depends on its slip name it
-//! ([`unconverged_history`](report::StepReport::unconverged_history)). Who wants errors instead asks
+//! [`Simulation::new`] refuses scenes that make no sense (regions without material, contradictory supports, loads
+//! that nothing can hold) with a [`ContactError`] that names the place and a remedy. A step that does not converge is
+//! not an error: its [`StepStatus`] is not `Converged`, its result holds the last iterate, and the certificate tells
+//! how far that is off. Later steps whose friction depends on its slip name it
+//! ([`unconverged_history`](report::StepReport::unconverged_history)). To get an error instead, call
 //! [`RunReport::require_converged`] or [`StepResult::require_converged`].
 //!
-//! Work runs on the current [`rayon`] pool, and results have the same bits for any number of threads.
+//! Work runs on the current [`rayon`] pool; results are bit-identical for any number of threads.
 
 // the file of a room that has its name holds its main type
 #![allow(clippy::module_inception)]

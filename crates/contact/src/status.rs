@@ -10,13 +10,13 @@ pub enum StepStatus {
     Converged,
     /// A limit of iterations or products was reached first; the result is the last iterate.
     IterationLimit,
-    /// No further progress above the tolerance.
+    /// No further progress, above the tolerance.
     Stagnated,
-    /// The Coulomb map is not contractive here: successive approximations have no limit from this start. The result is
-    /// the last iterate, which solves the Tresca problem of the last slip bounds.
+    /// The Coulomb map is not contractive here: successive approximations do not converge from this start. The result
+    /// is the last iterate, which solves the Tresca problem of the last slip bounds.
     NotContractive,
-    /// With the normal forces of this step friction does not hold a body: slip bounds and normal forces that agree
-    /// leave no balance with the loads. The set-up judges only whether any normal forces could.
+    /// Under the normal forces of this step friction does not hold a body: with consistent slip bounds and normal
+    /// forces there is no balance with the loads. The set-up checks only whether some normal forces could hold it.
     NotHeld,
     /// The solver met its tolerance, and smaller ones, but the certificate is more than thirty times the tolerance
     /// (with an [`Accuracy`](crate::Accuracy) by estimates, above

@@ -1,9 +1,9 @@
 //! Input decks of CalculiX and Abaqus as meshes and whole contact scenes.
 //!
-//! [`Deck::read`] reads a deck of tetrahedra and what it says about materials, supports, loads, contact
-//! and steps. [`Deck::scene`] is the same scene as the one a program would build, bit for bit. **A keyword,
-//! parameter or entry that is not understood or cannot be had is an error with file, line and word**; nothing
-//! is skipped but requests for output and settings of other solvers, which [`Deck::ignored`] lists.
+//! [`Deck::read`] reads the tetrahedra, materials, supports, loads, contact and steps of a deck. [`Deck::scene`]
+//! returns the same scene, bit for bit, as a program would build. **A keyword, parameter or entry that is not
+//! understood or not supported is an error with file, line and word**; only requests for output and settings of
+//! other solvers are skipped, and [`Deck::ignored`] lists them.
 //!
 //! ```
 //! use signorini_contact::{Settings, Simulation};
@@ -85,39 +85,38 @@
 //! | `*TEMPERATURE` | `OP`, `AMPLITUDE` | at nodes; linear between the corners of a tetrahedron |
 //! | `*END STEP`, `*INCLUDE` | `INPUT` | paths are relative to the file that includes; loops are refused |
 //!
-//! Read and reported as ignored: `*NODE FILE, *EL FILE, *NODE PRINT, *EL PRINT, *CONTACT FILE, *CONTACT PRINT,
-//! *OUTPUT` and their like, `*RESTART, WRITE`, `*CONTROLS`, `SOLVER=`. Upper and lower case are the same,
-//! blanks do not count (but in quoted names), lines may end as on Windows, a keyword line that ends with a
-//! comma goes on in the next one, `**` begins a comment.
+//! Skipped and listed as ignored: `*NODE FILE, *EL FILE, *NODE PRINT, *EL PRINT, *CONTACT FILE, *CONTACT PRINT,
+//! *OUTPUT` and the like, `*RESTART, WRITE`, `*CONTROLS`, `SOLVER=`. Upper and lower case are equivalent,
+//! blanks are ignored (except in quoted names), lines may end as on Windows, a keyword line that ends with a
+//! comma continues in the next one, `**` begins a comment.
 //!
 //! # What steps mean
 //!
-//! - Increments are equal, of the size of the first one (or the largest, if that is smaller), and not adapted;
-//!   the scene has one result for each, with backward Euler between them. A deck with one increment is static.
-//! - Loads and supports of a step stay in the next ones. Without an amplitude a value is reached along a
-//!   straight line from that at the end of the step before; with `OP=NEW` what the step does not name goes back
-//!   to zero so. With an amplitude it is their product; when its step is over, it stays as it was, or goes on
-//!   if its amplitude is in total time.
-//! - A value that jumps when a step begins takes the first increment to get there.
-//! - `OP` counts on the first card of its kind in a step; `*DLOAD` and `*DSLOAD` are one kind. Forces at one
-//!   node in one step are added, pressures on one face given twice are refused.
-//! - What is held in the first step is held to the end: a step that releases a support, or adds one, is refused.
+//! - All increments have the size of the first one (or the largest allowed, if that is smaller) and are not adapted;
+//!   each is a step of backward Euler with its own result. A deck with one increment is static.
+//! - Loads and supports of a step remain in later steps. Without an amplitude a value changes linearly from its
+//!   value at the end of the previous step; with `OP=NEW` what the step does not name returns linearly to zero. With an
+//!   amplitude it is multiplied by that; after its step it stays constant, or continues if the amplitude is in total time.
+//! - A value that jumps at the beginning of a step reaches the new value in the first increment.
+//! - `OP` is read from the first card of its kind in a step; `*DLOAD` and `*DSLOAD` are one kind. Forces at one
+//!   node in one step are added; pressures given twice on one face are refused.
+//! - Supports stay the same in all steps: a step that releases or adds one is refused.
 //!
 //! # Rigid bodies
 //!
-//! A rigid surface, of facets or of solid elements in the `ELSET` of a `*RIGID BODY`, is the second one of a
-//! pair. It becomes a half-space ([`Contact::half_space`](signorini_contact::Contact::half_space)) if that says
-//! the same: if the surface is flat, if all nodes of the first surface lie over it, and if the body does not
-//! turn. Its reference node has to be held in all six components (rotations are 4 to 6, `ENCASTRE` is all, or
-//! those of the rotation node are held), and may be moved along a straight line. Anything else is refused with
-//! its reason. Elements of rigid bodies are no part of the mesh and need no section.
+//! A rigid surface, of facets or of solid elements in the `ELSET` of a `*RIGID BODY`, must be the second surface of a
+//! pair. It becomes a half-space ([`Contact::half_space`](signorini_contact::Contact::half_space)) if the two are
+//! equivalent: if the surface is flat, if all nodes of the first surface lie above it, and if the body does not
+//! turn. All six components of its reference node must be held (rotations are 4 to 6, `ENCASTRE` is all, or
+//! the rotation node is held); it may move along a straight line. Anything else is refused with
+//! a reason. Elements of rigid bodies are not part of the mesh and need no section.
 //!
-//! # What is a tag
+//! # Surfaces and tags
 //!
-//! A facet of a mesh has one tag, a face of a deck may be in several surfaces and under pressure besides.
-//! [`Deck::surface`] therefore gives a list of tags; it has one where nothing overlaps. With these and
-//! [`Deck::node_set`] a program adds to a scene what decks do not say, a cut into subdomains or a floor without
-//! elements for instance:
+//! A facet of a mesh has one tag, but a face of a deck may belong to several surfaces and loads.
+//! [`Deck::surface`] therefore returns a list of tags, with one entry if nothing overlaps. With these and
+//! [`Deck::node_set`] a program can add what decks do not express, for instance subdomains or a floor without
+//! elements:
 //!
 //! ```no_run
 //! use signorini_contact::{Contact, Friction};

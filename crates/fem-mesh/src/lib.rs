@@ -1,23 +1,23 @@
 //! Tetrahedral meshes and linear elasticity for domain decomposition with contact.
 //!
-//! This crate turns a body into numbers: a mesh of linear or quadratic tetrahedra with tagged boundary facets,
-//! stiffness matrices, consistent loads, subdomains, and the normals, tangents and areas that a
-//! contact surface needs. It knows no solver. It is the ground floor of
-//! [`signorini`](https://github.com/signorini-rs/signorini), and usable alone.
+//! This crate discretises a body: meshes of linear or quadratic tetrahedra with tagged boundary facets,
+//! stiffness matrices, consistent loads, subdomains, and the normals, tangents and areas of contact surfaces. It
+//! contains no solver. It is the lowest layer of [`signorini`](https://github.com/signorini-rs/signorini) and can be
+//! used on its own.
 //!
 //! | you want | you use |
 //! |---|---|
 //! | a mesh | [`Brick`], [`TetMesh::new`], [`gmsh::read_gmsh`](gmsh) (feature `gmsh`) |
-//! | another mesh of it | [`TetMesh::raise_order`], [`TetMesh::map_points`], [`TetMesh::append`], [`TetMesh::tag_boundary`] |
+//! | a modified mesh | [`TetMesh::raise_order`], [`TetMesh::map_points`], [`TetMesh::append`], [`TetMesh::tag_boundary`] |
 //! | a material | [`Hooke`] (general or isotropic), [`Materials`] by region |
 //! | a stiffness | [`assemble_stiffness`], [`Element`] |
-//! | a load | [`LoadDensity`] and [`assemble_load`]; [`Eigenstrain`] (temperature, tightening); [`History`] for its factor in time |
-//! | subdomains | [`Decomposition`]: boxes, given parts, or the whole; parts by [`decomposition`] |
+//! | a load | [`LoadDensity`] and [`assemble_load`]; [`Eigenstrain`] (temperature, pretension); [`History`] for its factor in time |
+//! | subdomains | [`Decomposition`]: boxes, given parts, or the whole mesh; [`decomposition`] makes parts |
 //! | a contact surface | [`Surface`] with a [`SurfaceFrame`] and an area at each node |
 //! | stresses, energy, errors | [`fields`] |
 //! | an estimate of the discretisation error | [`recovery::discretisation_error`], [`recovery::StrainRecovery`] |
-//! | two meshes compared | [`fields::energy_of_difference`] |
-//! | pictures | [`output`] (feature `vtu`): VTU files and PVD series for ParaView |
+//! | the difference of results on two meshes | [`fields::energy_of_difference`] |
+//! | files for pictures | [`output`] (feature `vtu`): VTU files and PVD series for ParaView |
 //!
 //! # Example
 //!
@@ -55,21 +55,20 @@
 //!   seen from outside.
 //! - Six-component strains and stresses are in the order xx, yy, zz, yz, xz, xy; strains carry
 //!   the engineering shear (twice the tensor component).
-//! - Units are free, but must be consistent. All tolerances are relative, so that a change of
-//!   units changes nothing but the numbers.
+//! - Any consistent units will do. All tolerances are relative, so that results do not depend on the choice.
 //!
 //! # What can go wrong
 //!
-//! Every type checks its input on construction and answers with a typed error that names the place and a remedy:
+//! Every type checks its input on construction and returns a typed error that names the place and a remedy:
 //! [`MeshError`], [`brick::BrickError`], [`HookeError`], [`MaterialError`], [`AssemblyError`], [`DecompositionError`],
-//! [`SurfaceError`], [`LoadError`], [`HistoryError`], [`FieldError`]. They print their sentence with `{:?}`, too,
-//! which is what a `main` that returns one shows. Later steps rely on those checks and do not repeat them. Accessors
-//! that take an index panic if it is out of range, like a slice.
+//! [`SurfaceError`], [`LoadError`], [`HistoryError`], [`FieldError`]. `{:?}` prints the same message as `{}`, so that a
+//! `main` that returns an error shows it. Later operations rely on these checks and do not repeat them. Accessors
+//! panic if an index is out of range, like slices.
 //!
 //! # Parallelism
 //!
 //! Loops over nodes, elements and subdomains run on the current [`rayon`] pool. Sums have a fixed
-//! order, so results are the same bit for bit for any number of threads.
+//! order, so results are bit-identical for any number of threads.
 //!
 //! # Features
 //!

@@ -1,8 +1,8 @@
 //! Several processes for the [`signorini`](https://github.com/signorini-rs/signorini) contact library, over an MPI
 //! installation (Open MPI, MPICH).
 //!
-//! The same program runs as every rank. It hands the communicator to the settings, and is otherwise one for one
-//! process:
+//! Every rank runs the same program. It passes the communicator to the settings and otherwise looks like a program for
+//! one process:
 //!
 //! ```no_run
 //! use signorini::prelude::*;
@@ -24,10 +24,10 @@
 //! }
 //! ```
 //!
-//! `mpirun -n 2 PROGRAM` then solves with two ranks: each holds the matrices of its subdomains and works with them, one
-//! gather a product brings the results together. Bits do not depend on the number of ranks, on processors of one kind.
+//! `mpirun -n 2 PROGRAM` then solves with two ranks: each holds and applies the matrices of its subdomains, and one
+//! gather per product combines the results. On processors of one kind, results are bit-identical for any number of ranks.
 //!
-//! This package stands outside the workspace, because it needs an MPI and libclang to build.
+//! This package is outside the workspace because it needs MPI and libclang to build.
 
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator as _, Destination as _, Equivalence as _, Source as _};

@@ -1,10 +1,10 @@
 //! Quadratic programming with bounds, discs and linear equalities.
 //!
-//! minimise `1/2 x·Ax - b·x` subject to `x` in a product of free components, intervals and discs, and `C x = e` with
+//! Minimise `1/2 x·Ax - b·x` subject to `x` in a product of free components, intervals and discs, and `C x = e` with
 //! orthonormal rows of `C`.
 //!
-//! `A` is known only through products. Dual problems of T-FETI with contact and friction have this form (normal
-//! forces are bounded, tangential ones lie in discs, equilibrium is the equality), but the crate knows no mechanics.
+//! `A` is only needed in products with vectors. The dual problems of T-FETI with contact and friction have this form
+//! (bounds for normal forces, discs for tangential forces, equilibrium as equality), but the crate contains no mechanics.
 //!
 //! # Methods
 //!
@@ -16,10 +16,10 @@
 //! | [`norm_estimate`] | none | Lanczos with a safe upper bound | 3, for the call |
 //! | [`kkt::check`] | set, equality | independent check, shares no code with the solvers | 2, for the call |
 //!
-//! Solvers take the start in `x` and leave the result there, report counts by cause, and put all vectors into a
-//! workspace that is created once: an iteration allocates nothing. Not reaching a tolerance is a [`Status`] in an
-//! `Ok` report; errors are wrong input or a breakdown ([`QpError`]). [`successive_approximations`] solves problems
-//! whose set follows the solution.
+//! Solvers take the start in `x` and return the result there. They report counts by cause, and keep all vectors in a
+//! workspace that is created once, so iterations allocate nothing. A tolerance that is not reached is a [`Status`] in an
+//! `Ok` report; errors are invalid input or a breakdown ([`QpError`]). [`successive_approximations`] solves problems
+//! whose set depends on the solution.
 //!
 //! # Parts of a problem
 //!
@@ -28,7 +28,7 @@
 //! - The equality: any [`Equality`], for [`active_set()`] any [`EqualityProjector`]; [`DenseEquality`] and
 //!   [`DenseProjector`] for small matrices.
 //! - The norm of `A` (of `P A P` with an equality, [`Projected`]): steps and penalties are relative to it.
-//! - [`laws`] has checkers for own implementations of the three traits.
+//! - [`laws`] has checkers for your own implementations of the three traits.
 //!
 //! # Example: a string over an obstacle
 //!
@@ -78,14 +78,14 @@
 //!
 //! # Settings
 //!
-//! Each setter of [`ActiveSetSettings`], [`KprgpSettings`] and [`SmalseSettings`] tells meaning, scale, range, default
-//! and the letter in the paper. All are dimensionless: a problem in other units takes the same
-//! steps.
+//! Each setter of [`ActiveSetSettings`], [`KprgpSettings`] and [`SmalseSettings`] documents meaning, scale, range,
+//! default and the symbol in the paper. All are dimensionless except [`SmalseSettings`]' `least`: a change of units does
+//! not change the iteration.
 //!
 //! # Determinism
 //!
-//! Every dot product and norm goes through [`vector`], whose sums have a fixed tree: the number of threads changes no
-//! bit of a result. Loops over the set are serial.
+//! Every dot product and norm goes through [`vector`], whose sums have a fixed tree, so results are bit-identical for
+//! any number of threads. Loops over the set are serial.
 
 pub mod active_set;
 pub mod check;

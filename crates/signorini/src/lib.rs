@@ -1,12 +1,12 @@
 //! Three-dimensional quasistatic contact with Coulomb friction by Total FETI: the facade.
 //!
-//! Everything is defined in the crates below and re-exported here.
+//! It re-exports the crates below; [`prelude`] has what most programs need.
 //!
 //! | module | package | holds |
 //! |---|---|---|
 //! | [`fem_mesh`] | `signorini-fem-mesh` | tetrahedra of order 1 and 2, elasticity, loads, decomposition, files |
 //! | [`qp`] | `signorini-qp` | quadratic programming: KPRGP, SMALSE, active sets |
-//! | [`tfeti`] | `signorini-tfeti` | gluing, kernels, inverses, dual operator, projectors |
+//! | [`tfeti`] | `signorini-tfeti` | gluing, kernels, generalised inverses, dual operator, projectors |
 //! | [`contact`] | `signorini-contact` | scenes, plans, time steps, Coulomb friction, certificates |
 //! | `deck` | `signorini-deck` (feature `deck`) | CalculiX and Abaqus decks as scenes |
 //!
@@ -14,7 +14,7 @@
 //! use signorini::prelude::*;
 //!
 //! # fn main() -> Result<(), Error> {
-//! // a steel brick, clamped at one end, pressed on a rough floor 0.1 m below and pulled along it
+//! // a steel brick, clamped at one end, is pressed on a rough floor 0.1 m below it and pulled along
 //! let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build()?;
 //! let steel = Hooke::isotropic(211.9e9, 0.277)?;
 //! let scene = Scene::new(mesh, Materials::uniform(steel))

@@ -1,14 +1,14 @@
-//! Total FETI for elasticity with contact: the body is torn into subdomains that all float, and everything that holds
-//! them (gluing, supports, contact, friction) becomes a row of one matrix `B` with a Lagrange multiplier.
+//! Total FETI for elasticity with contact: the body is torn into floating subdomains, and everything that holds them
+//! (gluing, supports, contact, friction) becomes a row of one matrix `B` with a Lagrange multiplier.
 //!
 //! For `K u = f + B^T lambda` and row offsets `c` this crate builds, once,
 //!
 //! | symbol | here | meaning |
 //! |---|---|---|
-//! | `B = (N, T, B_int, B_Dir)` | [`Gluing`] | rows and what they do; dependent ones are left out, or kept |
+//! | `B = (N, T, B_int, B_Dir)` | [`Gluing`] | rows and their meaning; dependent ones can be left out or kept |
 //! | `F = B K+ B^T` | [`DualOperator`] | a [`SymmetricOperator`](signorini_qp::SymmetricOperator) |
 //! | `G = R^T B^T`, `e = -R^T f` | [`Coarse`], [`LoadResponse::coarse`] | equilibrium: `G lambda = e` |
-//! | `P`, `Q`, `lambda_Im` | [`CoarseFactor`] | projectors and particular solution, with row weights if wanted |
+//! | `P`, `Q`, `lambda_Im` | [`CoarseFactor`] | projectors and particular solution, optionally with row weights |
 //! | `C`, `C C^T = I` | [`OrthonormalCoarse`] | rows that span those of `G`, an [`Equality`](signorini_qp::Equality) |
 //! | `alpha` | [`CoarseFactor::amplitudes`] | rigid amplitudes in `u = K+ (f + B^T lambda) + R alpha` (5.27) |
 //!
@@ -17,9 +17,9 @@
 //! are forces on the body; a normal multiplier is at most zero. The residual of the rows is `B u - c = F lambda - d +
 //! G^T alpha`.
 //!
-//! Everything is immutable once built and applied without allocation with work memory that the caller owns. Products
-//! run in parallel on the current rayon pool (best from one of its threads) and have the same bits for any number of
-//! threads.
+//! Everything is immutable once built; operators allocate nothing, their work memory belongs to the caller. Products
+//! run in parallel on the current rayon pool (best called from one of its threads) and are bit-identical for any number
+//! of threads.
 //! Functions that take an index or a vector panic, like slices, if it is out of range or too short.
 //!
 //! ```
@@ -48,7 +48,7 @@
 //!
 //! Several processes build one system together, each with the matrices of its subdomains: see [`Communicator`].
 //!
-//! Rooms, each of which uses those before it: `processes`, `linalg`, `subdomain`, `rows`, `dual`, `coarse`,
+//! Modules, each of which uses only those before it: `processes`, `linalg`, `subdomain`, `rows`, `dual`, `coarse`,
 //! `projector`, `system`, `preconditioner`.
 
 mod coarse;

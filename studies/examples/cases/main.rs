@@ -181,9 +181,9 @@ const HEADS: [[&str; 2]; 10] = [
     ["", "found"],
     ["", "target"],
     ["", "error"],
-    ["", "asked"],
+    ["", "limit"],
     ["tetra-", "hedra"],
-    ["products,", "dearest step"],
+    ["products,", "worst step"],
     ["", "seconds"],
     ["certi-", "ficate"],
 ];
@@ -220,14 +220,13 @@ fn page(findings: &[Finding], options: &CasesOptions) -> String {
         }
     );
     let mut text = format!(
-        "# Cases with known answers\n\nBodies meshed apart, touching, sliding or tied, against closed forms and \
-         published numbers. Sources: [cases](../../studies/examples/cases), each with its formulas. Made by\n\n```sh\n{command}\n```\n\n\
-         The error is relative to the target, or the value itself where the target is 0. Meshes of both sides \
-         do not match unless it is said.\n\n"
+        "# Cases with known answers\n\nBodies in contact or tied, mostly with non-matching meshes, compared with closed-form solutions and \
+         published numbers. The sources, with formulas, are in [cases](../../studies/examples/cases). This command wrote the page:\n\n```sh\n{command}\n```\n\n\
+         The error is relative to the target, or absolute if the target is 0; *limit* is the largest error that passes.\n\n"
     );
     let heads = HEADS.map(|[a, b]| format!("{a} {b}").trim().replace("- ", ""));
-    text += "In the rows *pulled* of cubes the library cuts; pairs are compared with matching meshes of the finer \
-             side.\n\n";
+    text += "In the rows *pulled* the library partitions the cubes. *Pairs over matching meshes* compares their products with \
+             those of matching meshes of the finer side.\n\n";
     text += &format!("| {} |\n|{}\n", heads.join(" | "), "---|".repeat(heads.len()));
     for finding in findings {
         text += &format!("| {} |\n", row(finding).join(" | "));
@@ -244,34 +243,37 @@ const OTHERS: [(&str, &str); 11] = [
     ),
     (
         "patch test",
-        "Code_Aster exact to what it prints; Tribol 1e-10 in pressure, 1e-7 in displacement",
+        "Code_Aster: exact to the printed digits; Tribol: 1e-10 in pressure, 1e-7 in displacement",
     ),
     (
         "pulled",
-        "no T-FETI code has friction on such meshes; ESPRESO, without friction, one pair: 230 to 360 iterations on a \
-         small Hertz case",
+        "no T-FETI code has friction on such meshes; ESPRESO, without friction, one contact pair: 230 to 360 iterations \
+         on a small Hertz problem",
     ),
-    ("press fit", "one published CalculiX model is 2.3 times off, silently"),
-    ("wedge", "FrontISTR 5e-4"),
-    ("orthotropic", "none known to publish it"),
-    ("crack", "GEOS: curves in its documentation"),
+    (
+        "press fit",
+        "a published CalculiX model is wrong by a factor of 2.3, without a warning",
+    ),
+    ("wedge", "FrontISTR: 5e-4"),
+    ("orthotropic", "no published result known"),
+    ("crack", "GEOS: only curves in its documentation"),
     (
         "punch",
-        "Code_Aster, linear elements: 1.7 %, its quadratic ones are the target",
+        "Code_Aster, linear elements: 1.7 %; its quadratic elements give the target",
     ),
     (
         "two spheres",
-        "CalculiX: mortar contact of quadratic elements did not converge on the brick; no figure for spheres",
+        "CalculiX: mortar contact with quadratic elements did not converge on the brick; no figure for spheres",
     ),
-    ("Cattaneo", "plots only"),
-    ("rigid sphere", "MoFEM 2e-3 at Poisson's ratio 0.3"),
+    ("Cattaneo", "only plots"),
+    ("rigid sphere", "MoFEM: 2e-3 at Poisson's ratio 0.3"),
 ];
 
 /// The largest error here beside what others get.
 fn others(findings: &[Finding]) -> String {
     let mut text =
-        "\n## What other codes get\n\nAs they publish it or assert it in their tests; CalculiX 2.20 as it was run \
-                    for this project.\n\n| case | largest error here | the best other |\n|---|---|---|\n"
+        "\n## Results of other codes\n\nAs published, or as asserted in their tests; CalculiX 2.20 was run for this project.\n\n\
+         | case | largest error here | best other code |\n|---|---|---|\n"
             .to_owned();
     for (start, other) in OTHERS {
         let errors = |f: &&Finding| f.asked > 0.0 && !f.quantity.starts_with("products");

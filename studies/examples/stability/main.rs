@@ -120,7 +120,7 @@ pub fn execute(options: &StabilityOptions, out: &mut dyn Write) -> Result<usize,
     });
     printed?;
     let failed: Vec<&Line<'_>> = lines.iter().filter(|l| l.complaint.is_some()).collect();
-    writeln!(out, "{} cases, {} not as they should be", lines.len(), failed.len())?;
+    writeln!(out, "{} cases, {} failed", lines.len(), failed.len())?;
     for line in &failed {
         writeln!(out, "{}", plain(line))?;
     }

@@ -46,7 +46,7 @@ pub(crate) fn outcome(m: &Measured) -> String {
             1 => "certified, 1 step by the fall-back".to_owned(),
             n => format!("certified, {n} steps by the fall-back"),
         },
-        Ended::Solved(status, step) => format!("says {status:?} at step {step}"),
+        Ended::Solved(status, step) => format!("status {status:?} at step {step}"),
         Ended::Refused(text) => format!("refused: {}", text.split(';').next().unwrap_or("")),
         Ended::Panicked(text) => format!("PANIC {text}"),
     }
@@ -95,7 +95,7 @@ pub(crate) fn document(lines: &[Line<'_>], command: &str) -> Result<String, Fail
 
 fn results(lines: &[Line<'_>]) -> String {
     let failed = lines.iter().filter(|l| l.complaint.is_some()).count();
-    let mut out = format!("{} cases, {failed} not as they should be.\n", lines.len());
+    let mut out = format!("{} cases, {failed} failed.\n", lines.len());
     let mut group = "";
     for line in lines {
         let (case, m) = (line.case, &line.measured);
@@ -103,7 +103,7 @@ fn results(lines: &[Line<'_>]) -> String {
             group = case.group;
             let _ = writeln!(
                 out,
-                "\n### {group}\n\n| case | what is hard | what the library did | certificate | balance | n_s | rows | \
+                "\n### {group}\n\n| case | difficulty | outcome | certificate | balance | n_s | rows | \
                  steps | products | s |\n|---|---|---|---|---|---|---|---|---|---|"
             );
         }

@@ -1,7 +1,7 @@
 //! The algebraic error of a step by the duality gap: how far the solver stopped from the discrete solution.
 //!
-//! `admissible` makes a continuous displacement that obeys supports and obstacles from the torn one, node by node;
-//! `duality_gap` is the difference of its energy and the dual one.
+//! `admissible` constructs a continuous displacement that satisfies supports and gaps from the torn one, node by
+//! node; `duality_gap` is the difference between its energy and the dual one.
 //!
 //! Uses: `result`, `step`, `model`, `report`. In: a solved step. Out: an
 //! [`AlgebraicError`](crate::report::AlgebraicError).

@@ -12,17 +12,16 @@ use std::path::PathBuf;
 /// | file | holds |
 /// |---|---|
 /// | `NAME.pvd` | the bodies: displacement and von Mises stress; of several processes each writes its subdomains |
-/// | `NAME_contact.pvd` | the contact surfaces, a piece each: displacement, contact pressure, friction stress, gap, slip, state |
-/// | `NAME.csv` | a row a step: time, products, status, certificate, numbers of points, contact forces, reactions, probes |
+/// | `NAME_contact.pvd` | the contact surfaces, each a piece: displacement, contact pressure, friction stress, gap, slip, state |
+/// | `NAME.csv` | one row per step: time, products, status, certificate, numbers of points, contact forces, reactions, probes |
 ///
-/// More or less is chosen with [`with_field`](Self::with_field) and [`with_fields`](Self::with_fields). The series
+/// [`with_field`](Self::with_field) and [`with_fields`](Self::with_fields) choose other fields. The series
 /// begin at time 0, undeformed. All files are complete at any moment. If writing fails, the run ends with the error
-/// after the step; what was there stays. The first two lines of the table begin with `#`; columns are `contact_0_fx` to
+/// after the step; existing files stay. The first two lines of the table begin with `#`; columns are `contact_0_fx` to
 /// `contact_0_mz` for each contact surface and support (force on the body and its moment about the origin;
 /// [`Reactions::contacts`](crate::result::Reactions::contacts)), then `node_7_ux` for probes.
 ///
-/// A run that is resumed goes on with its files: of a first step that is not the first of the scene, files and rows of
-/// earlier steps are kept, later ones replaced.
+/// A resumed run continues its files: files and rows of steps before its first one are kept, later ones are replaced.
 #[derive(Debug)]
 #[must_use]
 pub struct ResultWriter {
@@ -63,7 +62,7 @@ impl ResultWriter {
         }
     }
 
-    /// Writes this field, too.
+    /// Adds a field.
     pub fn with_field(mut self, field: ResultField) -> Self {
         if !self.fields.contains(&field) {
             self.fields.push(field);
@@ -85,13 +84,13 @@ impl ResultWriter {
         self
     }
 
-    /// Series with every `steps`-th step and the last one only; 0 for none. The table has a row for each step.
+    /// Writes only every `steps`-th step and the last one to the series; 0 for none. The table has a row for each step.
     pub fn with_every(mut self, steps: usize) -> Self {
         self.every = steps;
         self
     }
 
-    /// Another name for the series of the contact surfaces.
+    /// Sets another name for the series of the contact surfaces.
     pub fn with_contact_name(mut self, name: impl Into<String>) -> Self {
         self.contact_name = name.into();
         self
@@ -102,14 +101,14 @@ impl ResultWriter {
         self.folder.join(format!("{}.pvd", self.name))
     }
 
-    /// Writes a step, for those who take the steps themselves; as an observer it does so unasked. A step that could not
+    /// Writes a step; call it in a loop of your own (as an observer, the writer does so itself). A step that could not
     /// be written can be written again. Of several processes each writes the tetrahedra of its subdomains, rank 0 the
-    /// rest, so that all need this writer.
+    /// rest, so every rank needs this writer.
     ///
     /// # Errors
     /// [`ContactError::Output`] if a name cannot name a file, a file cannot be written or continued, or a field is not
-    /// finite; [`ContactError::Probe`] if a probe is no node; [`ContactError::ResultTable`] if the table of a run that
-    /// is resumed is another one.
+    /// finite; [`ContactError::Probe`] if a probe is not a node; [`ContactError::ResultTable`] if a resumed run finds
+    /// a different table.
     pub fn write(&mut self, result: &StepResult) -> Result<(), ContactError> {
         let files = self.files.take().filter(|files| files.step < result.step());
         let mut files = match files {

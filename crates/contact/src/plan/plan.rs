@@ -30,8 +30,8 @@ pub struct Plan {
     /// Smallest and largest gap of the contact points at the start, m; a negative one is inside the obstacle or the
     /// partner. `None` without points.
     pub gaps: Option<[f64; 2]>,
-    /// Contacts whose meshes do not match, and whether the side that the scene names second has their points: the one
-    /// with the larger facets has.
+    /// Contacts with non-matching meshes, and whether the side named second has the points (the side with the larger
+    /// facets has them).
     pub apart: Vec<(usize, bool)>,
     /// Rows of `N`: contact points that can touch, nodes in edges and corners once for each normal (nodes whose normal
     /// displacement is fixed by supports are left out).
@@ -57,18 +57,19 @@ pub struct Plan {
     pub method: MethodKind,
     /// Bytes of the vectors that stay allocated (multipliers, displacements, loads).
     pub vector_bytes: u64,
-    /// Error of the mesh to expect, relative in the energy norm, from its cells over the thickness of the bodies: within a
-    /// factor of two and a half on the studies' parts, less where cells are finer at edges. After a run
-    /// [`discretisation_error`](crate::StepResult::discretisation_error) measures it. `None` where nothing is known.
+    /// Expected relative error of the mesh in the energy norm, from the number of cells over the thickness of the
+    /// bodies: accurate to a factor of two and a half on the studies' parts; too large if cells are finer at edges.
+    /// After a run [`discretisation_error`](crate::StepResult::discretisation_error) estimates it. `None` if nothing is
+    /// known.
     pub mesh_error: Option<f64>,
-    /// Memory, and likely products and times.
+    /// Memory, and expected products and times.
     pub estimate: Estimate,
     warnings: Vec<Warning>,
 }
 
 impl Plan {
-    /// Judges a scene. It refuses what [`Simulation::new`](crate::Simulation::new) would refuse, but for loads that
-    /// nothing can hold: that takes a set-up.
+    /// Plans a scene. It refuses what [`Simulation::new`](crate::Simulation::new) would refuse, except loads that
+    /// nothing can hold, since that check needs the set-up.
     ///
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.
@@ -84,7 +85,7 @@ impl Plan {
         self
     }
 
-    /// What in the scene is allowed but hardly meant, each kind once. [`Display`](std::fmt::Display) prints them, too.
+    /// Warnings about the scene, each kind once. [`Display`](std::fmt::Display) prints them, too.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }

@@ -1,10 +1,10 @@
 //! What a step cost.
 
-/// What one step cost.
+/// Cost of one step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Counters {
-    /// Products with F, recoveries included.
+    /// Products with F, including recoveries of the displacement.
     pub products: usize,
     /// Products with F spent on estimating norms and on forming it, counted apart.
     pub setup_products: usize,
@@ -16,13 +16,13 @@ pub struct Counters {
     pub coarse_factorisations: usize,
     /// Quadratic programs (Tresca problems) solved by SMALSE.
     pub quadratic_programs: usize,
-    /// Active sets that were solved on.
+    /// Active sets on which a linear problem was solved.
     pub active_sets: usize,
-    /// Times the slip bounds were rewritten.
+    /// Updates of the slip bounds.
     pub slip_bound_updates: usize,
-    /// Times slip rates were computed.
+    /// Computations of slip rates.
     pub rate_updates: usize,
-    /// Entries into an inequality solver.
+    /// Calls of a solver for inequalities.
     pub inequality_solves: usize,
     /// Increments that failed and were halved, see
     /// [`with_step_halving`](crate::Settings::with_step_halving).

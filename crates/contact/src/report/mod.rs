@@ -1,4 +1,4 @@
-//! What is said of a step and of a run: how it ended, what it cost, how accurate it is.
+//! Reports of a step and of a run: how it ended, what it cost, how accurate it is.
 //!
 //! Plain data, filled by solvers and estimates and read by the user.
 //!

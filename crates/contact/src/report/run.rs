@@ -7,28 +7,28 @@ use crate::error::ContactError;
 use crate::names::Names;
 use crate::status::StepFailure;
 
-/// What [`Simulation::run`](crate::Simulation::run) did. Not converging is no error of a run: who needs every step to
-/// converge asks [`require_converged`](Self::require_converged).
+/// The report of [`Simulation::run`](crate::Simulation::run). Steps that do not converge are no error of a run; to
+/// require convergence, call [`require_converged`](Self::require_converged).
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 #[must_use = "steps may not have converged: see `failures`, or ask `require_converged`"]
 pub struct RunReport {
     /// Steps solved.
     pub steps: usize,
-    /// Whether the observer ended it before the last step.
+    /// Whether the observer stopped it before the last step.
     pub stopped: bool,
     /// Steps that did not converge, in order.
     pub failures: Vec<StepFailure>,
     /// The first step before this run that did not converge and on whose displacement its steps depend, see
     /// [`State::unconverged_history`](crate::State::unconverged_history).
     pub unconverged_history: Option<usize>,
-    /// What the run cost.
+    /// Cost of the run.
     pub counters: Counters,
     /// The largest certificate of all its steps.
     pub largest_certificate: f64,
     /// Estimated error of the mesh at the last step, relative in the energy norm
-    /// ([`DiscretisationError::relative`](signorini_fem_mesh::recovery::DiscretisationError::relative)). `None` where
-    /// no step was solved, and where bodies are at rest or move as rigid ones.
+    /// ([`DiscretisationError::relative`](signorini_fem_mesh::recovery::DiscretisationError::relative)). `None` if
+    /// no step was solved, or if bodies are at rest or move rigidly.
     pub mesh_error: Option<f64>,
     pub(crate) warnings: Vec<Warning>,
     pub(crate) names: Names,
@@ -45,18 +45,18 @@ impl RunReport {
         self.failures.extend(failure);
     }
 
-    /// What an engineer should look at, in scene and results: each kind once, where it was first met.
+    /// Warnings about scene and results, each kind once, where it first occurred.
     pub fn warnings(&self) -> &[Warning] {
         &self.warnings
     }
 
-    /// Whether all steps converged, and those before on whose displacement they depend.
+    /// Whether all steps converged, and the earlier ones on whose displacement they depend.
     #[must_use]
     pub fn converged(&self) -> bool {
         self.failures.is_empty() && self.unconverged_history.is_none()
     }
 
-    /// For those who want every step to converge: an error unless [all did](Self::converged).
+    /// An error unless [all steps converged](Self::converged).
     ///
     /// # Errors
     /// [`ContactError::UnconvergedHistory`] and [`ContactError::NotConverged`]: step, status and remedy of the first

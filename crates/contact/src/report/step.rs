@@ -14,23 +14,23 @@ pub struct StepReport {
     /// Outer iterations under the method's own name: auxiliary problems of the fixed-point loop, outer steps of the
     /// one inexact loop, active sets of the active-set method; steps of conjugate gradients without contact.
     pub iterations: usize,
-    /// What it cost.
+    /// Its cost.
     pub counters: Counters,
     /// Steps of KPRGP by kind, if it ran.
     pub steps: Steps,
     /// The fixed-point loop, if there was one.
     pub fixed_point: Option<FixedPointReport>,
-    /// Whether the active-set method gave up and SMALSE finished the step.
+    /// Whether the active-set method failed and SMALSE finished the step.
     pub fallback: bool,
-    /// Products with F that SMALSE took for that, contained in the counters.
+    /// Products with F that SMALSE took for that, included in the counters.
     pub fallback_products: usize,
-    /// Which body slides away, where friction [does not hold](StepStatus::NotHeld) it.
+    /// Which body slides away, if friction [does not hold](StepStatus::NotHeld) it.
     pub slide: Option<Slide>,
     /// Estimates of the step's errors; only with an [`Accuracy`](crate::Accuracy) that needs them.
     pub accuracy: Option<AccuracyReport>,
-    /// The first earlier step that did not converge and on whose displacement this one depends, from 0: its slip is
-    /// part of the history of friction, which no certificate of this step can judge. Always `None` in scenes without
-    /// history (no friction, or static). The status of this step does not depend on it.
+    /// The first earlier step, from 0, that did not converge and on whose displacement this one depends: its slip is
+    /// part of the history of friction, which the certificate of this step cannot judge. Always `None` in scenes
+    /// without history (no friction, or static). The status of this step does not depend on it.
     pub unconverged_history: Option<usize>,
 }
 

@@ -1,29 +1,29 @@
-//! What is allowed but hardly meant: results and scenes that an engineer should look at.
+//! Warnings: scenes and results that are allowed but suspicious.
 
 use crate::names::Names;
 use crate::part::Part;
 use std::path::PathBuf;
 
 signorini_fem_mesh::errors! {
-    /// Something that is allowed and computed, and that is rather a mistake or outside what small strain can tell. Its
-    /// sentence has the figure, the place and the remedy.
+    /// Something that is allowed and computed, but is likely a mistake or beyond small-strain theory. The message has
+    /// the figure, the place and the remedy.
     ///
     /// [`Plan::warnings`](crate::Plan::warnings) has those of the scene alone;
-    /// [`RunReport::warnings`](crate::RunReport::warnings) has them and those of the results, each kind once, where it
-    /// was first met. An [`Observer`](crate::Observer::warning) is told as soon as they are known. Where a scene
-    /// [has names](crate::Scene::with_names) what is said of its [parts](Self::parts) is `Named`, over the
+    /// [`RunReport::warnings`](crate::RunReport::warnings) adds those of the results, each kind once, where it first
+    /// occurred. An [`Observer`](crate::Observer::warning) receives them as soon as they are known. If the scene
+    /// [has names](crate::Scene::with_names), warnings about its [parts](Self::parts) are `Named` and contain the
     /// [plain](Self::plain) one.
     ///
     /// The thresholds are a tenth of the body for displacements, 5 % for strains, an edge of a facet for slips, 0.1 for
     /// the turn of normals, the body for gaps, 3 for coefficients, 0.45 for Poisson's ratios of linear tetrahedra and
-    /// 10 % for the error of the mesh. A body is as long as the longest side of the box around it. Strain is judged
-    /// tetrahedron by tetrahedron, by the root of the sum of the squares of all nine: at clamped edges that of linear
-    /// theory grows without bound as the mesh is refined.
+    /// 10 % for the error of the mesh. A body is as long as the longest side of the box around it. Strain is measured
+    /// per tetrahedron by the Frobenius norm; at clamped edges the strain of linear theory grows without
+    /// bound as the mesh is refined.
     ///
-    /// Fields: `step` from 0; `node`, `tet`, `contact` and `region` are numbers in mesh and scene; `place` and lengths in
-    /// m (of a tetrahedron its centroid), `turn` in degrees, other figures relative. `extent` is the length of the body,
-    /// `edge` the longest one of the facets at the node, `present` what the mesh has; `path` is the damaged checkpoint
-    /// under its new name, `taken` the one in its place.
+    /// Fields: `step` from 0; `node`, `tet`, `contact` and `region` are numbers in mesh and scene; `place` and lengths
+    /// in m (of a tetrahedron its centroid), `turn` in degrees, other figures relative. `extent` is the length of the
+    /// body, `edge` the longest one of the facets at the node, `present` what the mesh has; `path` is the damaged
+    /// checkpoint under its new name, `taken` the one in its place.
     #[derive(Clone, PartialEq)]
     Warning {
         LargeDisplacement { step: usize, node: u32, place: [f64; 3], displacement: f64, extent: f64 } =

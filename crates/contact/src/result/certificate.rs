@@ -1,15 +1,15 @@
 //! The certificate of a step: how far the recovered displacement and the multipliers are from all conditions,
 //! in physical units. It uses no residual of any solver.
 //!
-//! The conditions, their violations and what each is relative to stand in docs/theory.md, section 10. Each body is measured
-//! by its own loads, forces and displacements; what is reported is the worst of all.
+//! docs/theory.md, section 10, defines the conditions, their violations and scales. Each body is measured by its own
+//! loads, forces and displacements; the worst value is reported.
 
 /// A violation and the quantity it is relative to, in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Violation {
     /// How large the violation is.
     pub value: f64,
-    /// What it is to be compared with.
+    /// The scale to compare it with.
     pub reference: f64,
 }
 
@@ -53,12 +53,12 @@ pub struct Certificate {
 }
 
 impl Certificate {
-    /// The largest relative violation; not a number if one is none.
+    /// The largest relative violation; NaN if any is NaN.
     pub fn largest(&self) -> f64 {
         self.worst().1.relative()
     }
 
-    /// The condition that is violated most, relatively; one whose violation is not a number before all others.
+    /// The condition with the largest relative violation; NaN counts as largest.
     pub fn worst(&self) -> (&'static str, Violation) {
         worst(self.parts())
     }

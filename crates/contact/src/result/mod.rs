@@ -1,7 +1,7 @@
 //! What a step ended with: states of contact points (`points`), sums over them (`summary`), contact stresses
 //! (`surface_stress`), `reactions`, and the `certificate` of all conditions, measured by `certify`.
 //!
-//! All of it follows from the recovered displacement and the multipliers; nothing is taken from a solver's word.
+//! All of it follows from the recovered displacement and the multipliers; nothing relies on a solver's own report.
 //!
 //! Uses: `step`, `model`, `discrete`, `state`, `scene`, `report`.
 //! In: multipliers, displacement, residual. Out: plain data for the user.

@@ -9,9 +9,9 @@ use signorini_tfeti::TangentialRows;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum ContactState {
-    /// No normal force. Given friction (Tresca) knows no pressure and acts even so.
+    /// No normal force. Tresca friction does not depend on pressure and acts even so.
     Open,
-    /// Pressed and without tangential difference, or without friction law.
+    /// Pressed, and without tangential difference or without a friction law.
     Stick,
     /// Pressed and sliding.
     Slip,
@@ -21,30 +21,30 @@ pub enum ContactState {
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub struct PointState {
-    /// Mesh node. Those in edges and corners of obstacles have several states, one for each normal.
+    /// Mesh node. At edges and corners of obstacles a node has several states, one for each normal.
     pub node: u32,
-    /// Its partner on another body, on which the opposite forces act; `None` for a rigid obstacle. Where meshes do not
-    /// match it is the node with the largest weight of several
+    /// Its partner on another body, on which the opposite forces act; `None` for a rigid obstacle. If meshes do not
+    /// match, it is the node with the largest weight of several
     /// ([`ConstrainedPoint::nodes`](crate::ConstrainedPoint::nodes)).
     pub partner: Option<u32>,
     /// Position of the contact surface in [`Scene::contacts`](crate::Scene::contacts).
     pub surface: usize,
-    /// What it does.
+    /// Open, sticking or sliding.
     pub state: ContactState,
     /// Unit normal out of the body, into the obstacle or the partner: the direction in which gap and normal force are
     /// measured.
     pub normal: [f64; 3],
-    /// Normal force on the body `lambda_nu`, N, not positive.
+    /// Normal force `lambda_nu` on the body, N, not positive.
     pub normal_force: f64,
-    /// Friction force on the body, N, in space.
+    /// Friction force on the body, N, as a vector in space.
     pub friction_force: [f64; 3],
-    /// Slip bound, N; 0 without friction. That along the axis where friction [differs by
-    /// direction](crate::Contact::with_friction_axis).
+    /// Slip bound, N; 0 without friction. For [orthotropic friction](crate::Contact::with_friction_axis) the bound
+    /// along the axis.
     pub slip_bound: f64,
-    /// Distance to the obstacle or the partner, m; negative by what a
-    /// [compliant](crate::Contact::with_normal_compliance) contact gives way.
+    /// Distance to the obstacle or the partner, m; negative for a [compliant](crate::Contact::with_normal_compliance)
+    /// contact under pressure.
     pub gap: f64,
-    /// Tangential displacement, m, in space; relative to the partner, if there is one.
+    /// Tangential displacement, m, as a vector in space; relative to the partner, if there is one.
     pub tangential_displacement: [f64; 3],
     /// Tangential difference `alpha u + beta u' + gamma u''` of (2.9), m, in space; the displacement itself in a static
     /// scene. Without [elastic slip](crate::Contact::with_tangential_compliance).

@@ -22,7 +22,7 @@ use std::collections::BTreeMap;
 pub struct Resultant {
     /// Sum of the forces, N.
     pub force: [f64; 3],
-    /// Sum of their moments about the point, N m, with the places before the deformation.
+    /// Sum of their moments about the point, N m, in the undeformed state.
     pub moment: [f64; 3],
 }
 
@@ -52,13 +52,13 @@ pub struct NodalForce {
     pub force: [f64; 3],
 }
 
-/// What one support does to the body.
+/// The reaction of one support on the body.
 #[derive(Debug, Clone, PartialEq, Default)]
 #[non_exhaustive]
 pub struct SupportReaction {
     /// Force on the body and its moment.
     pub resultant: Resultant,
-    /// The same node by node, without nodes at which earlier supports fix all its directions.
+    /// The same node by node, without nodes at which earlier supports already fix all its directions.
     pub nodes: Vec<NodalForce>,
 }
 
@@ -71,38 +71,38 @@ impl SupportReaction {
 
 /// Forces on the body at the end of a step, and their moments about a point.
 ///
-/// Each force is counted once: at a node that several supports hold, a direction that an earlier support fixes belongs
-/// to that one, and a later support has what it adds at right angles to it. At a contact node whose normal a support
-/// fixes, the support's reaction contains the force of the obstacle.
+/// Each force is counted once: if several supports fix a direction at a node, its reaction belongs to the first, and
+/// later ones have only what they add at right angles. If a support fixes the normal of a contact node, its reaction
+/// includes the force of the obstacle.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Reactions {
     /// The point of all moments, m.
     pub point: [f64; 3],
-    /// What each support does, in the order of the scene.
+    /// Reactions of the supports, in the order of the scene.
     pub supports: Vec<SupportReaction>,
-    /// What each [elastic foundation](crate::Spring) does, in the order of the scene.
+    /// Reactions of the [elastic foundations](crate::Spring), in the order of the scene.
     pub springs: Vec<SupportReaction>,
-    /// What obstacles do: contact pressure and friction. Forces between bodies cancel; so do their moments, but that of
-    /// friction across a gap that was closed between matching or plane sides, for places are those before the deformation.
+    /// Contact pressure and friction of obstacles. Forces between bodies cancel; so do their moments, except that of
+    /// friction across an initial gap between matching or plane sides, because moments use the undeformed state.
     pub contact: Resultant,
-    /// The same for each contact surface, in the order of the scene. Between bodies it is what the partner does to the
-    /// body with the first tag ([`Contact::between`](crate::Contact::between),
-    /// [`Contact::tied`](crate::Contact::tied)), which has the opposite on the partner.
+    /// The same for each contact surface, in the order of the scene. Between bodies it is the action of the partner on
+    /// the body with the first tag ([`Contact::between`](crate::Contact::between),
+    /// [`Contact::tied`](crate::Contact::tied)), with the opposite on the partner.
     pub contacts: Vec<Resultant>,
-    /// What the loads do.
+    /// The loads.
     pub loads: Resultant,
 }
 
 impl Reactions {
-    /// What all supports do together.
+    /// All supports together.
     pub fn of_supports(&self) -> Resultant {
         let mut sum = Resultant::default();
         self.supports.iter().for_each(|s| sum += s.resultant);
         sum
     }
 
-    /// Supports, springs, contact and loads together: zero in equilibrium.
+    /// Supports, springs, contact and loads together; zero in equilibrium.
     pub fn imbalance(&self) -> Resultant {
         let mut sum = self.of_supports();
         self.springs.iter().for_each(|s| sum += s.resultant);

@@ -6,8 +6,8 @@ use crate::error::ContactError;
 use crate::model::Model;
 use crate::step::{StepProblem, entry_or_zero};
 
-/// Sums over the contact surface at the end of a problem. Between bodies, forces are those on the body that was named
-/// first ([`Contact::between`](crate::Contact::between)).
+/// Sums over all contact points at the end of a step. Between bodies, forces act on the body named first
+/// ([`Contact::between`](crate::Contact::between)).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct ContactSummary {
@@ -38,9 +38,9 @@ pub struct ContactSummary {
     /// Friction force times the tangential difference of (2.9), J; never negative beyond the certificate. Equal to
     /// `friction_work` for backward Euler.
     pub dissipation: f64,
-    /// Work that moving obstacles have done on the body in this step, J: contact forces at its end times the
-    /// displacement of the obstacle, and normal forces times the change of a [gap that moves
-    /// along](crate::Contact::with_motion) or [has a history](crate::Contact::with_gap_history).
+    /// Work done by moving obstacles on the body in this step, J: contact forces at its end times the
+    /// displacement of the obstacle, and normal forces times the change of a [gap that moves with
+    /// it](crate::Contact::with_motion) or [has a history](crate::Contact::with_gap_history).
     pub obstacle_work: f64,
 }
 

@@ -15,12 +15,12 @@ use std::sync::Arc;
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
 pub enum ContactNormal {
-    /// The body's own outward normal at each node.
+    /// The body's outward normal at each node.
     Body,
     /// One unit vector into the obstacle, e.g. (0, 0, -1) for a floor: the usual choice for a plane obstacle
     /// under a curved body.
     Fixed([f64; 3]),
-    /// At each node that of the [`Obstacle`]: into it, against the gradient of its distance.
+    /// The normal of the [`Obstacle`] at each node, pointing into it, against the gradient of its distance.
     Obstacle,
 }
 
@@ -75,17 +75,16 @@ impl Contact {
     }
 
     /// Contact with a rigid obstacle of any shape: at each node the normal is that of the obstacle, against the
-    /// gradient of its distance, and the gap is the distance. On an edge or corner of a
-    /// [surface](Obstacle::surface) it is, of those between the normals of its facets, nearest to the body's own. Nodes
-    /// that do not face the obstacle (by less than a tenth, the cosine to the body's own normal) have no point: a flat
-    /// side slides over an edge beside it.
+    /// gradient of its distance, and the gap is the distance. On an edge or corner of a [surface](Obstacle::surface),
+    /// of all directions between the normals of the adjacent facets, that nearest to the body's normal is taken. Nodes
+    /// that do not face the obstacle (the cosine between the normals is below a tenth) have no point, so that a flat
+    /// side can slide over an edge beside it.
     ///
-    /// [`with_normal`](Self::with_normal) and [`with_body_normals`](Self::with_body_normals) take another direction,
-    /// along which the gap is then measured; [`with_gap`](Self::with_gap) takes another gap. Normals are those of body
-    /// and obstacle at the start, as small displacements have it: slips and motions must be small against the radius of
-    /// curvature. Motions that turn the obstacle's normal at a node by more than 0.1 are refused
-    /// ([`TurnedNormal`](ContactError::TurnedNormal)), displacements that do so at a node that touches are
-    /// [warned](crate::Warning::TurnedNormal) of.
+    /// [`with_normal`](Self::with_normal) and [`with_body_normals`](Self::with_body_normals) choose another direction,
+    /// along which the gap is then measured; [`with_gap`](Self::with_gap) prescribes the gap. Normals are those of the
+    /// undeformed state: slips and motions must be small against the radius of curvature. Motions that turn the
+    /// obstacle's normal at a node by more than 0.1 radians are refused ([`TurnedNormal`](ContactError::TurnedNormal));
+    /// displacements that do so at a touching node cause a [warning](crate::Warning::TurnedNormal).
     pub fn obstacle(tag: FacetTag, obstacle: Obstacle) -> Self {
         Self {
             gap: Gap::Obstacle,
@@ -100,15 +99,15 @@ impl Contact {
     /// Where the meshes match, a node of the first side is a contact point, and its partner is the node of the other
     /// side on its normal, to within a fiftieth of the size of its facets, and a little more across a gap. Where they
     /// do not, the side with the larger facets has the points, whichever is named first, and the partner of each is a
-    /// weighted mean of nodes (mortar method with dual multipliers): uniform pressure passes exactly, for any ratio of
-    /// the meshes and where sides cover each other in part. Nodes that nothing faces have no point. Flat sides that
-    /// meet at an edge are a contact each.
+    /// weighted mean of nodes (mortar method with dual multipliers): uniform pressure is transferred exactly, for any
+    /// ratio of mesh sizes and for sides that overlap only in part. Nodes with nothing opposite have no point. Put flat
+    /// sides that meet at an edge into separate contacts.
     ///
     /// All quantities of a contact point are those of the body of its [node](crate::result::PointState::node): the
     /// outward normal, the force on it, its displacement *relative* to the partner; sums over a contact are those of
     /// the body with `tag`. The gap is measured between the sides, unless [`with_gap`](Self::with_gap) or
-    /// [`with_gap_field`](Self::with_gap_field) tell another; sides may coincide. Displacements are small: a node keeps
-    /// its partner, however far it slides.
+    /// [`with_gap_field`](Self::with_gap_field) prescribes it; sides may coincide. Sliding is small: a node keeps its
+    /// partner, however far it slides.
     pub fn between(tag: FacetTag, partner: FacetTag) -> Self {
         Self {
             partner: vec![partner],
@@ -117,11 +116,11 @@ impl Contact {
         }
     }
 
-    /// Bonds two bodies, or parts of one that are meshed apart: both sides move alike where they face each other, as
-    /// [between](Self::between) bodies but without contact and friction. A distance between them, or between facets of
-    /// curved sides, is bridged: displacements of one side go on to the other linearly, so that both may turn. It
-    /// changes as [`with_motion`](Self::with_motion) says: so is a bolt tightened that is cut across and whose parts are
-    /// tied. Sides that lie in each other deeper than their facets are large are refused: they are hardly meant.
+    /// Bonds two bodies, or two parts of one with non-matching meshes: both sides have the same displacement where they
+    /// face each other. A distance between them, or between facets of curved sides, is bridged by linear extrapolation,
+    /// so that rigid rotations stay free. [`with_motion`](Self::with_motion) prescribes a jump: tie the two parts of a
+    /// bolt that is cut across, and a motion tightens it. Sides that penetrate each other by more than a facet size are
+    /// refused.
     pub fn tied(tag: FacetTag, partner: FacetTag) -> Self {
         Self {
             partner: vec![partner],
@@ -130,7 +129,7 @@ impl Contact {
         }
     }
 
-    /// More facets of the other body. A rigid contact that was told no gap becomes one [between](Self::between) bodies.
+    /// Adds facets of the other body. A rigid contact without a given gap becomes one [between](Self::between) bodies.
     pub fn with_partner(mut self, tag: FacetTag) -> Self {
         if self.partner.is_empty() && matches!(self.gap, Gap::None) && !self.tied {
             self.gap = Gap::Measured;
@@ -151,7 +150,7 @@ impl Contact {
         Self::rigid(tag).with_normal(unit.map(|c| -c)).with_gap_field(gap)
     }
 
-    /// More facets of the same kind. For another gap, direction or friction give a scene another contact
+    /// Adds facets to this contact. For another gap, normal or friction law add another contact to the scene
     /// ([`Scene::with_contact`](crate::Scene::with_contact)).
     pub fn with_tag(mut self, tag: FacetTag) -> Self {
         self.tags.push(tag);
@@ -164,40 +163,38 @@ impl Contact {
         self
     }
 
-    /// A gap in m that depends on the place: how far a point is from the obstacle along the direction of contact. Where
-    /// the obstacle [moves](Self::with_motion) along the surface it is also asked at places beside the surface.
+    /// A gap in m that depends on position: the distance of a point from the obstacle along the contact normal. If the
+    /// obstacle [moves](Self::with_motion) along the surface, it is also evaluated beside the surface.
     pub fn with_gap_field(mut self, gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
         self.gap = Gap::Field(Function(Arc::new(gap)));
         self
     }
 
-    /// The gap changes in time: it is `history(t)` times what [`with_gap`](Self::with_gap), a field, a shape or the
-    /// coordinates say; what an obstacle opens by moving is not multiplied. A press fit grows from nothing by a negative
-    /// gap and a ramp; a factor that changes its sign opens or closes again. Before the first step the factor is that at
-    /// time 0. For obstacles and between bodies. What the growing interference does to the bodies is part of
-    /// [`obstacle_work`](crate::result::ContactSummary::obstacle_work).
+    /// The gap changes in time: `history(t)` multiplies the gap given by [`with_gap`](Self::with_gap), a field, a shape
+    /// or the coordinates, but not the opening by motions of the obstacle. A press fit is a negative gap with a ramp.
+    /// Before the first step the factor is that at time 0. For obstacles and between bodies. The work of the growing
+    /// interference is part of [`obstacle_work`](crate::result::ContactSummary::obstacle_work).
     pub fn with_gap_history(mut self, history: History) -> Self {
         self.gap_history = Some(history);
         self
     }
 
-    /// One direction of contact for all nodes, pointing into the obstacle: out of the body, at some contact node at
-    /// least.
+    /// One contact normal for all nodes, pointing into the obstacle, and out of the body at one contact node at least.
     pub fn with_normal(mut self, into_obstacle: [f64; 3]) -> Self {
         self.normal = ContactNormal::Fixed(into_obstacle);
         self
     }
 
-    /// The body's own outward normals as directions of contact: what [`rigid`](Self::rigid) has.
+    /// The body's outward normals as contact normals, as in [`rigid`](Self::rigid).
     pub fn with_body_normals(mut self) -> Self {
         self.normal = ContactNormal::Body;
         self
     }
 
-    /// The angle between the normals of neighbouring facets, in degrees, from which on their edge is a crease (60 by
-    /// default; in (0, 180], 180 for none). At a crease a node has one contact point for each side, so that an edge
-    /// between floor and wall meets both; elsewhere one with the mean normal. Flat sides that meet at a smaller angle
-    /// are to be contacts of their own. Without effect with [`with_normal`](Self::with_normal).
+    /// The angle between the normals of adjacent facets, in degrees, from which on their common edge is a crease (60 by
+    /// default; in (0, 180], 180 for none). At a crease a node has one contact point for each side, so that an edge can
+    /// touch both floor and wall; elsewhere it has one point with the mean normal. Put flat sides that meet at a
+    /// smaller angle into separate contacts. No effect with [`with_normal`](Self::with_normal).
     pub fn with_crease(mut self, degrees: f64) -> Self {
         self.crease = degrees;
         self
@@ -207,26 +204,25 @@ impl Contact {
     /// before the first step. Along the normal it opens or closes the gap; along the surface it drags the body by
     /// friction.
     ///
-    /// A gap [that depends on the place](Self::with_gap_field) moves along: where the obstacle has moved by `w`, the
-    /// gap at `x` with the normal `n` is `field(x - w_T) + n . w` with `w_T = w - (n . w) n`. That is exact along flat
+    /// A [gap field](Self::with_gap_field) moves with it: where the obstacle has moved by `w`, the
+    /// gap at `x` with the normal `n` is `field(x - w_T) + n . w` with `w_T = w - (n . w) n`. This is exact along flat
     /// sides, with [`with_normal`](Self::with_normal), and along sides that the motion maps onto themselves; elsewhere
-    /// ways that are long against the radius of curvature are refused ([`MovedField`](ContactError::MovedField)).
-    /// Friction laws that depend on the place stay with the nodes of the body.
+    /// motions that are long against the radius of curvature are refused ([`MovedField`](ContactError::MovedField)).
+    /// Friction laws that depend on position stay with the nodes of the body.
     ///
-    /// Of [tied](Self::tied) sides the first one moves against the other.
+    /// Of [tied](Self::tied) sides the first one moves relative to the other.
     pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
         self.motion = Some((displacement, history));
         self
     }
 
     /// The obstacle turns about the axis through `point`: at time `t` by `angle(t)` radians, right-handed about `axis`,
-    /// and by none before the first step. The axis goes along with a [motion](Self::with_motion). Along the surface
-    /// the obstacle drags the body by friction, however far it turns; a shape that is not round about the axis brings
-    /// other gaps.
+    /// and by none before the first step. The axis moves with a [motion](Self::with_motion). The obstacle drags the
+    /// body by friction, however far it turns; if its shape is not round about the axis, gaps change.
     ///
-    /// The gap of an [obstacle](Self::obstacle) is measured at its place at each step. A
-    /// [gap field](Self::with_gap_field) turns with the obstacle. Other obstacles are taken to be of the shape of the
-    /// body's surface, and their normals must not turn by more than 0.1.
+    /// The gap of an [obstacle](Self::obstacle) is measured at its current position in each step. A
+    /// [gap field](Self::with_gap_field) turns with the obstacle. Other obstacles are assumed to have the shape of the
+    /// body's surface, and their normals must not turn by more than 0.1 radians.
     pub fn with_rotation(mut self, point: [f64; 3], axis: [f64; 3], angle: History) -> Self {
         self.rotation = Some(Rotation { point, axis, angle });
         self
@@ -285,37 +281,37 @@ impl Contact {
         pose
     }
 
-    /// The friction law. A bound or coefficient that is zero everywhere is no friction.
+    /// Sets the friction law. A bound or coefficient that is a constant zero means no friction.
     pub fn with_friction(mut self, friction: Friction) -> Self {
         self.friction = if friction.is_zero() { Friction::None } else { friction };
         self
     }
 
-    /// Friction that differs by direction: the law holds along `axis`, or its part along the surface; at right angles
-    /// to it there is `ratio` times as much. Friction forces are bounded by an ellipse, and points slide along its
-    /// normal (the associated rule), not against the force. [`PointState::slip_bound`](crate::PointState::slip_bound)
+    /// Orthotropic friction: the law holds along `axis`, projected to the surface; at right angles to it friction is
+    /// `ratio` times as large. Friction forces are bounded by an ellipse, and points slide along its normal (associated
+    /// rule), not against the force. [`PointState::slip_bound`](crate::PointState::slip_bound)
     /// is the bound along the axis.
     pub fn with_friction_axis(mut self, axis: [f64; 3], ratio: f64) -> Self {
         self.friction_axis = Some((axis, ratio));
         self
     }
 
-    /// Rough surfaces give way under pressure: where they touch, the distance is `-compliance` (m/Pa) times the
-    /// pressure, a negative gap in [`PointState`](crate::PointState). Zero, the default, is the exact law. The inverse
-    /// is the contact stiffness of other codes (N/m³, the slope of a linear pressure-overclosure).
+    /// Compliance of rough surfaces: in contact the gap is `-compliance` (m/Pa) times the pressure, so it is negative
+    /// in [`PointState`](crate::PointState). Zero, the default, is the exact law. The inverse is the contact stiffness
+    /// of other codes (N/m³, the slope of a linear pressure-overclosure).
     ///
-    /// Contacts that meet a node along one direction need the same compliances and gaps. A node that a support holds
-    /// along the normal still may not be inside the obstacle: no pressure is known there.
+    /// Contacts that meet at a node with the same normal need the same compliances and gaps. A node that a support
+    /// holds along the normal must still not be inside the obstacle, since no pressure is known there.
     pub fn with_normal_compliance(mut self, compliance: f64) -> Self {
         self.compliance[0] = compliance;
         self
     }
 
     /// Elastic slip: below the slip bound a point moves along the surface by `compliance` (m/Pa) times the friction
-    /// stress, and goes back with it. The inverse is the stick slope of other codes (N/m³). Zero, the default, is
+    /// stress, and recovers with it. The inverse is the stick slope of other codes (N/m³). Zero, the default, is
     /// Coulomb's law as it stands. Without friction it has no effect.
     ///
-    /// Differences, slip rates and friction work of results are those of the slip beyond it, which is lost.
+    /// Differences, slip rates and friction work in results contain only the irreversible slip beyond it.
     pub fn with_tangential_compliance(mut self, compliance: f64) -> Self {
         self.compliance[1] = compliance;
         self
@@ -341,7 +337,7 @@ impl Contact {
         &self.gap
     }
 
-    /// The direction in which the obstacle is met.
+    /// The contact normal.
     pub fn normal(&self) -> ContactNormal {
         self.normal
     }

@@ -19,8 +19,8 @@ pub enum Friction {
     /// No friction: no tangential rows, no slip bounds, no history of the tangential displacement.
     #[default]
     None,
-    /// Given friction (Tresca): the slip bound is known and does not depend on the pressure. It acts where nothing
-    /// touches, too.
+    /// Tresca (given) friction: the slip bound is prescribed and does not depend on the pressure. It acts even at open
+    /// points.
     Tresca(SlipBound),
     /// Coulomb friction: the slip bound is the coefficient times the contact pressure.
     Coulomb(Coefficient),
@@ -32,7 +32,7 @@ impl Friction {
         Self::Coulomb(Coefficient::Constant(coefficient))
     }
 
-    /// Given friction with one bound of the friction stress, in Pa.
+    /// Tresca friction with the same bound of the friction stress everywhere, in Pa.
     pub fn tresca(stress: f64) -> Self {
         Self::Tresca(SlipBound::Stress(stress))
     }
@@ -57,12 +57,12 @@ impl Friction {
     }
 }
 
-/// Bound of the friction stress in given friction.
+/// Bound of the friction stress in Tresca friction.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 #[must_use]
 pub enum SlipBound {
-    /// The same bound everywhere, in Pa; a node carries it times its area.
+    /// The same bound everywhere, in Pa; the bound of a node is this times its area.
     Stress(f64),
     /// Bound in Pa at a point.
     StressField(PlaceField),
@@ -106,7 +106,7 @@ pub enum Coefficient {
         /// Slip rate, in m/s, over which the difference falls by e.
         decay: f64,
     },
-    /// Straight lines through (rate in m/s, coefficient) points, constant outside.
+    /// Linear interpolation between (rate in m/s, coefficient) points, constant outside.
     Table(Vec<(f64, f64)>),
     /// Depends on place and rate.
     RateField(RateField),

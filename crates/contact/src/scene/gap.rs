@@ -6,14 +6,14 @@ use super::friction::PlaceField;
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum Gap {
-    /// The surfaces touch: the offset vector stays zero.
+    /// No gap: the surfaces touch.
     None,
     /// The same distance at every node, m.
     Constant(f64),
     /// Distance at a point, m; negative values mean that the body starts inside the obstacle.
     Field(PlaceField),
-    /// The distance between the nodes of two bodies, along the normal: what coordinates say.
+    /// The distance between two bodies along the normal, from their coordinates.
     Measured,
-    /// The distance to an [`Obstacle`](crate::Obstacle) along the normal: what its shape says.
+    /// The distance to an [`Obstacle`](crate::Obstacle) along the normal, from its shape.
     Obstacle,
 }

@@ -22,8 +22,8 @@ impl Load {
         Self::of(Kind::Density(density))
     }
 
-    /// Strain that makes no stress: expansion by temperature, a shaft that shrinks, a bolt that is tightened. Constant
-    /// in time, too: bodies have it from the first step on.
+    /// A stress-free strain: thermal expansion, a shrink fit, the pretension of a bolt. It is constant in time unless a
+    /// history is given.
     pub fn eigenstrain(strain: Eigenstrain) -> Self {
         Self::of(Kind::Eigenstrain(strain))
     }
@@ -40,8 +40,8 @@ impl Load {
         Self::new(LoadDensity::traction(tag, value))
     }
 
-    /// A force on a tag, N, spread evenly over its facets: a bolt force on the print of its head, say. The sum of the
-    /// load is this force to rounding, whatever area the facets of a curved surface have.
+    /// A force on a tag, N, spread evenly over its facets, for instance a bolt force under its head. The sum of the
+    /// load is this force to rounding, whatever the area of the facets.
     pub fn force(tag: FacetTag, value: [f64; 3]) -> Self {
         Self::new(LoadDensity::force(tag, value))
     }

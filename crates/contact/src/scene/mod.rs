@@ -1,12 +1,12 @@
-//! The scene: plain data that say what is to be simulated, and nothing about how.
+//! The scene: plain data on what is to be simulated, not how.
 //!
-//! Mesh, materials, supports, loads, contact surfaces with their gaps and friction, how the body is cut, and the times
-//! with their difference formula (`time`).
-//! Everything here is what a user writes; nodes, rows and numbers of the mesh come in `discrete`.
+//! Mesh, materials, supports, loads, contact surfaces with their gaps and friction, how the mesh is partitioned, and
+//! the times with their difference formula (`time`). Everything here is what a user writes; nodes, rows and numbers of
+//! the mesh come in `discrete`.
 //!
 //! Uses: errors only (and `fem-mesh` for meshes and histories).
 //! In: calls of builders. Out: a [`Scene`] whose data can be asked one by one.
-//! `validate` says what can be said against a scene without computing; the rest is said by `discrete`.
+//! `validate` makes the checks that need no computation, `discrete` the others.
 
 mod contact;
 mod facets;

@@ -7,8 +7,8 @@ use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
 use std::sync::Arc;
 
-/// Of a place, the side that is free (1, or -1 for what is turned inside out), and the direction that the gradient is to
-/// be opposite to where there is a choice.
+/// Of a place, the side that is free (1, or -1 for what is turned inside out), and the direction that the gradient is
+/// to be opposite to where there is a choice.
 type Field = dyn Fn([f64; 3], f64, Option<[f64; 3]>) -> (f64, [f64; 3]) + Send + Sync;
 
 /// A rigid obstacle of any shape: the signed distance to it, m, positive outside, and the gradient of the distance, a
@@ -39,8 +39,8 @@ pub struct Obstacle {
 }
 
 impl Obstacle {
-    /// Any shape: its signed distance (m, positive outside) and the gradient of that. Both are asked at nodes of the
-    /// body, where the gradient must have length 1 to within a thousandth.
+    /// Any shape: its signed distance (m, positive outside) and the gradient of that. Both are evaluated at nodes of
+    /// the body, where the gradient must have length 1 to within a thousandth.
     pub fn from_distance(
         distance: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static,
         gradient: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static,
@@ -79,13 +79,13 @@ impl Obstacle {
         })
     }
 
-    /// A triangulated surface, closed or open: places of its nodes, m, and triangles whose nodes turn counter-clockwise
-    /// seen from outside. Nodes at one place are one. The nearest place is looked for in a tree; beyond the rim of an
-    /// open surface nothing is inside.
+    /// A triangulated surface, closed or open: its nodes, m, and triangles whose nodes are counter-clockwise seen from
+    /// outside. Coincident nodes are merged. A tree finds the nearest point; beyond the rim of an open surface nothing
+    /// is inside.
     ///
     /// # Errors
-    /// [`ContactError::ObstacleFacet`] for triangles without area or with unknown nodes, if there is none, and where two
-    /// neighbours turn otherwise.
+    /// [`ContactError::ObstacleFacet`] for triangles without area or with unknown nodes, if there is none, and for
+    /// neighbours with inconsistent orientation.
     pub fn surface(points: &[[f64; 3]], triangles: &[[u32; 3]]) -> Result<Self, ContactError> {
         let facets = Facets::new(points, triangles)?;
         Ok(Self {
@@ -95,7 +95,7 @@ impl Obstacle {
         })
     }
 
-    /// What this obstacle leaves free is the obstacle: of a ball a socket, of a cylinder a bore.
+    /// Turns the obstacle inside out: a ball becomes a socket, a cylinder a bore.
     pub fn hollow(self) -> Self {
         Self {
             side: -self.side,

@@ -16,23 +16,23 @@ const QUADRATIC: usize = 120;
 /// iteration.
 const MOST: usize = 1000;
 
-/// How the body is cut into subdomains.
+/// How the mesh is partitioned into subdomains.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Partition {
-    /// Into parts of some hundred tetrahedra each, by [`even_parts`]; materials are not mixed. Less than 1400
-    /// tetrahedra, 240 of order 2, are one part.
+    /// Parts of several hundred tetrahedra each, by [`even_parts`]; materials are not mixed. A body with less than 1400
+    /// tetrahedra, or 240 of order 2, is one part.
     Automatic,
-    /// As [`Partition::Automatic`], into so many.
+    /// As [`Partition::Automatic`], with this number of parts.
     Subdomains(usize),
-    /// Not at all: one subdomain a body.
+    /// One subdomain per body.
     Whole,
-    /// Into boxes of the bounding box, by element centroids (see [`Decomposition::boxes`]).
+    /// A grid of boxes in the bounding box, by element centroids (see [`Decomposition::boxes`]).
     Boxes([usize; 3]),
-    /// By the given part number of every element, those of a graph partitioner for instance, made compact by
-    /// [`compact_parts`]; materials are mixed only where a given part mixes them.
+    /// A part number for every element, for instance from a graph partitioner; [`compact_parts`] makes the parts
+    /// compact. Materials are mixed only where a given part mixes them.
     Parts(Vec<u32>),
-    /// By the given part number of every element, as they are: numbers without gaps, of parts that hang together.
+    /// A part number for every element, used unchanged: consecutive numbers, connected parts.
     AsGiven(Vec<u32>),
 }
 

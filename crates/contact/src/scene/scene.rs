@@ -11,7 +11,8 @@ use crate::names::Names;
 use crate::part::Part;
 use signorini_fem_mesh::{Decomposition, History, Materials, TetMesh};
 
-/// Everything that says what is to be simulated, and nothing about how.
+/// What is to be simulated: mesh, materials, supports, loads, contacts, partition and times.
+/// [`Settings`](crate::Settings) says how.
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Scene {
@@ -27,7 +28,7 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// A free body without loads: static, cut into subdomains as its size asks for.
+    /// A free body without loads: static, with an automatic partition into subdomains.
     pub fn new(mesh: TetMesh, mut materials: Materials) -> Self {
         let constant = |(factor, strain)| Load::eigenstrain(strain).with_history(History::constant(factor));
         let loads = materials.take_eigenstrains().into_iter().map(constant).collect();
@@ -62,47 +63,45 @@ impl Scene {
         self
     }
 
-    /// Adds a contact surface, with a gap, a direction and a friction law of its own: a floor with friction, a wall
+    /// Adds a contact surface with its own gap, normals and friction law, for example a floor with friction or a wall
     /// without.
     ///
-    /// Surfaces may share nodes, and even tags. A node then has one contact point for each direction of contact.
-    /// Where the directions are the same (to 1.4e-6 radians) it has one for all of them: that of the obstacle that is
-    /// nearer, with its law and area; where both are as near, with the law of the contact that was added first and
-    /// the area of both.
+    /// Surfaces may share nodes, and even tags. A node then has one contact point for each contact normal.
+    /// If normals agree (to 1.4e-6 radians), it has one point for both: with law and area of the nearer obstacle or, at
+    /// equal distance, with the law of the contact added first and the area of both.
     pub fn with_contact(mut self, contact: Contact) -> Self {
         self.contacts.push(contact);
         self
     }
 
-    /// Cuts the body into boxes. Empty boxes are dropped and disconnected ones split (see
+    /// Partitions the mesh into boxes. Empty boxes are dropped and disconnected ones split (see
     /// [`Decomposition::boxes`]), so any mesh and any positive counts will do.
     pub fn with_boxes(mut self, boxes: [usize; 3]) -> Self {
         self.partition = Partition::Boxes(boxes);
         self
     }
 
-    /// Cuts the body by part numbers, one an element, those of a graph partitioner for instance. Ragged parts take two
-    /// to six times the iterations of compact ones: tetrahedra at the interfaces may change sides, and crumbs and loose
-    /// pieces join their neighbours (see [`Partition::Parts`]).
+    /// Partitions the mesh by part numbers, one per element, for instance those of a graph partitioner, and makes the
+    /// parts compact: tetrahedra at interfaces may change sides, and small or loose pieces join their neighbours (see
+    /// [`Partition::Parts`]). Ragged parts would take two to six times the iterations.
     pub fn with_parts(mut self, parts: Vec<u32>) -> Self {
         self.partition = Partition::Parts(parts);
         self
     }
 
-    /// Cuts the body by part numbers, one an element, and leaves the parts as they are.
+    /// Partitions the mesh by part numbers, one per element, without changing the parts.
     pub fn with_parts_as_given(mut self, parts: Vec<u32>) -> Self {
         self.partition = Partition::AsGiven(parts);
         self
     }
 
-    /// Cuts the body into so many subdomains of similar size, as compact as can be; without a partition the number
-    /// follows from the size.
+    /// Partitions the mesh into `count` compact subdomains of similar size. By default the library chooses the number.
     pub fn with_subdomains(mut self, count: usize) -> Self {
         self.partition = Partition::Subdomains(count);
         self
     }
 
-    /// Leaves each body in one piece. Factors of large bodies are expensive, and their contact needs more iterations.
+    /// Keeps each body in one piece. Factors of large bodies are expensive, and their contact needs more iterations.
     pub fn without_subdomains(mut self) -> Self {
         self.partition = Partition::Whole;
         self
@@ -114,8 +113,8 @@ impl Scene {
         self
     }
 
-    /// What parts are called where the scene comes from, in a file for instance: errors and warnings of its simulation then
-    /// begin with the names of those that they speak of. Decks come with names.
+    /// Names for parts of the scene, for instance from the file that it comes from: errors and warnings then begin with
+    /// the names of the parts concerned. Scenes from decks have names.
     ///
     /// ```
     /// use signorini_contact::{Contact, Part, Plan, Scene, Settings};
@@ -154,7 +153,7 @@ impl Scene {
         &self.loads
     }
 
-    /// How the body is cut.
+    /// The partition into subdomains.
     pub fn partition(&self) -> &Partition {
         &self.partition
     }

@@ -3,15 +3,13 @@
 use crate::error::ContactError;
 use signorini_fem_mesh::FacetTag;
 
-/// An elastic foundation (Winkler) under the facets with a tag: the ground pushes back with a stress in proportion to
-/// the displacement, everywhere on its own, in both directions. The body stands on it: it holds rigid motions as a
-/// support does.
+/// An elastic foundation (Winkler) under the facets with a tag: at each point the ground reacts with a stress
+/// proportional to the displacement, in tension and compression. It resists rigid motions like a support.
 ///
-/// Stiffness is in N/m³: stress (Pa) over displacement (m). A layer of thickness `t` that cannot widen has `E (1 - nu)
-/// / ((1 + nu) (1 - 2 nu) t)` along the normal. At a node it acts with a third of the areas of its facets, in a mesh of
-/// order 2 at mid-nodes only. Where a support fixes a direction of a node the spring acts at right angles to it. Nodes
-/// that are contact nodes as well (edges) may be; where springs are very soft or stiff against the body they cost many
-/// products there.
+/// Stiffness is in N/m³: stress (Pa) over displacement (m). A layer of thickness `t` without lateral expansion has `E
+/// (1 - nu) / ((1 + nu) (1 - 2 nu) t)` along the normal. At a node it acts with a third of the areas of its facets, in
+/// a mesh of order 2 at mid-nodes only. If a support fixes a direction of a node, the spring acts at right angles to
+/// it. Contact nodes may have springs (at edges); springs much softer or stiffer than the body then cost many products.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[must_use]
 pub struct Spring {

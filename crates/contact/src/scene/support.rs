@@ -82,17 +82,17 @@ impl Support {
 
     /// The fixed directions follow `history(t) * displacement` (m) instead of staying at zero.
     ///
-    /// A support that fixes the normal displacement of a contact node must keep it outside the obstacle at all
-    /// times: no contact force can stop it there, and the scene is refused.
+    /// A support that prescribes the normal displacement of a contact node must keep it outside the obstacle at all
+    /// times, since no contact force could; otherwise the scene is refused.
     ///
-    /// Supports that share nodes must move them alike: equal displacements with equal histories, which are equal tables
-    /// or clones of one function.
+    /// Supports that share nodes must prescribe the same motion: equal displacements with equal histories, that is
+    /// equal tables or clones of one function.
     pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
         self.motion = Some((vec![displacement], history));
         self
     }
 
-    /// The same with one displacement a node, in the order of the nodes (ascending for a tag).
+    /// The same with one displacement per node, in the order of the nodes (ascending for a tag).
     pub fn with_motions(mut self, displacements: Vec<[f64; 3]>, history: History) -> Self {
         self.motion = Some((displacements, history));
         self
@@ -108,7 +108,7 @@ impl Support {
         &self.directions
     }
 
-    /// Its displacements (m; one for all nodes or one a node) and their history; `None` if it does not move.
+    /// Its displacements (m; one for all nodes or one per node) and their history; `None` if it does not move.
     pub fn motion(&self) -> Option<(&[[f64; 3]], &History)> {
         let (values, history) = self.motion.as_ref()?;
         Some((values, history))

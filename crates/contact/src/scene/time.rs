@@ -8,9 +8,9 @@ use signorini_fem_mesh::History;
 /// `(alpha u[i+1] + beta u[i] + gamma u[i-1]) / dt`.
 ///
 /// With `alpha = 3/2, beta = -2, gamma = 1/2` (the paper's choice) a node that *sticks* obeys
-/// `u[i+1] = 4/3 u[i] - 1/3 u[i-1]`: after slipping `s` a step it still moves `s/3, s/9, ...`, `s/2` in all.
+/// `u[i+1] = 4/3 u[i] - 1/3 u[i-1]`: after slipping by `s` per step it still moves by `s/3, s/9, ...`, in all `s/2`.
 /// The friction loss of a cycle then has a first-order error. Backward Euler (`1, -1, 0`) has no such
-/// signature and is exact at the steps for piecewise linear slip.
+/// artefact and is exact at the steps for piecewise linear slip.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DifferenceFormula([f64; 3]);
 
@@ -79,7 +79,7 @@ impl Default for DifferenceFormula {
     }
 }
 
-/// Whether the scene has a history.
+/// The times of a scene: one static state, or steps with a history of friction.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 #[must_use]
@@ -143,9 +143,9 @@ impl Analysis {
         Self::Static { time: 1.0 }
     }
 
-    /// `steps` equal steps up to `end` seconds, by backward Euler. The paper's [`PAPER`](DifferenceFormula::PAPER) is
-    /// asked for with [`with_formula`](Self::with_formula): it remembers the step before the last, so that points
-    /// that slid creep on where loads are held, and its first step sees one and a half times the slip rate.
+    /// `steps` equal steps up to `end` seconds, by backward Euler. [`with_formula`](Self::with_formula) selects another
+    /// formula, such as the paper's ([`PAPER`](DifferenceFormula::PAPER)). That one uses two earlier displacements:
+    /// points that slid creep on while loads are constant, and its first step has one and a half times the slip rate.
     pub fn quasistatic(end: f64, steps: usize) -> Self {
         // none, which is refused when the scene is used
         let steps = if steps > MOST { 0 } else { steps };

@@ -4,10 +4,10 @@ use crate::error::ContactError;
 
 /// When the solve of a step ends.
 ///
-/// Estimates are those of the energy of the whole body, beside a
-/// [bound](crate::report::AccuracyReport::certificate_limit) of five times the target on the contact conditions: forces
-/// that carry little of it (a light touch after a long rigid motion, friction of a drag far below the elastic
-/// displacement) need `Tolerance`.
+/// Estimates are relative to the energy of the whole body; in addition the contact conditions hold to [five times the
+/// target](crate::report::AccuracyReport::certificate_limit). Use `Tolerance` for forces that contribute little to the
+/// energy, such as a light touch after a large rigid motion, or friction whose effect is far below the elastic
+/// displacement.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 #[must_use]
@@ -15,14 +15,14 @@ pub enum Accuracy {
     /// At the tolerance of the settings. No error is estimated.
     #[default]
     Tolerance,
-    /// Where the algebraic error is `fraction` of the discretisation error, both estimated, in the energy norm, with
-    /// what earlier steps have left in it. The setting `tolerance` is not used.
+    /// When the algebraic error is `fraction` of the discretisation error, both estimated in the energy norm and
+    /// including errors inherited from earlier steps. The setting `tolerance` is not used.
     Balanced {
         /// In (0, 1]; 0.1 adds half a per cent to the total error.
         fraction: f64,
     },
-    /// Where the estimated algebraic error, with what earlier steps have left in it, is at most this, relative, in the
-    /// energy norm; in [1e-11, 0.5]. The setting `tolerance` is not used.
+    /// When the estimated relative algebraic error in the energy norm, including errors inherited from earlier steps,
+    /// is at most this; in [1e-11, 0.5]. The setting `tolerance` is not used.
     Relative(f64),
 }
 

@@ -8,8 +8,8 @@ use signorini_qp::{ActiveSetSettings, QpError, SmalseSettings};
 #[must_use]
 pub enum Method {
     /// The default: active sets predicted by the natural map, projected preconditioned conjugate gradients on
-    /// each, slip bounds following as soon as the contact set has settled. Falls back to
-    /// [`SuccessiveApproximations`](Self::SuccessiveApproximations) where the prediction makes no progress.
+    /// each, slip bounds updated once the contact set has settled. Falls back to
+    /// [`SuccessiveApproximations`](Self::SuccessiveApproximations) if the prediction makes no progress.
     ActiveSet(ActiveSetSettings),
     /// The paper's method (3.17): Tresca problems by SMALSE and KPRGP, repeated with new slip bounds.
     SuccessiveApproximations {
@@ -18,7 +18,7 @@ pub enum Method {
         /// How accurately each Tresca problem is solved.
         accuracy: InnerAccuracy,
     },
-    /// The paper's one inexact loop: the slip bounds follow the outer steps of SMALSE.
+    /// The paper's one inexact loop: slip bounds are updated after each outer step of SMALSE.
     OneLoop {
         /// Settings of SMALSE.
         smalse: SmalseSettings,

@@ -1,4 +1,4 @@
-//! The settings: how a scene is solved, and nothing about what.
+//! The settings: how a scene is solved.
 //!
 //! The method of a step, its accuracy and when it ends, and what the set-up shares and holds.
 //!

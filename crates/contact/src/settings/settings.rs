@@ -9,14 +9,14 @@ use std::sync::Arc;
 
 /// The preconditioner of the default method.
 ///
-/// Thin bodies between two planes, whose supports touch most nodes in one direction, have the Schur complement in either
-/// case, on the unknowns that rows touch.
+/// Thin bodies between two planes, whose supports fix one direction of most nodes, use the Schur complement in both
+/// cases, on the unknowns that rows touch.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum Preconditioner {
-    /// A multiple of the identity; only to measure what the others are worth.
+    /// A multiple of the identity; only for comparison.
     None,
-    /// Lumped: the stiffness of the glued unknowns. Cheapest in time for small subdomains.
+    /// Lumped: the stiffness of the glued unknowns. Fastest for small subdomains.
     #[default]
     Lumped,
     /// Dirichlet: the Schur complement on the glued unknowns. Fewer products for large subdomains.
@@ -24,7 +24,7 @@ pub enum Preconditioner {
 }
 
 signorini_qp::settings! {
-    /// How a scene is solved. Each setting stands in the doc of its `with_*`, with its range and default.
+    /// How a scene is solved. The documentation of each `with_*` describes the setting, its range and default.
     ///
     /// ```
     /// use signorini_contact::{Method, Settings};
@@ -39,11 +39,11 @@ signorini_qp::settings! {
         tolerance, with_tolerance: f64 = 1e-6, in "[1e-12, 0.1]";
         /// Whether a step ends at that tolerance or by an estimate of its error.
         accuracy, with_accuracy: Accuracy = Accuracy::Tolerance;
-        /// Whether a step starts from the line through the last two, or from the last one.
+        /// Whether a step starts from a linear extrapolation of the last two, or from the last one.
         extrapolate, with_extrapolation: bool = true;
         /// Whether equal subdomains share factors.
         share_translates, with_share_translates: bool = true;
-        /// How the generalised inverse is held, by cost unless told otherwise.
+        /// How the generalised inverse is stored; by default the cheapest way.
         inverse, with_inverse: InverseSettings = InverseSettings::default();
         /// Preconditioner of the default method.
         preconditioner, with_preconditioner: Preconditioner = Preconditioner::Lumped;
@@ -52,21 +52,21 @@ signorini_qp::settings! {
         max_fallback_products, with_max_fallback_products: usize = 20_000, in "[1, inf)";
         /// How often a step that fails or does not converge may be halved.
         ///
-        /// Loads, motions and obstacles are taken at the times between, where their histories have kinks they are seen.
-        /// What was short becomes longer again as steps converge: parts of a step join two by two, and the next step
-        /// begins with parts twice as long as the last one ended with. Results are reported at the times of the
-        /// analysis only. What lies between is counted ([`halvings`](crate::report::Counters::halvings),
-        /// [`between`](crate::report::Counters::between)), works of friction and obstacles are its sums. With a
-        /// difference formula of three displacements unequal increments have weights of their own. Where the shortest
+        /// Loads, motions and obstacles are evaluated at the times between, so kinks of their histories are resolved.
+        /// Increments grow again as steps converge: parts of a step join two by two, and the next step begins with
+        /// parts twice as long as the last. Results are reported only at the times of the analysis. The report counts
+        /// what lies between ([`halvings`](crate::report::Counters::halvings),
+        /// [`between`](crate::report::Counters::between)); the work of friction and obstacles is summed over it. With a
+        /// difference formula of three displacements, unequal increments have their own weights. If the shortest
         /// increment does not converge either, the step ends with its status. Static scenes have nothing to halve.
         step_halving, with_step_halving: u32 = 0, in "[0, 20]";
         /// The processes that solve the scene together.
         ///
-        /// The same program runs as every *rank* with the same scene and settings, makes the same calls in the same
-        /// order, and has the same results, bit for bit, as one process. The matrices of the subdomains and the work
-        /// with them are spread over the ranks. Observers are told on every rank; a run ends where any of them ends it.
-        /// The library's own files (`ResultWriter`, checkpoints) and lines ([`Progress`](crate::Progress)) are those of
-        /// rank 0; checkpoints are read by all.
+        /// Every *rank* runs the same program with the same scene and settings, and makes the same calls in the same
+        /// order. Results are bit-identical to those of one process. The matrices of the subdomains and the work with
+        /// them are distributed over the ranks. Observers are told on every rank; a run ends if any of them ends it.
+        /// Checkpoints and the lines of [`Progress`](crate::Progress) are written by rank 0, files of results by all
+        /// (`ResultWriter`); checkpoints are read by all.
         communicator, with_communicator: Arc<dyn Communicator> = Arc::new(Alone);
     }
     and accuracy, method

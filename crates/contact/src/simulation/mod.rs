@@ -1,12 +1,12 @@
-//! The simulation: steps one after another, each prepared, solved, recovered, judged and remembered.
+//! The simulation: one step after another, each prepared, solved, recovered, certified and stored.
 //!
 //! `step` is one step, `accuracy` solves it until certificate or estimates are satisfied, `run` takes all steps,
-//! `halving` the way through a step that fails as a whole, `resume` goes on from a stored state, `checkpoints` (feature
-//! `checkpoint`) keeps states in a folder, `result` is what the user is shown, `step_doubling` estimates errors in
+//! `halving` repeats a failed step in halves, `resume` continues from a stored state, `checkpoints` (feature
+//! `checkpoint`) keeps states in a folder, `result` is what the user sees, `step_doubling` estimates errors in
 //! time.
 //!
 //! Uses: everything below.
-//! In: a scene and settings. Out: a [`StepResult`] a step.
+//! In: a scene and settings. Out: a [`StepResult`] per step.
 
 mod accuracy;
 #[cfg(feature = "checkpoint")]

@@ -7,17 +7,17 @@ use std::error::Error;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether a run goes on.
+/// Whether a run continues.
 ///
-/// A `Result` converts into it, so that an observer that can fail ends with `Flow::from(...)`.
+/// A `Result` converts into it: an observer that can fail returns `Flow::from(...)`.
 #[derive(Debug)]
 #[non_exhaustive]
 pub enum Flow {
     /// Solve the next step.
     Continue,
-    /// End the run after this step; it can be continued later.
+    /// Stop the run after this step; it can be continued later.
     Stop,
-    /// End the run after this step with [`ContactError::Observer`](crate::ContactError::Observer); it can be continued
+    /// Stop the run after this step with [`ContactError::Observer`](crate::ContactError::Observer); it can be continued
     /// later.
     Fail(Box<dyn Error + Send + Sync>),
 }
@@ -34,15 +34,15 @@ impl<E: Into<Box<dyn Error + Send + Sync>>> From<Result<Self, E>> for Flow {
     }
 }
 
-/// Is told what a simulation does. All methods have empty defaults. A closure `FnMut(&StepResult) -> Flow` is an
+/// Receives the events of a run. All methods have empty defaults. A closure `FnMut(&StepResult) -> Flow` is an
 /// observer.
 pub trait Observer {
-    /// The run begins; `steps` are left to solve.
+    /// The run begins; `steps` remain to be solved.
     fn started(&mut self, plan: &Plan, steps: usize) {
         let _ = (plan, steps);
     }
 
-    /// Something in the scene or in a result is allowed but hardly meant. Told once a run for each kind: of the scene
+    /// Something in the scene or in a result is allowed but suspicious. Called once per run for each kind: of the scene
     /// after [`started`](Self::started), of a step before [`step`](Self::step), of the mesh before
     /// [`finished`](Self::finished).
     fn warning(&mut self, warning: &Warning) {
@@ -67,8 +67,8 @@ impl<F: FnMut(&StepResult) -> Flow> Observer for F {
     }
 }
 
-/// A flag that others may set, such as a handler of Ctrl-C or another thread: the run ends after the step in which it
-/// was set. [`RunReport::stopped`](crate::report::RunReport::stopped) says so.
+/// A flag that a Ctrl-C handler or another thread may set: the run ends after the step in which it was set.
+/// [`RunReport::stopped`](crate::report::RunReport::stopped) says so.
 impl Observer for Arc<AtomicBool> {
     fn step(&mut self, _: &StepResult) -> Flow {
         match self.load(Ordering::Relaxed) {
@@ -78,7 +78,7 @@ impl Observer for Arc<AtomicBool> {
     }
 }
 
-/// Both are told, the first one first. A failure of either ends the run, else a stop of either.
+/// Both are called, the first one first. If either fails, the run fails; otherwise, if either stops, it stops.
 impl<A: Observer, B: Observer> Observer for (A, B) {
     fn started(&mut self, plan: &Plan, steps: usize) {
         self.0.started(plan, steps);

@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 /// Steps whose mean time foretells those to come.
 const RECENT: usize = 10;
 
-/// Writes a line a step: its number, time, products, and how long the run will still take if its steps last as long as
-/// the last ten did. Warnings are lines of their own. Of several processes rank 0 writes. A writer that fails ends the
-/// run with its error.
+/// Writes one line per step: its number, time, products, and the time left, if the remaining steps take as long as the
+/// last ten. Warnings are separate lines. Of several processes only rank 0 writes. A writer that fails ends the run
+/// with its error.
 #[derive(Debug)]
 pub struct Progress<W> {
     out: W,

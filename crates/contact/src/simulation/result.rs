@@ -18,7 +18,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::sync::Arc;
 
-/// What a step ended with. It lives on by itself: the simulation can take further steps beside it.
+/// The result of a step. It is independent of the simulation, which can take further steps meanwhile.
 #[derive(Debug)]
 pub struct StepResult {
     pub(crate) model: Arc<Model>,
@@ -60,7 +60,7 @@ impl StepResult {
         &self.report
     }
 
-    /// What there is to say of a step that did not converge.
+    /// Why the step did not converge; `None` if it did.
     pub fn failure(&self) -> Option<StepFailure> {
         (!self.report.status.converged()).then_some(StepFailure {
             step: self.step(),
@@ -72,8 +72,7 @@ impl StepResult {
         })
     }
 
-    /// For those who want every step to converge: an error unless this one did, and the earlier ones on whose
-    /// displacement it depends.
+    /// An error unless this step converged, and the earlier ones on whose displacement it depends.
     ///
     /// # Errors
     /// [`ContactError::NotConverged`] and [`ContactError::UnconvergedHistory`].
@@ -82,18 +81,18 @@ impl StepResult {
         required.map_err(|error| self.model.scene.names.tell(error))
     }
 
-    /// How well all conditions hold.
+    /// How well all conditions are satisfied.
     pub fn certificate(&self) -> &Certificate {
         &self.recovered.certificate
     }
 
-    /// What in this result is allowed but hardly meant, each kind at its worst place: large displacements, strains and
-    /// slips. Looked for when asked; a [run](crate::Simulation::run) asks at every step.
+    /// Warnings about this result, each kind at its worst place: large displacements, strains and slips. Computed on
+    /// demand; a [run](crate::Simulation::run) does so at every step.
     pub fn warnings(&self) -> Vec<Warning> {
         self.warnings_but(&[])
     }
 
-    /// The same without kinds that are known.
+    /// The same without kinds already known.
     pub(super) fn warnings_but(&self, known: &[Warning]) -> Vec<Warning> {
         let new = warnings(&self.model, self.lengths(), &self.recovered, self.step(), known);
         new.into_iter().map(|w| w.told(&self.scene().names)).collect()
@@ -114,7 +113,7 @@ impl StepResult {
         Some((error.relative(), warning.map(|w| w.told(&model.scene.names))))
     }
 
-    /// Sums over the contact surface.
+    /// Resultants of contact, numbers of points, and work.
     pub fn summary(&self) -> &ContactSummary {
         &self.summary
     }
@@ -129,33 +128,33 @@ impl StepResult {
         &self.recovered.torn
     }
 
-    /// Displacement of each mesh node, m: the mean of the copies.
+    /// Displacement of each mesh node, m: the mean over its copies in the subdomains.
     pub fn displacement(&self) -> Vec<[f64; 3]> {
         let mean = self.model.tfeti.nodal_mean(&self.recovered.torn);
         mean.as_chunks().0.to_vec()
     }
 
-    /// Stress in every tetrahedron (xx, yy, zz, yz, xz, xy), Pa; not a number where the displacement is none.
+    /// Stress in every tetrahedron (xx, yy, zz, yz, xz, xy), Pa; NaN where the displacement is NaN.
     pub fn stress(&self) -> Vec<[f64; 6]> {
         let mesh = self.scene().mesh();
         let stresses = fields::stresses(mesh, &self.materials(), self.displacement().as_flattened());
         stresses.unwrap_or_else(|_| vec![[f64::NAN; 6]; mesh.tets().len()])
     }
 
-    /// Elastic energy, J; not a number if the displacement is none.
+    /// Elastic energy, J; NaN if the displacement is.
     pub fn strain_energy(&self) -> f64 {
         let u = self.displacement();
         let energy = fields::strain_energy(self.scene().mesh(), &self.materials(), u.as_flattened());
         energy.unwrap_or(f64::NAN)
     }
 
-    /// The materials with the eigenstrains of this step, which the scene's do not know: what
-    /// [`fields`](signorini_fem_mesh::fields) needs for stresses.
+    /// The materials with the eigenstrains of this step, which those of the scene do not have;
+    /// [`fields`](signorini_fem_mesh::fields) needs them for stresses.
     pub fn materials(&self) -> Cow<'_, Materials> {
         materials(&self.model, &self.problem)
     }
 
-    /// Estimated algebraic error (by the duality gap): how far the solver stopped from the discrete solution.
+    /// Estimated algebraic error, by the duality gap: the distance of the result from the discrete solution.
     pub fn algebraic_error(&self) -> AlgebraicError {
         Solved {
             model: &self.model,
@@ -166,7 +165,7 @@ impl StepResult {
         .algebraic_error()
     }
 
-    /// Estimated discretisation error, tetrahedron by tetrahedron (by recovered strains).
+    /// Estimated discretisation error, tetrahedron by tetrahedron, by recovered strains.
     ///
     /// # Errors
     /// [`ContactError::Field`] if the displacement is not finite.
@@ -179,15 +178,15 @@ impl StepResult {
         self.reactions_about([0.0; 3])
     }
 
-    /// What each support does to the body, in force and moment about a point (m) and node by node; beside it what the
-    /// obstacle and the loads do. Computed from the multipliers when asked for.
+    /// Forces of each support on the body, with moments about a point (m) and node by node, and the resultants of
+    /// contact, springs and loads. Computed from the multipliers on demand.
     ///
-    /// Signs: forces *on the body*. A column that stands on a support and is pressed down has an upward reaction.
+    /// Forces act *on the body*: a column that stands on a support and is pressed down has an upward reaction.
     pub fn reactions_about(&self, point: [f64; 3]) -> Reactions {
         reactions_about(&self.model, &self.problem, &self.recovered, point)
     }
 
-    /// Reactions of all supports at each mesh node, N: a field for output. Zero at nodes without support.
+    /// Reactions of all supports at each mesh node, N, as a field for output. Zero at nodes without support.
     pub fn reaction_field(&self) -> Vec<[f64; 3]> {
         let mut field = vec![[0.0; 3]; self.model.scene.mesh.points().len()];
         let ties = tied_forces(&self.model, &self.recovered);
@@ -197,8 +196,8 @@ impl StepResult {
         field
     }
 
-    /// Contact forces at each mesh node, N: a field for output. Pressure and friction of all contact surfaces together,
-    /// so that nodes in edges need no care; partners on other bodies have the opposite forces. Zero elsewhere.
+    /// Contact forces at each mesh node, N, as a field for output: the sum of pressure and friction over all contact
+    /// surfaces, also at edges; partners on other bodies have the opposite forces. Zero elsewhere.
     pub fn contact_force_field(&self) -> Vec<[f64; 3]> {
         let mut field = vec![[0.0; 3]; self.model.scene.mesh.points().len()];
         for (state, point) in self.recovered.points.iter().zip(&self.model.points) {
@@ -209,16 +208,16 @@ impl StepResult {
         field
     }
 
-    /// Contact pressure at each of [`Surface::nodes`] of the contact surface in this position, Pa; `None` if there is
-    /// none. Forces over areas, averaged twice with the mass matrix of the facets: smooth on unequal triangles, where
-    /// the plain quotient scatters by some per cent.
+    /// Contact pressure at each of [`Surface::nodes`] of contact surface number `surface`, Pa; `None` if there is no
+    /// such surface. It is force over area, averaged twice with the mass matrix of the facets, and so smooth on unequal
+    /// triangles, where the plain quotient scatters by some per cent.
     ///
-    /// A constant pressure stays. The sum of pressure times [area](PointState::area) is that of the normal forces, to
-    /// rounding. It is not beside nodes that have no contact point of this surface (a support holds them along the
-    /// normal, or nothing faces them), which have zero and take no part, beside linear facets that are covered in part,
-    /// and at nodes that two surfaces share. The edge of contact is widened by two facets: pressures there, and forces
-    /// of few nodes, are the less to be trusted the fewer facets touch. At a crease it is that of the side
-    /// that is pressed most, and nothing is averaged around it.
+    /// Averaging preserves a constant pressure, and, to rounding, the sum of pressure times [area](PointState::area),
+    /// which is the normal force. The sum is not preserved near nodes without a contact point of this surface (held by
+    /// a support along the normal, or with nothing opposite), whose pressure is zero, near linear facets that are
+    /// covered in part, and at nodes that two surfaces share. The edge of contact is blurred over two facets: pressures
+    /// there, and on small contact zones, are unreliable. At a crease the pressure is that of the side that is pressed
+    /// most, without averaging around the crease.
     pub fn contact_pressure(&self, surface: usize) -> Option<Vec<f64>> {
         self.surface_stress(surface).map(|stress| stress.pressure)
     }
@@ -235,7 +234,8 @@ impl StepResult {
     }
 
     /// The contact point at each of [`Surface::nodes`] of a contact surface; `None` if there is no such surface. At a
-    /// crease it is the point that is pressed most, else the nearest one; nodes that a support holds have none.
+    /// crease it is the point that is pressed most, or else the one nearest to contact; nodes held by a support have
+    /// none.
     pub fn points_at_nodes(&self, surface: usize) -> Option<Vec<Option<&PointState>>> {
         let places = self.places_at_nodes(surface)?;
         let state = |place: Option<usize>| place.map(|k| &self.recovered.points[k]);

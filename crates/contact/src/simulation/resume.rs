@@ -9,11 +9,11 @@ use std::sync::Arc;
 impl Simulation {
     /// Continues from a stored state of the same scene.
     ///
-    /// What gives stored numbers their meaning must be the same: mesh, decomposition, nodes and directions of supports,
-    /// contact points with their normals and areas, difference formula, and the times of the steps solved so far. Free
-    /// to change are loads, motions of supports, materials, gap, coefficients, times to come, settings and method: the
-    /// state is then where the changed scene goes on from. A start from a scene that is another one on purpose needs
-    /// [`State::without_origin`]; sizes must fit in any case.
+    /// These must be the same: mesh, decomposition, nodes and directions of supports, contact points with their normals
+    /// and areas, difference formula, and the times of the steps already solved. Loads, motions of supports, materials,
+    /// gaps, coefficients of friction, future times, settings and method may change; the changed scene then continues
+    /// from the state. To start from the state of a different scene on purpose, call [`State::without_origin`]; sizes
+    /// must match in any case.
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the state does not fit; it says which part differs.

@@ -6,10 +6,10 @@ use crate::error::ContactError;
 use crate::report::{RunReport, Warning};
 
 impl Simulation {
-    /// Solves all steps that are left, telling the observer; ends early if it says so. Not converging is no error: see
-    /// the report, or ask it to [require](RunReport::require_converged) that all converged.
+    /// Solves all remaining steps and tells the observer of each; ends early if the observer asks for it. A step that
+    /// does not converge is not an error; call [`RunReport::require_converged`] to get one.
     ///
-    /// Results are looked at for what is hardly meant (see [`Warning`]), the error of the mesh is estimated once at the
+    /// Results are checked for anything suspicious (see [`Warning`]), and the error of the mesh is estimated at the
     /// end; neither changes a result.
     ///
     /// # Errors

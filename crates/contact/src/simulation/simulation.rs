@@ -109,7 +109,7 @@ impl Simulation {
         &self.model.discrete.decomposition
     }
 
-    /// The T-FETI system, with its set-up report: for those who measure the solver.
+    /// The T-FETI system with its set-up report, for measurements of the solver.
     #[doc(hidden)]
     pub fn tfeti(&self) -> &Tfeti {
         &self.model.tfeti
@@ -130,7 +130,7 @@ impl Simulation {
         self.setup
     }
 
-    /// Wall-clock time, within the set-up, of the search for what the sides of the contacts face.
+    /// Wall-clock time, within the set-up, of the contact search.
     pub fn search_time(&self) -> Duration {
         self.model.discrete.search
     }

@@ -1,7 +1,7 @@
 //! Solvers of one step: active sets, which are conjugate gradients where there is no contact, and the paper's methods.
 //!
-//! `solver` chooses; each solver holds all its work memory. `scaling` gives every body a unit of force of its own,
-//! `release` ends what rows of one node contradict.
+//! `solver` chooses; each solver holds all its work memory. `scaling` gives every body its own unit of force,
+//! `release` resolves contradictory rows of one node.
 //!
 //! Uses: `step`, `model`, `scene`, `settings`, `report` (and `qp`, `tfeti`).
 //! In: a [`StepProblem`](crate::step::StepProblem) and an [`Iterate`]. Out: multipliers and a report of the step.

@@ -5,9 +5,9 @@ use super::tolerance::Controller;
 use crate::error::ContactError;
 use crate::tolerances::MOST_HALVINGS;
 
-/// What one step hands to the next.
+/// What one step passes to the next.
 ///
-/// A simulation that starts from a stored state continues bit by bit like one that was never interrupted.
+/// A simulation that resumes from a stored state gives the same bits as an uninterrupted one.
 #[derive(Clone, PartialEq, Default)]
 #[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
 #[must_use]
@@ -99,9 +99,9 @@ impl State {
         8 * self.numbers().map(Vec::len).sum::<usize>() + self.sliding.len()
     }
 
-    /// The same state for a scene that is another one on purpose: [`Simulation::resume`](crate::Simulation::resume)
-    /// then compares sizes only. Multipliers are start values there; tangential displacements and slip rates are taken
-    /// for those of the points with the same numbers.
+    /// The same state for a different scene: [`Simulation::resume`](crate::Simulation::resume) then compares sizes
+    /// only. Multipliers serve as start values; tangential displacements and slip rates are assigned to the points with
+    /// the same numbers.
     pub fn without_origin(mut self) -> Self {
         (self.origin, self.effort) = (None, 0);
         self
@@ -118,8 +118,8 @@ impl State {
         }
     }
 
-    /// The first step that did not converge and on whose displacement later steps depend, from 0. `None` where all
-    /// converged, and in scenes without history (no friction, or static), whose steps stand alone.
+    /// The first step, from 0, that did not converge and on whose displacement later steps depend. `None` if all
+    /// converged, and in scenes without history (no friction, or static), whose steps are independent.
     pub fn unconverged_history(&self) -> Option<usize> {
         self.unconverged
     }

@@ -1,4 +1,4 @@
-//! Files: Gmsh meshes in, VTU pictures and PVD series out, and files that take the place of others at once.
+//! Files: Gmsh meshes in, VTU files and PVD series out, and atomic replacement of files.
 //!
 //! Uses: `mesh`. In: bytes, or a mesh with fields. Out: a mesh, or files.
 

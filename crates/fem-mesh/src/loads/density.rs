@@ -28,8 +28,8 @@ pub enum LoadDensity {
     /// Pressure on all facets of a tag: the force per area is -value times the outward normal, so
     /// a positive pressure pushes into the body.
     Pressure(FacetTag, f64),
-    /// A force, N, spread evenly over all facets of a tag: the same force per area, of which the facets, as they are,
-    /// have this sum. Facets inside a curved surface have less area than it, so that a force per area would lose a part.
+    /// A force, N, spread evenly over all facets of a tag: a uniform traction whose resultant on the discrete facets is
+    /// this force. Facets inscribed in a curved surface have less area than it, so a given traction would lose a part.
     Force(FacetTag, [f64; 3]),
     /// Forces at single nodes (global numbers); forces at the same node add up.
     NodalForces(Vec<(u32, [f64; 3])>),

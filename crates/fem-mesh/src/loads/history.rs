@@ -40,7 +40,7 @@ impl History {
         Self(Kind::Table(vec![(0.0, value)]))
     }
 
-    /// From 0 at time 0 along a straight line to `value` at time `duration`, constant after.
+    /// Linear from 0 at time 0 to `value` at time `duration`, then constant.
     ///
     /// # Errors
     /// [`HistoryError`] unless 0 < duration and both numbers are finite.
@@ -48,7 +48,7 @@ impl History {
         Self::table(vec![(0.0, 0.0), (duration, value)])
     }
 
-    /// Straight lines through (time, value) points; constant before the first and after the last.
+    /// Linear interpolation between (time, value) points; constant before the first and after the last.
     ///
     /// # Errors
     /// [`HistoryError`] if there is no point, a number is not finite, or the times do not

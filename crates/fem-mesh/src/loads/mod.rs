@@ -1,10 +1,10 @@
 //! Loads: in space, in time, and as nodal forces of the subdomains.
 //!
-//! `density` says where a load acts, `history` how it changes in time, `function` is what a user gives for either,
-//! `assemble` turns it into consistent nodal forces, `eigenstrain` strain without stress.
+//! `density` says where a load acts, `history` how it changes in time, `function` wraps what a user gives for either,
+//! `assemble` makes consistent nodal forces, `eigenstrain` describes stress-free strain.
 //!
 //! Uses: `decomposition`, `element`, `material`, `mesh`, `vec3`. In: a mesh, a decomposition, a load. Out: a force
-//! vector a subdomain.
+//! vector per subdomain.
 
 mod assemble;
 mod density;

@@ -2,8 +2,8 @@
 
 use super::hooke::Hooke;
 
-/// Strain that a free body would have without stress: expansion by temperature, shrinkage, the tightening of a bolt.
-/// Stress is Hooke's law of what the strain is more than that.
+/// Stress-free strain: thermal expansion, shrinkage, the pretension of a bolt. Hooke's law applies to the difference
+/// between strain and eigenstrain.
 ///
 /// ```
 /// use signorini_fem_mesh::Eigenstrain;
@@ -32,19 +32,19 @@ impl Eigenstrain {
         }
     }
 
-    /// The same elongation in all directions: coefficient of expansion times rise of temperature.
+    /// The same elongation in all directions: coefficient of thermal expansion times temperature rise.
     pub fn expansion(elongation: f64) -> Self {
         Self::new([elongation, elongation, elongation, 0.0, 0.0, 0.0])
     }
 
-    /// In one region only, not everywhere.
+    /// Restricts it to one region.
     pub fn in_region(mut self, region: u32) -> Self {
         self.region = Some(region);
         self
     }
 
-    /// Times a factor for each node of the mesh, linear between the corners of a tetrahedron: rises of temperature, if
-    /// the strain is that of one kelvin.
+    /// Multiplies it by a factor for each node of the mesh, linear between the corners of a tetrahedron: temperature
+    /// rises, if the strain is that of one kelvin.
     pub fn with_factors(mut self, factors: Vec<f64>) -> Self {
         self.factors = factors;
         self

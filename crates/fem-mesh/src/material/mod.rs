@@ -1,4 +1,4 @@
-//! Hooke's law with a general elasticity tensor, which law fills which region, and strain without stress.
+//! Hooke's law with a general elasticity tensor, materials by region, and stress-free strain.
 //!
 //! Uses: nothing. In: moduli or a tensor, numbers of regions. Out: laws that are symmetric and elliptic.
 

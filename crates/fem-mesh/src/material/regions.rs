@@ -53,15 +53,15 @@ impl Materials {
     }
 
     /// Adds an eigenstrain times a factor; several add up. [`fields`](crate::fields) and
-    /// [`recovery`](crate::recovery) take the stress of what the strain is more. The stiffness stays, and the forces
-    /// are those of [`assemble_eigenstrain`](crate::assemble_eigenstrain).
+    /// [`recovery`](crate::recovery) subtract it from the strain before they compute stress. The stiffness does not
+    /// change; the forces are those of [`assemble_eigenstrain`](crate::assemble_eigenstrain).
     #[must_use]
     pub fn with_eigenstrain(mut self, factor: f64, strain: Eigenstrain) -> Self {
         self.eigenstrains.push((factor, strain));
         self
     }
 
-    /// Takes the eigenstrains with their factors away.
+    /// Removes and returns the eigenstrains with their factors.
     pub fn take_eigenstrains(&mut self) -> Vec<(f64, Eigenstrain)> {
         std::mem::take(&mut self.eigenstrains)
     }

@@ -39,8 +39,8 @@ impl TetMesh {
         self
     }
 
-    /// Moves every node to `map(point)`, keeping connectivity, tags and regions. Mid-nodes move as all others: a map
-    /// that is not linear makes curved edges.
+    /// Moves every node, including mid-nodes, to `map(point)`; connectivity, tags and regions stay. A nonlinear map
+    /// makes curved edges.
     ///
     /// # Errors
     /// [`MeshError`] if the mapped mesh is not valid, for instance inverted by a reflection.
@@ -50,9 +50,8 @@ impl TetMesh {
         Self::checked(points, tets, mids, facets)?.with_regions(self.regions.clone())
     }
 
-    /// This mesh and, numbered after it, `other` as separate bodies. Tags and regions stay; the
-    /// nodes of `other` are shifted by the number of nodes here. That bodies do not penetrate one
-    /// another is not checked.
+    /// This mesh and `other`, numbered after it, as separate bodies. Tags and regions stay; node numbers of `other`
+    /// increase by the number of nodes here. Whether bodies penetrate one another is not checked.
     ///
     /// # Errors
     /// [`MeshError::TooLarge`] if the sum is too large to be numbered, [`MeshError::MixedOrder`] of meshes of different
@@ -103,12 +102,12 @@ pub fn orient_tets<const N: usize>(points: &[[f64; 3]], tets: &mut [[u32; N]]) -
     turned
 }
 
-/// Makes one node of nodes that are no farther apart than `distance` (m; those that coincide, with 0), for parts that
-/// were meshed apart but are to be one body, and returns how many are gone. Tetrahedra and facets then use the first
-/// of them; the others stay in the table for [`drop_unused_nodes`].
+/// Merges nodes that are at most `distance` (m) apart, coincident ones with 0, to make one body of parts that were
+/// meshed separately. Returns the number of merged nodes. Tetrahedra and facets then use the first node of each group;
+/// the others stay in the table for [`drop_unused_nodes`].
 ///
-/// Meshes of the parts have to match where they meet. Facets there, which are inside now, have to be left out. Bodies
-/// that are to slide on one another must not be merged.
+/// The meshes of the parts must match where they meet. Leave out the facets there, which are now inside. Do not merge
+/// bodies that are to slide on one another.
 ///
 /// ```
 /// use signorini_fem_mesh::{Brick, TetMesh};

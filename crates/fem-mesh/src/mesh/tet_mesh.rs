@@ -8,7 +8,7 @@ use super::curved;
 use super::error::MeshError;
 use super::faces::{FaceTable, NONE, connected_sets, face_nodes};
 
-/// Name of a part of the boundary.
+/// The number of a part of the boundary, by which supports, loads and contacts refer to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct FacetTag(pub u32);
@@ -49,8 +49,8 @@ pub struct BoundaryFacet {
 
 /// A mesh of linear or quadratic tetrahedra with tagged boundary facets and material regions.
 ///
-/// In a mesh of order 2 every edge has a mid-node ([`TetMesh::quadratic`], [`TetMesh::raise_order`]); tetrahedra and
-/// facets are listed by their corners all the same, and [`TetMesh::mids`] has the rest.
+/// In a mesh of order 2 every edge has a mid-node ([`TetMesh::quadratic`], [`TetMesh::raise_order`]). Tetrahedra and
+/// facets are listed by their corners; [`TetMesh::mids`] has the mid-nodes.
 ///
 /// A value of this type has passed all checks: finite coordinates, valid node numbers,
 /// tetrahedra of positive volume that do not overlap at faces, no unused nodes, no coinciding
@@ -127,7 +127,7 @@ impl TetMesh {
         &self.points
     }
 
-    /// Corners of each tetrahedron: all its nodes in a mesh of order 1.
+    /// Corners of each tetrahedron, which are all its nodes in a mesh of order 1.
     pub fn tets(&self) -> &[[u32; 4]] {
         &self.tets
     }
@@ -158,7 +158,7 @@ impl TetMesh {
         distinct(self.facets.iter().map(|f| f.tag))
     }
 
-    /// Nodes on the facets of a tag, mid-nodes too, ascending; empty if the tag is absent.
+    /// Nodes on the facets of a tag, including mid-nodes, ascending; empty if the tag is absent.
     pub fn nodes_on(&self, tag: FacetTag) -> Vec<u32> {
         let on_tag = self.facets.iter().filter(|f| f.tag == tag);
         let mut nodes: Vec<_> = on_tag.flat_map(|f| f.nodes).collect();
@@ -192,7 +192,7 @@ impl TetMesh {
         (0..self.tets.len()).map(|t| self.volume(t)).sum()
     }
 
-    /// Smallest axis-parallel box around the mesh: its lowest and highest corner.
+    /// Bounding box of the mesh: its lowest and highest corner.
     pub fn extent(&self) -> ([f64; 3], [f64; 3]) {
         check::extent(self.points.iter().copied())
     }

@@ -2,9 +2,9 @@
 //! predicts the next choice.
 //!
 //! From above: `solver` (the loop), `start`, `moves` and `run` (what happens between one active set and the next), `descent`
-//! (safeguard where predictions run in circles), `path` and `compliance` (springs that lead to another set), `cg` and
+//! (safeguard against cycles of predictions), `path` and `compliance` (springs that lead to another set), `cg` and
 //! `weights` (the linear problem), `iterate` (the point), `balance` (modes that constraints alone stop), `coupling` (radii
-//! that follow), `natural_map`, `blocks` and `disc` (states); `problem`, `settings`, `view`.
+//! that depend on the solution), `natural_map`, `blocks` and `disc` (states); `problem`, `settings`, `view`.
 //!
 //! Uses: `problem`, `report`, `vector`, `settings`, `error`, `tolerances`. In: operator, preconditioner, projector,
 //! set, load, a start. Out: the minimiser and its product, a report.

@@ -1,6 +1,6 @@
-//! Linear algebra of single matrices: nothing here knows of subdomains or of `B`.
+//! Linear algebra of single matrices, independent of subdomains and `B`.
 //!
-//! Uses no other room. `dense` and `sparse` are the only files that name the library behind them (faer). In go matrices
+//! Uses no other folder. `dense` and `sparse` are the only files that name the library behind them (faer). In go matrices
 //! by columns, out come factors, inverses and products with work memory of the caller; everything runs on the calling
 //! thread.
 //!

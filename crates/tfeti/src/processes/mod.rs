@@ -1,7 +1,7 @@
-//! Several processes that solve one problem together: the one place where they meet.
+//! Several processes that solve one problem together: the interface between them.
 //!
-//! Uses no other room. `communicator` is what is asked of a library for messages, `exchange` counts what is sent and
-//! remembers a failure, `threads` lets threads of one process play the ranks, for tests.
+//! Uses no other folder. `communicator` is the trait for a message library, `exchange` counts what is sent and
+//! remembers failures, `threads` uses threads of one process as ranks, for tests.
 
 pub(crate) mod communicator;
 pub(crate) mod exchange;
