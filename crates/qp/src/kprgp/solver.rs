@@ -290,7 +290,7 @@ impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
             vector::xpby(&v.phi, -gamma, &mut v.p);
         } else {
             self.steps.expansion += 1;
-            self.expand(t_cg - t_f, pap)?;
+            self.expand(t_cg - t_f);
             self.restart();
         }
         Ok(())
@@ -318,46 +318,21 @@ impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
 
     /// From the boundary point `x` to a point with more active blocks. `rest` is what is left of the conjugate
     /// gradient step.
-    fn expand(&mut self, rest: f64, pap: f64) -> Result<(), QpError> {
-        // Barzilai-Borwein length of the conjugate direction, the shorter of the two: p·Ap / Ap·Ap
-        let spectral = pap / vector::dot(&self.v.ap, &self.v.ap);
+    fn expand(&mut self, rest: f64) {
         self.split();
         if self.norms.free == 0.0 {
             // nothing free is left to expand along; the gradient at x is known
-            return Ok(());
+            return;
         }
-        let length = match self.settings.expansion {
-            Expansion::FixedStep => None,
-            Expansion::ProjectedCg => Some(rest),
-            Expansion::BarzilaiBorwein => Some(spectral),
-            Expansion::Optimal => {
-                self.o.direction(&self.v.phi, &mut self.v.ap);
-                self.products.expansion += 1;
-                let curvature = vector::dot(&self.v.phi, &self.v.ap);
-                let t = self.minimising(&self.v.phi, self.norms.free, curvature)?;
-                if t <= self.set.feasible_step(self.x, &self.v.phi) && t.is_finite() {
-                    self.set.advance(self.x, &self.v.phi, t);
-                    self.follow(t);
-                    self.decrease += 0.5 * t * self.norms.free;
-                    return Ok(());
-                }
-                Some(t)
-            }
-        };
-        // the point before the step goes to p, its gradient to ap
+        // the gradient before the step goes to ap, the point to p
         vector::copy(&self.v.g, &mut self.v.ap);
         self.products.expansion += 1;
-        if let Some(t) = length.filter(|t| t.is_finite() && *t > 0.0) {
-            let gained = if self.settings.expansion == Expansion::ProjectedCg {
-                vector::step_keeping_start(&mut self.v.p, self.x, t);
-                self.project()
-            } else {
-                vector::copy(self.x, &mut self.v.p);
-                self.projected_step(t)
-            };
+        if self.settings.expansion == Expansion::ProjectedCg && rest.is_finite() && rest > 0.0 {
+            vector::step_keeping_start(&mut self.v.p, self.x, rest);
+            let gained = self.project();
             if gained >= LONG_STEP * self.fixed * self.norms.reduced_free_dot {
                 self.decrease += gained;
-                return Ok(());
+                return;
             }
             self.products.fallback += 1;
             vector::copy(&self.v.p, self.x);
@@ -367,7 +342,6 @@ impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
         let gained = self.projected_step(self.fixed);
         self.check_fixed(gained);
         self.decrease += gained;
-        Ok(())
     }
 
     /// `x = P(x - t phi)`; what it gained from the point in `p`.

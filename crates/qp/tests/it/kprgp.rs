@@ -8,12 +8,7 @@ use signorini_qp::{
     ConvexSet, DenseOperator, KprgpSettings, ProductSet, QpError, Segment, Status, Tolerance, kkt, kprgp, vector,
 };
 
-const EXPANSIONS: [Expansion; 4] = [
-    Expansion::FixedStep,
-    Expansion::ProjectedCg,
-    Expansion::Optimal,
-    Expansion::BarzilaiBorwein,
-];
+const EXPANSIONS: [Expansion; 2] = [Expansion::FixedStep, Expansion::ProjectedCg];
 
 fn config() -> ProptestConfig {
     ProptestConfig {
@@ -28,7 +23,7 @@ proptest! {
     #![proptest_config(config())]
 
     #[test]
-    fn finds_the_minimiser(seed in any::<u64>(), expansion in 0_usize..4, scale in -8_i32..8) {
+    fn finds_the_minimiser(seed in any::<u64>(), expansion in 0_usize..2, scale in -8_i32..8) {
         let mut r = Random::new(seed);
         let set = common::set(&mut r);
         let n = set.dim();
