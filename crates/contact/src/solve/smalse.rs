@@ -13,7 +13,7 @@ use crate::tolerances::{BALANCED, BALANCING, INNER_FACTOR, INNER_LOOSEST, INNER_
 use signorini_qp::internal::Contraction;
 use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
-use signorini_qp::{ProductSet, Projected, Segment, SmalseSettings, Status, Tolerance, norm_estimate, smalse, vector};
+use signorini_qp::{ProductSet, Projected, Segment, SmalseSettings, Status, norm_estimate, smalse, vector};
 use signorini_tfeti::{DualOperator, OrthonormalCoarse};
 
 /// How often a step may tighten the inner tolerance tenfold.
@@ -149,7 +149,7 @@ impl SmalseSolver {
     ) -> Result<SmalseReport, ContactError> {
         let settings = self
             .settings
-            .with_tolerance(Tolerance::Relative(tolerance))
+            .with_tolerance(tolerance)
             .with_equality(tolerance)
             .with_least(task.problem.least(task.settings.tolerance)[0])
             .limited_to(self.left);

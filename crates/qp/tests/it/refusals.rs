@@ -3,8 +3,8 @@
 use signorini_qp::kprgp::KprgpWorkspace;
 use signorini_qp::smalse::SmalseWorkspace;
 use signorini_qp::{
-    DenseEquality, DenseOperator, KprgpSettings, ProductSet, QpError, Segment, SetError, SmalseSettings, Status,
-    Tolerance, kprgp, smalse,
+    DenseEquality, DenseOperator, KprgpSettings, ProductSet, QpError, Segment, SetError, SmalseSettings, Status, kprgp,
+    smalse,
 };
 
 use crate::common::{pair, run};
@@ -49,7 +49,7 @@ fn wrong_input_of_kprgp_is_named() {
         &[0.0; 2],
         &free,
         0.0,
-        Tolerance::default(),
+        1e-6,
         &s,
         &mut [0.0; 2],
         &mut work,
