@@ -5,8 +5,7 @@ use crate::tolerances::ON_CIRCLE;
 
 use super::set::BlockState;
 
-/// A closed convex set of `N` components, as the methods of a [`ConvexSet`](super::set::ConvexSet) see one of its
-/// blocks.
+/// A closed convex set of `N` components: one block of a [`ProductSet`](super::product::ProductSet).
 pub(crate) trait Shape<const N: usize>: Copy {
     fn state(self, x: [f64; N]) -> BlockState;
     /// The nearest point.

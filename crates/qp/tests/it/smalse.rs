@@ -5,8 +5,7 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_qp::kkt::{EqualityPart, check_with};
 use signorini_qp::{
-    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment, SmalseSettings, Status,
-    vector,
+    DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment, SmalseSettings, Status, vector,
 };
 
 fn config() -> ProptestConfig {
