@@ -13,8 +13,7 @@ use std::sync::Arc;
 
 /// Direction in which the contact surface meets the obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum ContactNormal {
+pub(crate) enum ContactNormal {
     /// The body's own outward normal at each node.
     Body,
     /// One unit vector into the obstacle, e.g. (0, 0, -1) for a floor: the usual choice for a plane obstacle
@@ -336,13 +335,8 @@ impl Contact {
         &self.tags
     }
 
-    /// The distance to the obstacle.
-    pub fn gap(&self) -> &Gap {
-        &self.gap
-    }
-
     /// The direction in which the obstacle is met.
-    pub fn normal(&self) -> ContactNormal {
+    pub(crate) fn normal(&self) -> ContactNormal {
         self.normal
     }
 
