@@ -24,17 +24,17 @@
 //! # Parts of a problem
 //!
 //! - The operator: any [`SymmetricOperator`]; [`DenseOperator`] for small matrices.
-//! - The set: a [`ProductSet`] of [`Segment`]s.
+//! - The set: a [`ProductSet`] of [`Segment`]s, or any [`ConvexSet`].
 //! - The equality: any [`Equality`], for [`active_set()`] any [`EqualityProjector`]; [`DenseEquality`] and
 //!   [`DenseProjector`] for small matrices.
 //! - The norm of `A` (of `P A P` with an equality, [`Projected`]): steps and penalties are relative to it.
-//! - [`laws`] has checkers for own implementations of the two traits.
+//! - [`laws`] has checkers for own implementations of the three traits.
 //!
 //! # Example: a string over an obstacle
 //!
 //! ```
 //! use signorini_qp::{
-//!     KprgpSettings, ProductSet, Segment, SymmetricOperator, kkt, kprgp, norm_estimate,
+//!     ConvexSet, KprgpSettings, ProductSet, Segment, SymmetricOperator, kkt, kprgp, norm_estimate,
 //! };
 //! use signorini_qp::kprgp::KprgpWorkspace;
 //! use signorini_qp::problem::BlockState;
@@ -105,8 +105,8 @@ pub use error::{QpError, SetError};
 pub use fixed_point::{FixedPointReport, Verdict, successive_approximations};
 pub use kprgp::{KprgpSettings, kprgp};
 pub use problem::{
-    DenseEquality, DenseOperator, DenseProjector, Equality, EqualityProjector, ProductSet, Projected, Segment,
-    SymmetricOperator,
+    ConvexSet, DenseEquality, DenseOperator, DenseProjector, Equality, EqualityProjector, ProductSet, Projected,
+    Segment, SymmetricOperator,
 };
 pub use report::{Products, Status, Steps};
 pub use smalse::{SmalseSettings, smalse};

@@ -44,6 +44,10 @@ pub(crate) const EXHAUSTED: f64 = 1e-14;
 pub(crate) const KKT_ON_BOUND: f64 = 1e-10;
 /// Distance from a circle, over its radius, at which the independent check counts a point as on it.
 pub(crate) const KKT_ON_CIRCLE: f64 = 1e-9;
+/// Rounding allowed in the laws of a set, relative to the vectors; wider where a point next to a circle counts as on
+/// it.
+pub(crate) const LAW: f64 = 1e-10;
+pub(crate) const LAW_ON_CIRCLE: f64 = 1e-6;
 
 // KPRGP
 

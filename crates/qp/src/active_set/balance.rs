@@ -253,7 +253,7 @@ impl<'a> Search<'a> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::problem::Segment;
+    use crate::problem::{ConvexSet, Segment};
 
     /// Bounds and discs with modes that are sums of components, as translations are.
     fn set() -> ProductSet {

@@ -7,7 +7,7 @@
 //! that make `pᵀ r` vanish, and directions are kept conjugate by the product just made (Polak and Ribière). What is
 //! left for the move to the next set is of second order, so that nearly nothing is lost by it.
 
-use crate::problem::{EqualityProjector, ProductSet, for_discs};
+use crate::problem::{ConvexSet, EqualityProjector, ProductSet, for_discs};
 use crate::tolerances::{COUPLED_GROWTH, COUPLED_LEAST, COUPLED_LOST, COUPLED_NEAR, COUPLED_STEPS, COUPLED_WAIT};
 
 use super::blocks::ActiveSet;

@@ -11,7 +11,7 @@
 //! is solved. All this holds between feasible points only: where set and equality hardly meet, moves that do not
 //! descend are taken, too.
 
-use crate::problem::{ProductSet, SymmetricOperator};
+use crate::problem::{ConvexSet, ProductSet, SymmetricOperator};
 use crate::tolerances::{INSIDE, KEPT_DECREASE, PROGRESS, REACH, RELEASE, SHORT};
 use crate::vector;
 

@@ -1,7 +1,7 @@
 //! The iterate on its present active set: what conjugate gradients, and the moves between sets, work on.
 
 use crate::error::QpError;
-use crate::problem::{Constrained, EqualityProjector, ProductSet, SymmetricOperator, for_constrained};
+use crate::problem::{Constrained, ConvexSet, EqualityProjector, ProductSet, SymmetricOperator, for_constrained};
 use crate::tolerances::SLID;
 use crate::vector;
 

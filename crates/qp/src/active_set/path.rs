@@ -6,7 +6,7 @@
 //! (Moreau-Yosida regularisation with path-following: Hintermüller and Kunisch, SIAM J. Optim. 17, 2006). A change of
 //! the compliance costs no product, only its end one, for large terms have rounded.
 
-use crate::problem::{EqualityProjector, SymmetricOperator};
+use crate::problem::{ConvexSet, EqualityProjector, SymmetricOperator};
 use crate::tolerances::{
     AWAY, AWAY_SETS, FAR, LEAST_COMPLIANCE, LESS_COMPLIANT, MORE_COMPLIANT, PATHS, START_COMPLIANCE,
 };

@@ -3,7 +3,7 @@
 use std::mem::Discriminant;
 
 use crate::error::{QpError, SetError};
-use crate::problem::{EqualityProjector, ProductSet, Segment, SymmetricOperator};
+use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
     BEHIND_PATH, FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NEGLIGIBLE, ON_PATH, PASSING_PART, PROGRESS, ROUNDED,

@@ -23,7 +23,7 @@
 //! | `constrained` | components up to the last constrained one; only these differ on the set |
 
 use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
-use crate::problem::{EqualityProjector, ProductSet, SymmetricOperator};
+use crate::problem::{ConvexSet, EqualityProjector, ProductSet, SymmetricOperator};
 use crate::report::Status;
 
 use super::problem::{ActiveSetHook, ActiveSetProblem};

@@ -1,7 +1,7 @@
 //! The start of the active-set method: a point, its product and a first active set.
 
 use crate::error::QpError;
-use crate::problem::{EqualityProjector, SymmetricOperator};
+use crate::problem::{ConvexSet, EqualityProjector, SymmetricOperator};
 use crate::tolerances::{PRESSED, ROUNDED, SINK_ROUNDS};
 use crate::vector;
 

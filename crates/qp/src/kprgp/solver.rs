@@ -21,7 +21,7 @@
 //! conjugate directions start again from the free gradient.
 
 use crate::error::{QpError, expect_finite, expect_lengths};
-use crate::problem::{GradientNorms, ProductSet, SymmetricOperator};
+use crate::problem::{ConvexSet, GradientNorms, SymmetricOperator};
 use crate::report::{Products, Status, Steps};
 use crate::settings::expect_setting;
 use crate::tolerances::{
@@ -58,10 +58,10 @@ use super::settings::{Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, Vec
 /// assert!((x[0] - 0.5).abs() < 1e-9 && x[1] == 0.0);
 /// # Ok::<(), signorini_qp::QpError>(())
 /// ```
-pub fn kprgp<A: SymmetricOperator>(
+pub fn kprgp<A: SymmetricOperator, S: ConvexSet + ?Sized>(
     a: &A,
     b: &[f64],
-    set: &ProductSet,
+    set: &S,
     norm: f64,
     tolerance: f64,
     settings: &KprgpSettings,
@@ -119,9 +119,9 @@ pub(crate) fn drifted(norm: f64, x: &[f64], stale: usize, tolerance: f64) -> boo
 }
 
 /// The iteration, from a feasible `x` whose gradient is in `v.g`.
-pub(crate) fn iterate<O: Objective>(
+pub(crate) fn iterate<O: Objective, S: ConvexSet + ?Sized>(
     objective: &mut O,
-    set: &ProductSet,
+    set: &S,
     settings: &KprgpSettings,
     max_products: usize,
     x: &mut [f64],
@@ -201,9 +201,9 @@ pub(crate) fn iterate<O: Objective>(
 }
 
 /// One run.
-struct Run<'a, O> {
+struct Run<'a, O, S: ?Sized> {
     o: &'a mut O,
-    set: &'a ProductSet,
+    set: &'a S,
     settings: &'a KprgpSettings,
     x: &'a mut [f64],
     v: &'a mut Vectors,
@@ -217,7 +217,7 @@ struct Run<'a, O> {
     halvings: usize,
 }
 
-impl<O: Objective> Run<'_, O> {
+impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
     fn compute_gradient(&mut self) {
         self.o.gradient(self.x, &mut self.v.g);
         self.v.stale = 0;

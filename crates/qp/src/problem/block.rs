@@ -5,7 +5,8 @@ use crate::tolerances::ON_CIRCLE;
 
 use super::set::BlockState;
 
-/// A closed convex set of `N` components: one block of a [`ProductSet`](super::product::ProductSet).
+/// A closed convex set of `N` components, as the methods of a [`ConvexSet`](super::set::ConvexSet) see one of its
+/// blocks.
 pub(crate) trait Shape<const N: usize>: Copy {
     fn state(self, x: [f64; N]) -> BlockState;
     /// The nearest point.

@@ -1,8 +1,8 @@
 //! The parts of a problem: operator, set, equality; minimise `1/2 x·Ax - b·x` over `x` in a set with `C x = e`.
 //!
 //! `operator` has the two traits every solver asks for, `dense` matrices that implement them, `projected` the
-//! operator `P A P`. `product` is the convex set: segments of blocks, of which `block` has one shape each (interval, disc);
-//! `set` is what is said of a point and a gradient there. `projector` is the equality as the active-set method sees it,
+//! operator `P A P`. `set` is what a solver asks of a convex set, `product` the one set here: segments of blocks, of
+//! which `block` has one shape each (interval, disc). `projector` is the equality as the active-set method sees it,
 //! `dense_projector` one of a matrix.
 //!
 //! Uses: `vector`, `error`, `tolerances`. In: what a caller owns. Out: products, projections, steps to the boundary. No
@@ -16,8 +16,6 @@ mod product;
 mod projected;
 mod projector;
 mod set;
-#[cfg(test)]
-mod set_laws;
 
 pub(crate) use dense::solve_cholesky;
 pub use dense::{DenseEquality, DenseOperator, Diagonal, Identity};
@@ -28,7 +26,6 @@ pub use projected::Projected;
 pub use projector::EqualityProjector;
 #[doc(hidden)]
 pub use projector::{LineWeight, LooseMode};
-pub(crate) use set::GradientNorms;
-pub use set::{Block, BlockState};
+pub use set::{Block, BlockState, ConvexSet, GradientNorms};
 
 pub(crate) use product::{Constrained, for_bounds, for_constrained, for_discs};

@@ -10,7 +10,7 @@ use crate::error::SetError;
 use crate::vector;
 
 use super::block::{Disc, Interval, Shape};
-use super::set::{Block, BlockState, GradientNorms};
+use super::set::{Block, BlockState, ConvexSet, GradientNorms};
 
 /// A run of blocks of one kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -115,11 +115,8 @@ impl Segment {
 
 /// An ordered product of [`Segment`]s.
 ///
-/// Vectors have length [`dim`](Self::dim). "Feasible" means as returned by [`project`](Self::project): a component on a
-/// bound has exactly the value of the bound.
-///
 /// ```
-/// use signorini_qp::{ProductSet, Segment};
+/// use signorini_qp::{ConvexSet, ProductSet, Segment};
 /// use signorini_qp::problem::BlockState;
 ///
 /// // one component below 0, one disc of radius 2, three free components
@@ -257,31 +254,21 @@ fn dot<const N: usize>(a: [f64; N], b: [f64; N]) -> f64 {
     (1..N).fold(a[0] * b[0], |sum, k| sum + a[k] * b[k])
 }
 
-impl ProductSet {
-    /// Length of the vectors.
-    #[must_use]
-    pub fn dim(&self) -> usize {
+impl ConvexSet for ProductSet {
+    fn dim(&self) -> usize {
         self.offsets.last().copied().unwrap_or(0)
     }
 
-    /// Checks the data (bounds in order, radii not negative, nothing NaN), which may have been changed in place; solvers
-    /// do so before the first iteration and after every change.
-    ///
-    /// # Errors
-    /// [`SetError`] naming the segment and the entry.
-    pub fn validate(&self) -> Result<(), SetError> {
+    fn validate(&self) -> Result<(), SetError> {
         let mut segments = self.segments.iter().enumerate();
         segments.try_for_each(|(i, s)| s.validate(i))
     }
 
-    /// Replaces `x` by the nearest point of the set.
-    pub fn project(&self, x: &mut [f64]) {
+    fn project(&self, x: &mut [f64]) {
         walk!(self, _range => {}, (shape, at) => put(x, at, shape.project(get(x, at))));
     }
 
-    /// Euclidean distance of `x` from the set.
-    #[must_use]
-    pub fn violation(&self, x: &[f64]) -> f64 {
+    fn violation(&self, x: &[f64]) -> f64 {
         let mut sum = 0.0;
         walk!(self, _range => {}, (shape, at) => {
             let d = shape.distance(get(x, at));
@@ -290,16 +277,13 @@ impl ProductSet {
         sum.sqrt()
     }
 
-    /// Largest `t >= 0` with `x - t p` in the set, `+inf` if there is none; `x` is feasible.
-    pub(crate) fn feasible_step(&self, x: &[f64], p: &[f64]) -> f64 {
+    fn feasible_step(&self, x: &[f64], p: &[f64]) -> f64 {
         let mut t = f64::INFINITY;
         walk!(self, _range => {}, (shape, at) => t = t.min(shape.step(get(x, at), get(p, at))));
         t
     }
 
-    /// `x -= t p`, with `t` at most the feasible step; blocks that reach their boundary at or before `t` are put on it
-    /// without rounding error.
-    pub(crate) fn advance(&self, x: &mut [f64], p: &[f64], t: f64) {
+    fn advance(&self, x: &mut [f64], p: &[f64], t: f64) {
         walk!(
             self,
             range => vector::axpy(-t, &p[range.clone()], &mut x[range]),
@@ -307,8 +291,7 @@ impl ProductSet {
         );
     }
 
-    /// Writes the free gradient to `free` and returns the norms of all parts for the step length `step`.
-    pub(crate) fn split(&self, x: &[f64], g: &[f64], step: f64, free: &mut [f64]) -> GradientNorms {
+    fn split(&self, x: &[f64], g: &[f64], step: f64, free: &mut [f64]) -> GradientNorms {
         let mut n = GradientNorms::default();
         walk!(
             self,
@@ -338,8 +321,7 @@ impl ProductSet {
         n
     }
 
-    /// Writes the chopped gradient to `out`.
-    pub(crate) fn chopped(&self, x: &[f64], g: &[f64], out: &mut [f64]) {
+    fn chopped(&self, x: &[f64], g: &[f64], out: &mut [f64]) {
         walk!(
             self,
             range => vector::fill(0.0, &mut out[range]),
@@ -351,8 +333,7 @@ impl ProductSet {
         );
     }
 
-    /// Calls `visit` for every block in ascending order of components. A run of unconstrained components is one block.
-    pub fn for_each_block(&self, x: &[f64], visit: &mut dyn FnMut(Block)) {
+    fn for_each_block(&self, x: &[f64], visit: &mut dyn FnMut(Block)) {
         walk!(
             self,
             range => if !range.is_empty() {

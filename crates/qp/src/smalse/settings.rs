@@ -2,7 +2,7 @@
 
 use crate::error::QpError;
 use crate::kprgp::{KprgpSettings, Vectors};
-use crate::problem::{Equality, ProductSet, SymmetricOperator};
+use crate::problem::{Equality, SymmetricOperator};
 use crate::report::{Products, Status, Steps};
 use crate::settings::settings;
 
@@ -48,7 +48,7 @@ impl SmalseSettings {
 
 /// Is told the iterate, feasible for the set as it is, after Step 1 of every outer step, and may change the set;
 /// whether it did anything that matters. If it did, `x` is projected on the set again and the solve goes on.
-pub(crate) type OuterHook<'h> = dyn FnMut(&[f64], &mut ProductSet) -> bool + 'h;
+pub(crate) type OuterHook<'h, S> = dyn FnMut(&[f64], &mut S) -> bool + 'h;
 
 /// Result of [`smalse`](crate::smalse()).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -21,7 +21,7 @@
 
 use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
 use crate::kprgp::{KprgpReport, Objective, Vectors, drifted, iterate};
-use crate::problem::{Equality, ProductSet, SymmetricOperator};
+use crate::problem::{ConvexSet, Equality, SymmetricOperator};
 use crate::report::{Products, Status, Steps};
 use crate::settings::expect_setting;
 use crate::tolerances::{LEAST_PRECISION, LEAST_RESPONSE, PROJECTED_LOAD, STAGNATIONS};
@@ -63,15 +63,15 @@ use super::settings::{OuterHook, SmalseReport, SmalseSettings, SmalseWorkspace};
 /// assert!((x[0] - 1.0).abs() < 1e-5 && x[1].abs() < 1e-5);
 /// # Ok::<(), signorini_qp::QpError>(())
 /// ```
-pub fn smalse<A: SymmetricOperator, C: Equality>(
+pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
     a: &A,
     b: &[f64],
     c: &C,
     e: &[f64],
-    set: &mut ProductSet,
+    set: &mut S,
     norm: f64,
     settings: &SmalseSettings,
-    hook: &mut OuterHook<'_>,
+    hook: &mut OuterHook<'_, S>,
     x: &mut [f64],
     multiplier: &mut [f64],
     work: &mut SmalseWorkspace<A, C>,
@@ -157,11 +157,11 @@ pub fn smalse<A: SymmetricOperator, C: Equality>(
 }
 
 /// One solve.
-struct Run<'s, 'h, A: SymmetricOperator, C: Equality> {
+struct Run<'s, 'h, A: SymmetricOperator, C: Equality, S: ?Sized> {
     o: Penalised<'s, A, C>,
-    set: &'s mut ProductSet,
+    set: &'s mut S,
     settings: &'s SmalseSettings,
-    hook: &'s mut OuterHook<'h>,
+    hook: &'s mut OuterHook<'h, S>,
     x: &'s mut [f64],
     v: &'s mut Vectors,
     /// What the equality is measured against if `x` is smaller: `|e|`, what rounding errors of the load make of `x`, or
@@ -187,7 +187,7 @@ enum Verdict {
     Update,
 }
 
-impl<A: SymmetricOperator, C: Equality> Run<'_, '_, A, C> {
+impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, '_, A, C, S> {
     /// Tolerances, and the first gradient.
     fn start(&mut self) -> Result<(), QpError> {
         let settings = self.settings;

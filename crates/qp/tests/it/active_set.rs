@@ -5,8 +5,8 @@ use proptest::prelude::*;
 use signorini_qp::active_set::{ActiveSetProblem, ActiveSetReport, ActiveSetWorkspace};
 use signorini_qp::problem::Identity;
 use signorini_qp::{
-    ActiveSetSettings, DenseOperator, DenseProjector, ProductSet, QpError, Segment, Status, SymmetricOperator,
-    active_set, vector,
+    ActiveSetSettings, ConvexSet, DenseOperator, DenseProjector, ProductSet, QpError, Segment, Status,
+    SymmetricOperator, active_set, vector,
 };
 
 /// Natural residual `x - P(x - (A x - b + Gᵀ mu))`, in its own loop.

@@ -113,7 +113,7 @@ pub(crate) fn set(r: &mut Random) -> ProductSet {
 
 /// Feasible equality: `C x = e` holds at a point of the set.
 pub(crate) fn equality(n: usize, rows: usize, set: &ProductSet, r: &mut Random) -> (DenseEquality, Vec<f64>) {
-    use signorini_qp::Equality;
+    use signorini_qp::{ConvexSet, Equality};
     let g: Vec<f64> = r.vector(rows * n);
     let c = DenseEquality::orthonormal(rows, n, &g).expect("independent rows");
     // the mean of several points of the set is inside where the set has an inside: multipliers exist

@@ -5,7 +5,8 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use signorini_qp::kprgp::KprgpWorkspace;
 use signorini_qp::{
-    DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment, SmalseSettings, kprgp, vector,
+    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment, SmalseSettings, kprgp,
+    vector,
 };
 
 /// Row-by-row matrix `rows x n` in compressed columns.

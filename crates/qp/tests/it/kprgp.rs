@@ -4,7 +4,7 @@ use crate::common::{self, Random, pair, run};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_qp::kprgp::{Expansion, KprgpWorkspace};
-use signorini_qp::{DenseOperator, KprgpSettings, ProductSet, QpError, Segment, Status, kkt, kprgp, vector};
+use signorini_qp::{ConvexSet, DenseOperator, KprgpSettings, ProductSet, QpError, Segment, Status, kkt, kprgp, vector};
 
 const EXPANSIONS: [Expansion; 2] = [Expansion::FixedStep, Expansion::ProjectedCg];
 

@@ -2,7 +2,7 @@
 
 use signorini_qp::kprgp::{Expansion, KprgpReport, KprgpWorkspace};
 use signorini_qp::problem::BlockState;
-use signorini_qp::{KprgpSettings, ProductSet, Segment, SymmetricOperator, kkt, kprgp, vector};
+use signorini_qp::{ConvexSet, KprgpSettings, ProductSet, Segment, SymmetricOperator, kkt, kprgp, vector};
 use std::f64::consts::PI;
 
 const N: usize = 100;

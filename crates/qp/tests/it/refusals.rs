@@ -44,7 +44,16 @@ fn wrong_input_of_kprgp_is_named() {
         ));
     }
     let mut work = KprgpWorkspace::new(&a);
-    let wrong_norm = kprgp(&a, &[0.0; 2], &free, 0.0, 1e-6, &s, &mut [0.0; 2], &mut work);
+    let wrong_norm = kprgp(
+        &a,
+        &[0.0; 2],
+        &free,
+        0.0,
+        1e-6,
+        &s,
+        &mut [0.0; 2],
+        &mut work,
+    );
     assert!(matches!(wrong_norm, Err(QpError::Setting { name: "norm", .. })));
 }
 

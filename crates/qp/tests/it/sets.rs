@@ -1,11 +1,11 @@
-//! Products of free components, bounds and discs; laws of operators.
+//! Laws of products of free components, bounds and discs.
 
 use crate::common::{self, Random};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use signorini_qp::laws::{check_equality_laws, check_operator_laws};
+use signorini_qp::laws::{check_equality_laws, check_operator_laws, check_set_laws};
 use signorini_qp::problem::BlockState;
-use signorini_qp::{DenseEquality, ProductSet, Segment, SetError, vector};
+use signorini_qp::{ConvexSet, DenseEquality, ProductSet, Segment, SetError, vector};
 
 fn config() -> ProptestConfig {
     ProptestConfig {
@@ -18,6 +18,50 @@ fn config() -> ProptestConfig {
 
 proptest! {
     #![proptest_config(config())]
+
+    #[test]
+    fn products_obey_the_laws(seed in any::<u64>(), decade in -9_i32..9) {
+        let set = common::set(&mut Random::new(seed));
+        let verdict = check_set_laws(&set, 1.0, 6);
+        prop_assert!(verdict.is_ok(), "{verdict:?} {set:?}");
+        // the same at any scale
+        let s = 10f64.powi(decade);
+        let scaled = set.segments().iter().map(|g| match g {
+            Segment::Bounds { lower, upper } => Segment::bounds(
+                lower.iter().map(|v| s * v).collect(), upper.iter().map(|v| s * v).collect()),
+            Segment::Discs { radii } => Segment::discs(radii.iter().map(|v| s * v).collect()),
+            other => other.clone(),
+        });
+        let scaled = ProductSet::new(scaled.collect()).expect("valid");
+        let verdict = check_set_laws(&scaled, s, 6);
+        prop_assert!(verdict.is_ok(), "{verdict:?} {scaled:?}");
+    }
+
+    #[test]
+    fn a_step_to_the_boundary_is_seen_as_active(
+        x in -1.0..1.0f64, y in -1.0..1.0f64, p in -1.0..1.0f64, q in -1.0..1.0f64, e in -12_i32..12,
+    ) {
+        let s = 10f64.powi(e);
+        let set = ProductSet::new(vec![Segment::discs(vec![1.5 * s])]).expect("valid");
+        let mut z = [s * x, s * y];
+        let p = [p, q];
+        prop_assume!(p[0].abs() + p[1].abs() > 1e-3);
+        let t = set.feasible_step(&z, &p);
+        set.advance(&mut z, &p, t);
+        let mut state = BlockState::Free;
+        set.for_each_block(&z, &mut |b| state = b.state);
+        prop_assert_eq!(state, BlockState::Boundary);
+        prop_assert!(z[0].hypot(z[1]) <= 1.5 * s);
+    }
+
+    #[test]
+    fn a_bound_that_stops_a_step_is_met_exactly(l in -1.0..0.0f64, x in 0.0..1.0f64, p in 1e-6..10.0f64) {
+        let set = ProductSet::new(vec![Segment::lower(vec![l])]).expect("valid");
+        let mut z = [x];
+        let t = set.feasible_step(&z, &[p]);
+        set.advance(&mut z, &[p], t);
+        prop_assert_eq!(z[0], l);
+    }
 
     #[test]
     fn operators_obey_the_laws(seed in any::<u64>(), n in 1_usize..20) {

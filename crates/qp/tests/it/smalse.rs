@@ -5,7 +5,8 @@ use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_qp::kkt::{EqualityPart, check_with};
 use signorini_qp::{
-    DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment, SmalseSettings, Status, vector,
+    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment, SmalseSettings, Status,
+    vector,
 };
 
 fn config() -> ProptestConfig {

@@ -2,7 +2,7 @@
 
 use crate::common::{self, Quadratic, Random};
 use signorini_qp::smalse::SmalseReport;
-use signorini_qp::{Equality, KprgpSettings, ProductSet, SmalseSettings, vector};
+use signorini_qp::{ConvexSet, Equality, KprgpSettings, ProductSet, SmalseSettings, vector};
 
 impl Quadratic {
     fn residual(&self, x: &[f64]) -> Vec<f64> {
