@@ -1,6 +1,6 @@
 //! From a mesh of Gmsh to ParaView: `cargo run --release --example from_mesh`. Lengths in mm, stresses in MPa.
 
-use signorini::fem_mesh::gmsh::read_named_gmsh;
+use signorini::fem_mesh::gmsh::read_gmsh;
 use signorini::prelude::*;
 
 fn main() -> Result<(), Error> {
@@ -9,7 +9,7 @@ fn main() -> Result<(), Error> {
 
 /// Solves and writes series for ParaView.
 pub fn run(file: &str, folder: &str) -> Result<(), Error> {
-    let (mesh, names) = read_named_gmsh(file)?;
+    let (mesh, names) = read_gmsh(file)?;
     let rubber = Materials::uniform(Hooke::isotropic(5.0, 0.45)?);
     let ramp = History::ramp(1.0, 1.0)?;
     let scene = Scene::new(mesh, rubber)

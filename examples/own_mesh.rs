@@ -3,7 +3,7 @@
 //! Half a rubber roller (10 mm radius, `roller.msh`) is pressed on a floor and dragged along it. Lengths in mm,
 //! stresses in MPa.
 
-use signorini::fem_mesh::gmsh::read_named_gmsh;
+use signorini::fem_mesh::gmsh::read_gmsh;
 use signorini::prelude::*;
 
 fn main() -> Result<(), Error> {
@@ -13,7 +13,7 @@ fn main() -> Result<(), Error> {
 /// The roller of a mesh file on the floor.
 pub fn scene(file: &str) -> Result<Scene, Error> {
     // physical surfaces and volumes of the file by their names
-    let (mesh, names) = read_named_gmsh(file)?;
+    let (mesh, names) = read_gmsh(file)?;
     let (top, rim) = (names.surface("top")?, names.surface("rim")?);
     let rubber = Hooke::isotropic(5.0, 0.45)?;
     let materials = Materials::new(vec![(names.volume("roller")?, rubber)])?;

@@ -48,7 +48,7 @@ pub fn string(expansion: Expansion) -> Result<(KprgpReport, usize, f64), QpError
     let obstacle = |i: usize| (4.0 * PI * i as f64 * h - PI / 6.0).sin() / 2.0 - 2.0;
     let set = ProductSet::new(vec![Segment::lower((1..99).map(obstacle).collect())])?;
     // the largest eigenvalue is known here; `norm_estimate` finds it otherwise
-    let (norm, limit) = (2.0 + 2.0 * (PI * h).cos(), Tolerance::Relative(1e-5));
+    let (norm, limit) = (2.0 + 2.0 * (PI * h).cos(), 1e-5);
     let settings = KprgpSettings::default().with_expansion(expansion);
     let (mut x, mut work) = ([0.0; 98], KprgpWorkspace::new(&Stiffness));
     let a = &Stiffness;
@@ -69,9 +69,7 @@ pub fn disc() -> Result<([f64; 3], f64, f64), QpError> {
     let mut set = ProductSet::new(vec![Segment::discs(vec![1.0]), Segment::Free(1)])?;
     let c = DenseEquality::orthonormal(1, 3, &[0.0, 1.0, 1.0])?;
     let e = c.right_side(&[1.0])?;
-    let settings = SmalseSettings::default()
-        .with_tolerance(Tolerance::Relative(1e-10))
-        .with_equality(1e-10);
+    let settings = SmalseSettings::default().with_tolerance(1e-10).with_equality(1e-10);
     let (mut x, mut mu, mut work) = ([0.0; 3], [0.0], SmalseWorkspace::new(&a, &c));
     let (s, hook) = (&settings, &mut |_: &[f64], _: &mut ProductSet| false);
     let report = smalse(&a, &b, &c, &e, &mut set, 1.0, s, hook, &mut x, &mut mu, &mut work)?;

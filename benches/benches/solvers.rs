@@ -6,7 +6,7 @@
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use signorini::prelude::*;
 use signorini::qp::kprgp::KprgpWorkspace;
-use signorini::qp::{KprgpSettings, ProductSet, Segment, SymmetricOperator, Tolerance, kprgp};
+use signorini::qp::{KprgpSettings, ProductSet, Segment, SymmetricOperator, kprgp};
 use signorini_benches::Failure;
 use signorini_studies::brick::{Block, Loading};
 use std::f64::consts::PI;
@@ -38,7 +38,7 @@ fn string(c: &mut Criterion) -> Result<(), Failure> {
     let set = ProductSet::new(vec![Segment::lower((1..=n).map(obstacle).collect())])?;
     let (operator, b) = (FixedString(n), vec![-30.0 * h * h; n]);
     let mut work = KprgpWorkspace::new(&operator);
-    let (settings, limit) = (KprgpSettings::default(), Tolerance::Relative(1e-8));
+    let (settings, limit) = (KprgpSettings::default(), 1e-8);
     c.bench_function("KPRGP, obstacle string of 98 nodes", |bench| {
         bench.iter(|| {
             let mut x = vec![0.0; n];

@@ -2,8 +2,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use signorini::fem_mesh::gmsh::parse_named_gmsh;
+use signorini::fem_mesh::gmsh::parse_gmsh;
 
 fuzz_target!(|bytes: &[u8]| {
-    let _ = parse_named_gmsh(bytes);
+    let _ = parse_gmsh(bytes);
 });

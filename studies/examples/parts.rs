@@ -9,7 +9,7 @@ use std::process::ExitCode;
 use std::sync::Arc;
 
 use clap::Parser;
-use signorini::fem_mesh::gmsh::{GroupNames, read_named_gmsh, write_sizes};
+use signorini::fem_mesh::gmsh::{GroupNames, read_gmsh, write_sizes};
 use signorini::fem_mesh::{Surface, TetMesh};
 use signorini::prelude::*;
 use signorini_studies::chart::{Chart, Curve, page};
@@ -89,7 +89,7 @@ pub fn execute(options: &PartsOptions, out: &mut (impl Write + Send)) -> Result<
     for path in files(&options.meshes)? {
         let stem = path.file_stem().unwrap_or_default().to_string_lossy();
         let part = stem.split('-').next().unwrap_or_default().to_owned();
-        let (mut mesh, names) = read_named_gmsh(&path)?;
+        let (mut mesh, names) = read_gmsh(&path)?;
         if options.order > mesh.order() as u8 {
             mesh = mesh.raise_order()?;
         }

@@ -162,7 +162,7 @@ impl StepRecord {
             faces: report.counters.active_sets,
             quadratic_programs: report.counters.quadratic_programs,
             contraction: report.fixed_point.as_ref().and_then(|f| f.rate),
-            load: result.load_resultant(),
+            load: result.reactions().loads.force,
         }
     }
 

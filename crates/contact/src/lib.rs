@@ -6,7 +6,7 @@
 //!
 //! | you want | you use |
 //! |---|---|
-//! | a body on a rigid obstacle | [`Scene`], [`Support`], [`Load`], [`Contact`] with a [`Gap`] and a [`Friction`] law |
+//! | a body on a rigid obstacle | [`Scene`], [`Support`], [`Load`], [`Contact`] with a gap and a [`Friction`] law |
 //! | bodies that touch each other | [`Contact::between`] |
 //! | friction that depends on place or slip rate | [`Coefficient`], [`SlipBound`] |
 //! | time steps | [`Analysis`] with a [`DifferenceFormula`]; for one state [`Analysis::Static`] |
@@ -104,8 +104,8 @@ pub use plan::Plan;
 pub use report::{RunReport, Warning};
 pub use result::{Certificate, ContactState, PointState};
 pub use scene::{
-    Analysis, Coefficient, Contact, ContactNormal, DifferenceFormula, Friction, Gap, Load, Obstacle, Partition, Place,
-    Rotation, Scene, SlipBound, Spring, Support,
+    Analysis, Coefficient, Contact, DifferenceFormula, Friction, Load, Obstacle, Partition, Place, Scene, SlipBound,
+    Spring, Support,
 };
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
 pub use signorini_tfeti::internal::Rate;

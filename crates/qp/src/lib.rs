@@ -34,7 +34,7 @@
 //!
 //! ```
 //! use signorini_qp::{
-//!     ConvexSet, KprgpSettings, ProductSet, Segment, SymmetricOperator, Tolerance, kkt, kprgp, norm_estimate,
+//!     ConvexSet, KprgpSettings, ProductSet, Segment, SymmetricOperator, kkt, kprgp, norm_estimate,
 //! };
 //! use signorini_qp::kprgp::KprgpWorkspace;
 //! use signorini_qp::problem::BlockState;
@@ -64,9 +64,8 @@
 //! let norm = norm_estimate(&stiffness)?.upper;
 //! let mut x = vec![0.0; n];
 //! let mut work = KprgpWorkspace::new(&stiffness);
-//! let tolerance = Tolerance::Relative(1e-8);
 //! let settings = KprgpSettings::default();
-//! let report = kprgp(&stiffness, &load, &obstacle, norm, tolerance, &settings, &mut x, &mut work)?;
+//! let report = kprgp(&stiffness, &load, &obstacle, norm, 1e-8, &settings, &mut x, &mut work)?;
 //! assert!(report.status.converged());
 //!
 //! let mut resting = 0;
@@ -109,7 +108,7 @@ pub use problem::{
     ConvexSet, DenseEquality, DenseOperator, DenseProjector, Equality, EqualityProjector, ProductSet, Projected,
     Segment, SymmetricOperator,
 };
-pub use report::{Products, Status, Steps, Tolerance};
+pub use report::{Products, Status, Steps};
 pub use smalse::{SmalseSettings, smalse};
 
 /// What the crates of this workspace share beyond the interface.

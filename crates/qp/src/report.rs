@@ -1,7 +1,4 @@
-//! What the solvers have in common: tolerance, status, counts.
-
-use crate::error::QpError;
-use crate::settings::expect_setting;
+//! What the solvers have in common: status, counts.
 
 /// How a solve ended. All of these are in an `Ok` report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -24,39 +21,6 @@ impl Status {
     #[must_use]
     pub fn converged(self) -> bool {
         self == Self::Converged
-    }
-}
-
-/// Which norm of a gradient counts as small.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum Tolerance {
-    /// At most this value, in the units of the gradient.
-    Absolute(f64),
-    /// At most this multiple of the solver's own reference: `|b|` for KPRGP, `|P (b - A C'e)|` for SMALSE (the paper's
-    /// `|P h|`; one more product if `e` is not zero), the norm of the first gradient where that is zero.
-    Relative(f64),
-}
-
-impl Tolerance {
-    /// The tolerance in the units of the gradient; `own` is the reference of the solver.
-    pub(crate) fn resolve(self, own: f64) -> f64 {
-        match self {
-            Self::Absolute(t) => t,
-            Self::Relative(f) => f * own,
-        }
-    }
-}
-
-/// A resolved tolerance, if it is usable.
-pub(crate) fn usable(tolerance: f64) -> Result<f64, QpError> {
-    expect_setting("tolerance", tolerance, "[0, inf)")?;
-    Ok(tolerance)
-}
-
-impl Default for Tolerance {
-    fn default() -> Self {
-        Self::Relative(1e-6)
     }
 }
 

@@ -106,7 +106,7 @@ pub(crate) fn grown(mesh: &TetMesh, count: usize, seed: u64) -> Vec<u32> {
 
 /// A tetrahedral mesh of the brick from a Gmsh file; its sides get the tags of [`Brick`].
 pub(crate) fn read(path: &Path) -> Result<TetMesh, Failure> {
-    let mesh = gmsh::read_gmsh(path)?;
+    let mesh = gmsh::read_gmsh(path)?.0;
     let side = |axis: usize, place: f64, nodes: &[u32; 3]| {
         let at = |&n: &u32| (mesh.points()[n as usize][axis] - place).abs() < 1e-6 * LENGTHS[axis];
         nodes.iter().all(at)

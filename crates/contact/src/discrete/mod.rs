@@ -15,7 +15,6 @@ mod overflow;
 mod partners;
 mod penetration;
 mod points;
-mod rounding;
 mod scene;
 mod side;
 mod springs;

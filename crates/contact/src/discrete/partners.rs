@@ -6,7 +6,6 @@
 //! on the same normal.
 
 use super::normals::fixed_frame;
-use super::rounding::rounding;
 use crate::error::ContactError;
 use crate::mortar::{MortarNode, mortar_nodes};
 use crate::scene::{Contact, Gap};
@@ -60,7 +59,7 @@ impl Paired {
 
     /// Finds the sides of a contact. Where meshes match the first side has the points, else the coarser one, of sides with
     /// facets of one size that with fewer points: rows are farther from depending on one another, and pressures smoother.
-    pub(super) fn new(mesh: &TetMesh, index: usize, contact: &Contact) -> Result<Self, ContactError> {
+    pub(super) fn new(mesh: &TetMesh, index: usize, contact: &Contact, rounding: f64) -> Result<Self, ContactError> {
         let surface = Surface::new(mesh, &contact.tags)?;
         let fixed = fixed_frame(index, contact, &surface)?;
         let mut paired = Self {
@@ -79,7 +78,14 @@ impl Paired {
             });
         }
         let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
-        if let Some(nodes) = nodes(mesh, index, contact, &paired.surface, fixed.as_ref(), &other)? {
+        if let Some(nodes) = nodes(
+            (mesh, rounding),
+            index,
+            contact,
+            &paired.surface,
+            fixed.as_ref(),
+            &other,
+        )? {
             paired.partners = Partners::Nodes(nodes);
             return Ok(paired);
         }
@@ -117,14 +123,13 @@ impl Paired {
 
 /// The partner of each node; `None` where meshes do not match.
 fn nodes(
-    mesh: &TetMesh,
+    (mesh, rounding): (&TetMesh, f64),
     index: usize,
     contact: &Contact,
     surface: &Surface,
     fixed: Option<&SurfaceFrame>,
     other: &OtherSide<'_>,
 ) -> Result<Option<Vec<Partner>>, ContactError> {
-    let rounding = rounding(mesh);
     let partner = |(local, &node): (usize, &u32)| {
         let seen_from = Viewer {
             node,
@@ -307,7 +312,7 @@ mod tests {
         for gap in [0.0, 1e-3, 0.02, 0.3] {
             let mesh = bent(gap);
             let contact = Contact::between(brick::Z_MIN, lower(brick::Z_MAX));
-            let paired = Paired::new(&mesh, 0, &contact).expect("partners");
+            let paired = Paired::new(&mesh, 0, &contact, 1e-12).expect("partners");
             let (Partners::Nodes(found), surface) = (paired.partners, paired.surface) else {
                 panic!("meshes match");
             };
@@ -350,7 +355,7 @@ mod tests {
         let contact = Contact::between(above, below);
         for (inner, apart) in [(None, false), (Some([0.3, 0.3, 0.0]), true)] {
             let mesh = cone(None, 1.0, above).append(&cone(inner, -1.0, below)).expect("two");
-            let paired = Paired::new(&mesh, 0, &contact).expect("partners");
+            let paired = Paired::new(&mesh, 0, &contact, 1e-12).expect("partners");
             assert_eq!(paired.is_apart(), apart);
         }
     }

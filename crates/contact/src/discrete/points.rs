@@ -144,7 +144,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                 };
                 let frame = along_axis(index, contact, node, frame)?;
                 out.push(ContactPoint {
-                    centre: centre(&scene.mesh, &sides),
+                    centre: mean_place(&scene.mesh, &sides.own),
                     surface: index,
                     sides,
                     position,
@@ -158,10 +158,6 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
         }
     }
     Ok(out)
-}
-
-fn centre(mesh: &TetMesh, sides: &Sides) -> [f64; 3] {
-    mean_place(mesh, &sides.own)
 }
 
 fn mean_place(mesh: &TetMesh, side: &Side) -> [f64; 3] {
@@ -279,7 +275,7 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
             let shared = x.tags.iter().any(|t| y.tags.contains(t));
             if point.sides.own != other.sides.own {
                 point.sides.own = both(point, other);
-                point.centre = centre(&scene.mesh, &point.sides);
+                point.centre = mean_place(&scene.mesh, &point.sides.own);
             }
             point.area = if shared && point.surface != other.surface {
                 point.area.max(other.area)

@@ -4,12 +4,12 @@ use super::overflow::{check_compliance, check_gaps, check_materials, check_motio
 use super::partners::Paired;
 use super::penetration::check_penetration;
 use super::points::{ContactPoint, conditions, points};
-use super::rounding::rounding;
 use super::springs::Springs;
 use super::supports::Supports;
 use super::turn::check_turn;
 use crate::error::ContactError;
 use crate::scene::{Pose, Scene, check_laws};
+use crate::tolerances::ROUNDING;
 use signorini_fem_mesh::{Decomposition, FacetTag, Surface};
 use signorini_tfeti::ContactConstraint;
 use signorini_tfeti::internal::prescribed_points;
@@ -54,14 +54,15 @@ impl DiscreteScene {
         let decomposition = scene.decompose()?;
         let supports = Supports::new(scene)?;
         let springs = Springs::new(scene, &supports)?;
+        let largest = |m: f64, v: &f64| m.max(v.abs());
+        let rounding = ROUNDING * scene.mesh.points().iter().flatten().fold(0.0, largest);
         let contacts = scene.contacts.iter().enumerate();
         let started = Instant::now();
-        let paired = contacts.map(|(index, contact)| Paired::new(&scene.mesh, index, contact));
+        let paired = contacts.map(|(index, contact)| Paired::new(&scene.mesh, index, contact, rounding));
         let paired = paired.collect::<Result<Vec<_>, _>>()?;
         let search = started.elapsed();
         let mortar = paired.iter().enumerate().filter(|(_, p)| p.is_apart());
         let apart = mortar.map(|(index, p)| (index, p.swapped)).collect();
-        let rounding = rounding(&scene.mesh);
         let mut conditions = conditions(scene, &paired, rounding)?;
         let ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
         if !ties.is_empty() {

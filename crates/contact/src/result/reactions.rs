@@ -230,7 +230,7 @@ pub(crate) fn reactions_about(
 }
 
 /// What the loads do.
-pub(crate) fn loads(model: &Model, problem: &StepProblem, arm: impl Fn(u32) -> [f64; 3]) -> Resultant {
+fn loads(model: &Model, problem: &StepProblem, arm: impl Fn(u32) -> [f64; 3]) -> Resultant {
     let mut sum = Resultant::default();
     for (factor, load) in problem.factors.iter().zip(&model.loads) {
         let nodes = model.discrete.decomposition.subdomains().iter();

@@ -42,7 +42,7 @@ impl Recovered {
     ) -> Result<Self, ContactError> {
         let tfeti = &model.tfeti;
         let force = problem.forces_here(old.residual, model);
-        let [torn, residual] = tfeti.recover_in([old.torn, force], lambda, alpha)?;
+        let [torn, residual] = tfeti.recover([old.torn, force], lambda, alpha)?;
         let mut rows = of_length(old.rows, tfeti.dual_dim());
         tfeti.rows_times(&torn, &mut rows);
         let mut gives_way = Vec::new();

@@ -13,8 +13,7 @@ use std::sync::Arc;
 
 /// Direction in which the contact surface meets the obstacle.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub enum ContactNormal {
+pub(crate) enum ContactNormal {
     /// The body's outward normal at each node.
     Body,
     /// One unit vector into the obstacle, e.g. (0, 0, -1) for a floor: the usual choice for a plane obstacle
@@ -332,13 +331,8 @@ impl Contact {
         &self.tags
     }
 
-    /// The distance to the obstacle.
-    pub fn gap(&self) -> &Gap {
-        &self.gap
-    }
-
     /// The contact normal.
-    pub fn normal(&self) -> ContactNormal {
+    pub(crate) fn normal(&self) -> ContactNormal {
         self.normal
     }
 

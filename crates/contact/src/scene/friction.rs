@@ -6,10 +6,10 @@ use signorini_fem_mesh::loads::Function;
 use std::sync::Arc;
 
 /// A value that depends on the place only.
-pub type PlaceField = Function<dyn Fn([f64; 3]) -> f64 + Send + Sync>;
+pub(super) type PlaceField = Function<dyn Fn([f64; 3]) -> f64 + Send + Sync>;
 
 /// A value that depends on the place and the slip rate in m/s.
-pub type RateField = Function<dyn Fn([f64; 3], f64) -> f64 + Send + Sync>;
+type RateField = Function<dyn Fn([f64; 3], f64) -> f64 + Send + Sync>;
 
 /// The friction on a contact surface.
 #[derive(Debug, Clone, Default)]

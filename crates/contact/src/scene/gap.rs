@@ -4,8 +4,7 @@ use super::friction::PlaceField;
 
 /// The distance between the contact surface and the obstacle, measured along the outward normal.
 #[derive(Debug, Clone)]
-#[non_exhaustive]
-pub enum Gap {
+pub(crate) enum Gap {
     /// No gap: the surfaces touch.
     None,
     /// The same distance at every node, m.

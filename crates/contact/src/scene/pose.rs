@@ -5,13 +5,13 @@ use signorini_fem_mesh::vec3::{add, cross, dot, norm, scale, sub};
 
 /// A turn of an obstacle about an axis.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Rotation {
+pub(crate) struct Rotation {
     /// A point of the axis, m.
-    pub point: [f64; 3],
+    pub(crate) point: [f64; 3],
     /// Direction of the axis, of any length.
-    pub axis: [f64; 3],
+    pub(crate) axis: [f64; 3],
     /// Angle in radians, right-handed about the axis.
-    pub angle: History,
+    pub(crate) angle: History,
 }
 
 /// Where an obstacle is at a step.

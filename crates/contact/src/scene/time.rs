@@ -49,7 +49,7 @@ impl DifferenceFormula {
     }
 
     /// Whether only one old displacement is needed.
-    pub fn is_one_step(&self) -> bool {
+    pub(crate) fn is_one_step(&self) -> bool {
         self.0[2] == 0.0
     }
 

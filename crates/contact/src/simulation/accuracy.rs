@@ -1,6 +1,5 @@
 //! Solves of one step: one, or several until the certificate or an estimate of the error is small enough.
 
-use super::result::discretisation_error;
 use super::simulation::Simulation;
 use super::step::product;
 use crate::error::ContactError;
@@ -8,7 +7,7 @@ use crate::estimate::Solved;
 use crate::report::{AccuracyReport, AlgebraicError, StepReport, relative};
 use crate::result::{Recovered, contact_violation};
 use crate::settings::Accuracy;
-use crate::state::{Discretisation, certificate_limit};
+use crate::state::{Controller, Discretisation, certificate_limit};
 use crate::status::StepStatus;
 use crate::tolerances::{CERTIFIED, LEAST_TOLERANCE, NEXT_AIM, NEXT_TOLERANCE, ROUNDS};
 
@@ -101,7 +100,7 @@ impl Simulation {
         let algebraic = solved.algebraic_error();
         let (discretisation, target) = match self.settings.accuracy {
             Accuracy::Balanced { fraction } => {
-                let known = self.discretisation(&algebraic, recovered)?;
+                let known = discretisation(&mut self.controller, &solved, &algebraic)?;
                 (Some(known), known.target(fraction))
             }
             Accuracy::Relative(x) => (None, x),
@@ -145,23 +144,27 @@ impl Simulation {
             status => status,
         }))
     }
+}
 
-    /// The discretisation error of the step, or of an earlier one like it.
-    fn discretisation(&mut self, own: &AlgebraicError, recovered: &Recovered) -> Result<Discretisation, ContactError> {
-        let (known, step) = (self.controller.discretisation, self.problem.index);
-        if known.holds(step, own.scale) {
-            return Ok(known);
-        }
-        let found = discretisation_error(&self.model, &self.caches, &self.problem, recovered)?;
-        self.controller.discretisation = Discretisation {
-            relative: if own.scale > own.elastic {
-                relative(found.energy, own.scale)
-            } else {
-                found.relative()
-            },
-            step,
-            scale: own.scale,
-        };
-        Ok(self.controller.discretisation)
+/// The discretisation error of the step, or of an earlier one like it.
+fn discretisation(
+    controller: &mut Controller,
+    solved: &Solved<'_>,
+    own: &AlgebraicError,
+) -> Result<Discretisation, ContactError> {
+    let (known, step) = (controller.discretisation, solved.problem.index);
+    if known.holds(step, own.scale) {
+        return Ok(known);
     }
+    let found = solved.discretisation_error()?;
+    controller.discretisation = Discretisation {
+        relative: if own.scale > own.elastic {
+            relative(found.energy, own.scale)
+        } else {
+            found.relative()
+        },
+        step,
+        scale: own.scale,
+    };
+    Ok(controller.discretisation)
 }

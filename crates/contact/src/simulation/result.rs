@@ -7,7 +7,7 @@ use crate::plan::FrictionKind;
 use crate::report::{AccumulatedError, AlgebraicError, StepReport, Warning, require};
 use crate::result::{
     Certificate, ContactSummary, Lengths, PointState, Reactions, Recovered, SurfaceStress, coarse_mesh, is_strained,
-    loads, nodal_reactions, points_at_nodes, reactions_about, tied_forces, warnings,
+    nodal_reactions, points_at_nodes, reactions_about, tied_forces, warnings,
 };
 use crate::scene::{LoadKind, Scene};
 use crate::status::StepFailure;
@@ -156,13 +156,16 @@ impl StepResult {
 
     /// Estimated algebraic error, by the duality gap: the distance of the result from the discrete solution.
     pub fn algebraic_error(&self) -> AlgebraicError {
+        self.solved().algebraic_error()
+    }
+
+    fn solved(&self) -> Solved<'_> {
         Solved {
             model: &self.model,
             caches: &self.caches,
             problem: &self.problem,
             recovered: &self.recovered,
         }
-        .algebraic_error()
     }
 
     /// Estimated discretisation error, tetrahedron by tetrahedron, by recovered strains.
@@ -170,7 +173,7 @@ impl StepResult {
     /// # Errors
     /// [`ContactError::Field`] if the displacement is not finite.
     pub fn discretisation_error(&self) -> Result<DiscretisationError, ContactError> {
-        discretisation_error(&self.model, &self.caches, &self.problem, &self.recovered)
+        self.solved().discretisation_error()
     }
 
     /// Reactions of the supports, with moments about the origin. See [`reactions_about`](Self::reactions_about).
@@ -247,11 +250,6 @@ impl StepResult {
         let known = surface < self.surfaces().len();
         known.then(|| points_at_nodes(&self.model, &self.recovered.points, surface))
     }
-
-    /// Sum of all loads at this step, N.
-    pub fn load_resultant(&self) -> [f64; 3] {
-        loads(&self.model, &self.problem, |_| [0.0; 3]).force
-    }
 }
 
 /// A line: the time, how many contact points touch and slide, and the certificate; of a step that did not converge its
@@ -275,17 +273,14 @@ impl fmt::Display for StepResult {
     }
 }
 
-/// The error of the mesh, by recovered strains.
-pub(super) fn discretisation_error(
-    model: &Model,
-    caches: &Caches,
-    problem: &StepProblem,
-    recovered: &Recovered,
-) -> Result<DiscretisationError, ContactError> {
-    let mesh = &model.scene.mesh;
-    let recovery = caches.recovery.get_or_init(|| StrainRecovery::new(mesh));
-    let u = model.tfeti.nodal_mean(&recovered.torn);
-    Ok(recovery.error(mesh, &materials(model, problem), &u)?)
+impl Solved<'_> {
+    /// The error of the mesh, by recovered strains.
+    pub(super) fn discretisation_error(&self) -> Result<DiscretisationError, ContactError> {
+        let mesh = &self.model.scene.mesh;
+        let recovery = self.caches.recovery.get_or_init(|| StrainRecovery::new(mesh));
+        let u = self.model.tfeti.nodal_mean(&self.recovered.torn);
+        Ok(recovery.error(mesh, &materials(self.model, self.problem), &u)?)
+    }
 }
 
 /// The materials of a scene with the eigenstrains of a step.

@@ -79,7 +79,7 @@ impl StepProblem {
         }
         let histories = model.discrete.supports.motions.iter();
         let cases: Vec<(usize, f64)> = histories.map(|h| h.value(time)).enumerate().collect();
-        self.offset = model.tfeti.prescribed_offsets_in(take(&mut self.offset), &cases);
+        self.offset = model.tfeti.prescribed_offsets(take(&mut self.offset), &cases);
         self.part_ties(model);
         self.prescribed_force = model.prescribed_force(&self.offset, &self.factors);
         self.prescribed.clear();
@@ -265,16 +265,14 @@ impl StepProblem {
 
     /// The torn load, N.
     pub(crate) fn forces(&self, model: &Model) -> Vec<f64> {
-        model.tfeti.combine_forces(&self.loads(model))
+        let all = 0..model.tfeti.subdomains();
+        all.flat_map(|subdomain| self.forces_on(model, subdomain)).collect()
     }
 
     /// The same in old memory, of several processes what of it acts on the subdomains of this one.
     pub(crate) fn forces_here(&self, old: Vec<f64>, model: &Model) -> Vec<f64> {
-        model.tfeti.combine_forces_here(old, &self.loads(model))
-    }
-
-    fn loads<'a>(&self, model: &'a Model) -> Vec<(f64, &'a LoadResponse)> {
-        self.factors.iter().copied().zip(&model.loads).collect()
+        let loads: Vec<(f64, &LoadResponse)> = self.factors.iter().copied().zip(&model.loads).collect();
+        model.tfeti.combine_forces(old, &loads)
     }
 
     /// The part of it on a subdomain.

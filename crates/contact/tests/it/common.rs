@@ -23,7 +23,7 @@ pub(crate) fn step(simulation: &mut Simulation) -> Solved {
         points: result.points().to_vec(),
         displacement: result.displacement().into_flattened(),
         torn: result.torn_displacement().to_vec(),
-        load: result.load_resultant(),
+        load: result.reactions().loads.force,
     }
 }
 

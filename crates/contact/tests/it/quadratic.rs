@@ -95,7 +95,8 @@ fn a_history_is_certified_and_in_equilibrium() {
     while !simulation.is_finished() {
         let result = simulation.step().expect("step");
         assert!(result.certificate().largest() <= 1e-6 && result.report().status.converged());
-        let (load, reactions) = (result.load_resultant(), result.reactions());
+        let reactions = result.reactions();
+        let load = reactions.loads.force;
         let supports: Vec<[f64; 3]> = reactions.supports.iter().map(|s| s.resultant.force).collect();
         for c in 0..3 {
             let contact: f64 = result.contact_force_field().iter().map(|f| f[c]).sum();

@@ -112,7 +112,7 @@ fn no_step_has_negative_dissipation() {
                         assert!(matches!(law, Friction::Tresca(_)) || norm(&p.friction_force) == 0.0);
                     }
                 }
-                if formula.is_one_step() {
+                if formula.weights()[2] == 0.0 {
                     assert!((s.dissipation - s.friction_work).abs() <= 1e-9 * total);
                 }
             }
@@ -147,10 +147,8 @@ fn supports_contact_and_loads_are_in_balance() {
         let mut simulation = Simulation::new(scene, settings).expect("set-up");
         while !simulation.is_finished() {
             let frame = simulation.step().expect("step");
-            let (load, sum) = (frame.load_resultant(), *frame.summary());
-            let r = frame.reactions();
+            let (r, sum) = (frame.reactions(), *frame.summary());
             assert_eq!(r.supports.len(), 1);
-            assert_close(&r.loads.force, &load, 1e-14, "loads");
             if sum.active > 0 {
                 assert_close(&r.contact.force, &sum.resultant, 1e-14, "contact");
             }
@@ -426,7 +424,8 @@ fn a_force_on_a_coarse_hole_arrives_whole() {
             let reaction = result.reactions().supports[0].resultant.force;
             let lost = norm(&[0, 1, 2].map(|c| reaction[c] + force[c])) / norm(&force);
             assert_eq!(lost < 1e-9, whole, "{boxes:?}: {lost:e}");
-            let lost = norm(&[0, 1, 2].map(|c| result.load_resultant()[c] - force[c])) / norm(&force);
+            let load = result.reactions().loads.force;
+            let lost = norm(&[0, 1, 2].map(|c| load[c] - force[c])) / norm(&force);
             assert_eq!(lost < 1e-13, whole, "{boxes:?}: {lost:e}");
         }
     }

@@ -1,7 +1,7 @@
 //! `*ELASTIC`: isotropic, orthotropic along x, y, z, or the engineering constants of the same.
 
 use super::Model;
-use super::property::{inside, twice};
+use super::property::{of_material, twice};
 use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
 use signorini_fem_mesh::{Hooke, HookeError};
@@ -15,11 +15,7 @@ const ENGINEERING: &str = "nine numbers, eight in the first line: E1, E2, E3, nu
 
 pub(super) fn elastic(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["TYPE"])?;
-    let material = inside(
-        model.materials.last_mut(),
-        card,
-        "*ELASTIC belongs to a material; put *MATERIAL before it",
-    )?;
+    let material = of_material(model, card)?;
     let kind = card.value("TYPE")?;
     let (wanted, count) = match kind.as_ref().map_or("ISO", |kind| &kind.name) {
         "ISO" | "ISOTROPIC" => (ISOTROPIC, 2),

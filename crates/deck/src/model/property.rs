@@ -5,9 +5,19 @@ use crate::error::{DeckError, Fault, Location, Word};
 use crate::lexer::{Card, Named, label, name};
 use signorini_fem_mesh::History;
 
-/// The material or interaction that a card belongs to: the last one.
-pub(super) fn inside<'a, T>(last: Option<&'a mut T>, card: &Card, what: &'static str) -> Result<&'a mut T, DeckError> {
-    last.ok_or_else(|| card.word.cannot(what))
+/// The material that a card belongs to: the last one.
+pub(super) fn of_material<'a>(model: &'a mut Model, card: &Card) -> Result<&'a mut Material, DeckError> {
+    let last = model.materials.last_mut();
+    last.ok_or_else(|| card.word.cannot("this belongs to a material; put *MATERIAL before it"))
+}
+
+/// The interaction that a card belongs to, likewise.
+fn of_interaction<'a>(model: &'a mut Model, card: &Card) -> Result<&'a mut Interaction, DeckError> {
+    let last = model.interactions.last_mut();
+    last.ok_or_else(|| {
+        card.word
+            .cannot("this belongs to an interaction; put *SURFACE INTERACTION before it")
+    })
 }
 
 pub(super) fn twice(card: &Card, first: &Location) -> DeckError {
@@ -36,11 +46,7 @@ pub(super) fn material(model: &mut Model, card: &Card) -> Result<(), DeckError> 
 
 pub(super) fn density(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&[])?;
-    let material = inside(
-        model.materials.last_mut(),
-        card,
-        "*DENSITY belongs to a material; put *MATERIAL before it",
-    )?;
+    let material = of_material(model, card)?;
     let wanted = "one line with the density, a positive number";
     let line = card.only_line(wanted)?;
     let fields = line.at_most(2, wanted)?;
@@ -120,11 +126,7 @@ pub(super) fn interaction(model: &mut Model, card: &Card) -> Result<(), DeckErro
 
 pub(super) fn behavior(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["PRESSURE-OVERCLOSURE"])?;
-    let interaction = inside(
-        model.interactions.last_mut(),
-        card,
-        "*SURFACE BEHAVIOR belongs to an interaction; put *SURFACE INTERACTION before it",
-    )?;
+    let interaction = of_interaction(model, card)?;
     let law = card.value("PRESSURE-OVERCLOSURE")?;
     match law.as_ref().map_or("HARD", |law| &law.name) {
         "LINEAR" => {}
@@ -160,11 +162,7 @@ fn inverse(line: &Word, fields: &[&str], at: usize, wanted: &'static str) -> Res
 
 pub(super) fn friction(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["SLIP TOLERANCE", "ELASTIC SLIP"])?;
-    let interaction = inside(
-        model.interactions.last_mut(),
-        card,
-        "*FRICTION belongs to an interaction; put *SURFACE INTERACTION before it",
-    )?;
+    let interaction = of_interaction(model, card)?;
     let wanted = "one line with the coefficient of friction, a number of at least zero";
     let line = card.only_line(wanted)?;
     let fields = line.at_most(2, wanted)?;

@@ -1,7 +1,7 @@
 //! `*EXPANSION`, initial temperatures and `*TEMPERATURE`.
 
 use super::mesh::target;
-use super::property::{inside, twice};
+use super::property::{of_material, twice};
 use super::step::{Condition, Given, Step, amplitude};
 use super::{Ignored, Model};
 use crate::error::{DeckError, Fault, Word};
@@ -10,11 +10,7 @@ use crate::lexer::Card;
 /// Coefficients of expansion along x, y, z.
 pub(super) fn expansion(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["TYPE", "ZERO"])?;
-    let material = inside(
-        model.materials.last_mut(),
-        card,
-        "*EXPANSION belongs to a material; put *MATERIAL before it",
-    )?;
+    let material = of_material(model, card)?;
     let (wanted, count) = match card.choice("TYPE", &["ISO", "ORTHO"], "TYPE=ISO or ORTHO; shears are not read")? {
         Some(1) => (
             "three coefficients in one line, and at most a temperature: laws that depend on temperature are not read",

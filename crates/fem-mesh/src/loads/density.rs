@@ -8,10 +8,10 @@ use crate::mesh::{FacetTag, tag_list};
 use super::function::Function;
 
 /// A vector that depends on the point.
-pub type PointField = Function<dyn Fn([f64; 3]) -> [f64; 3] + Send + Sync>;
+type PointField = Function<dyn Fn([f64; 3]) -> [f64; 3] + Send + Sync>;
 
 /// A vector that depends on the point and the outward unit normal there.
-pub type SurfaceField = Function<dyn Fn([f64; 3], [f64; 3]) -> [f64; 3] + Send + Sync>;
+type SurfaceField = Function<dyn Fn([f64; 3], [f64; 3]) -> [f64; 3] + Send + Sync>;
 
 /// A load in space; a [`History`](crate::History) says how it changes in time.
 #[derive(Debug, Clone)]

@@ -13,7 +13,7 @@ mod function;
 mod history;
 
 pub use assemble::assemble_load;
-pub use density::{LoadDensity, LoadError, PointField, SurfaceField};
+pub use density::{LoadDensity, LoadError};
 pub use eigenstrain::assemble_eigenstrain;
 pub use function::Function;
 #[doc(hidden)]

@@ -31,7 +31,7 @@ pub const SIDES: [[FacetTag; 2]; 3] = [[X_MIN, X_MAX], [Y_MIN, Y_MAX], [Z_MIN, Z
 
 /// Largest amplitude of [`Brick::perturbed`], relative to a cell. Beyond 1/6 a tetrahedron could
 /// turn inside out.
-pub const MAX_PERTURBATION: f64 = 0.15;
+const MAX_PERTURBATION: f64 = 0.15;
 
 /// A box of `cells` cells, each cut into five tetrahedra.
 ///
@@ -58,7 +58,7 @@ pub struct Brick {
     /// geometric series. Default: 1, equal cells.
     pub grading: [f64; 3],
     /// Largest displacement of inner nodes along each axis, relative to the shorter of the cells
-    /// beside, from 0 to [`MAX_PERTURBATION`]. Default: 0.
+    /// beside, from 0 to 0.15. Default: 0.
     pub perturbation: f64,
     /// Seed of the perturbation. Default: 0.
     pub seed: u64,

@@ -81,13 +81,13 @@ impl StrainRecovery {
     fn linear(&self, mesh: &TetMesh, materials: &Materials, laws: &[&Hooke], strains: &[[f64; 6]]) -> Vec<[f64; 2]> {
         let at = |k: usize| {
             let mut sum = [0.0; 6];
-            for place in self.pointers[k]..self.pointers[k + 1] {
-                let strain = &strains[self.tets[place] as usize];
-                (0..6).for_each(|i| sum[i] += self.weights[place] * strain[i]);
+            for &(tet, weight) in self.patches.of(k) {
+                let strain = &strains[tet as usize];
+                (0..6).for_each(|i| sum[i] += weight * strain[i]);
             }
             sum
         };
-        let patches = self.pointers.len() - 1;
+        let patches = self.patches.count();
         let nodal: Vec<[f64; 6]> = (0..patches).into_par_iter().map(at).collect();
         let of_tet = |tet: usize| {
             let corners = self.corners[tet].map(|k| {

@@ -17,10 +17,8 @@ use super::quadratic::Fit;
 /// depend on the mesh only, so that each recovered strain is a fixed combination of strains.
 #[derive(Debug, Clone)]
 pub struct StrainRecovery {
-    /// Where the patch of each (node, region) starts in `tets` and `weights`.
-    pub(super) pointers: Vec<usize>,
-    pub(super) tets: Vec<u32>,
-    pub(super) weights: Vec<f64>,
+    /// The tetrahedra of the patch of each (node, region), with their weights.
+    pub(super) patches: Lists<(u32, f64)>,
     /// Patches of the corners of each tetrahedron.
     pub(super) corners: Vec<[u32; 4]>,
     /// The patches in a mesh of order 2, instead of their weights.
@@ -35,9 +33,7 @@ struct Cell {
 
 /// The tetrahedra around each node, those of each region apart.
 struct Around {
-    tets: Lists<u32>,
-    /// Start of each patch in `tets`, and the end of the last.
-    starts: Vec<u32>,
+    patches: Lists<u32>,
     /// Node and region of each patch, ascending.
     nodes: Vec<u32>,
     regions: Vec<u32>,
@@ -48,39 +44,32 @@ struct Around {
 impl Around {
     fn new(mesh: &TetMesh) -> Self {
         let corners = mesh.tets().as_flattened();
+        let mut tets = Lists::by_key(mesh.points().len(), corners).map(|p| p / 4);
         let mut out = Self {
-            tets: Lists::by_key(mesh.points().len(), corners).map(|p| p / 4),
-            starts: Vec::new(),
+            patches: Lists::default(),
             nodes: Vec::new(),
             regions: Vec::new(),
             first: vec![0],
         };
         let region = |tet: u32| mesh.regions()[tet as usize];
-        let mut start = 0;
-        for node in 0..out.tets.count() {
-            let own = out.tets.of_mut(node);
+        for node in 0..tets.count() {
+            let own = tets.of_mut(node);
             own.sort_by_key(|&tet| region(tet));
             for patch in own.chunk_by(|&a, &b| region(a) == region(b)) {
-                out.starts.push(start);
+                out.patches.push(patch.iter().copied());
                 out.nodes.push(node as u32);
                 out.regions.push(region(patch[0]));
-                start += patch.len() as u32;
             }
             out.first.push(out.nodes.len() as u32);
         }
-        out.starts.push(start);
         out
-    }
-
-    fn patch(&self, k: usize) -> &[u32] {
-        &self.tets.items()[self.starts[k] as usize..self.starts[k + 1] as usize]
     }
 
     /// A patch and those of its neighbours, ascending.
     fn wide(&self, mesh: &TetMesh, k: usize) -> Vec<u32> {
         let around = |&tet: &u32| mesh.tets()[tet as usize].map(|node| self.place(mesh, node, tet));
-        let patches = self.patch(k).iter().flat_map(around);
-        distinct(patches.flat_map(|k| self.patch(k)).copied())
+        let patches = self.patches.of(k).iter().flat_map(around);
+        distinct(patches.flat_map(|k| self.patches.of(k)).copied())
     }
 
     /// Patches of the corners of each tetrahedron.
@@ -112,32 +101,26 @@ impl StrainRecovery {
                 volume: mesh.volume(tet),
             })
             .collect();
-        let patch = |k: usize| -> (Vec<u32>, Vec<f64>) {
-            let own = around.patch(k);
+        let patch = |k: usize| -> Vec<(u32, f64)> {
+            let own = around.patches.of(k);
             let centre = mesh.points()[around.nodes[k] as usize];
+            let with = |tets: &[u32], weights: Vec<f64>| tets.iter().copied().zip(weights).collect();
             if own.len() >= SMALL_PATCH
                 && let Some(weights) = fit(&cells, own, centre)
             {
-                return (own.to_vec(), weights);
+                return with(own, weights);
             }
             let wide = around.wide(mesh, k);
             match fit(&cells, &wide, centre) {
-                Some(weights) => (wide, weights),
-                None => (own.to_vec(), mean(&cells, own)),
+                Some(weights) => with(&wide, weights),
+                None => with(own, mean(&cells, own)),
             }
         };
-        let patches: Vec<(Vec<u32>, Vec<f64>)> = (0..around.nodes.len()).into_par_iter().map(patch).collect();
-        let mut pointers = vec![0];
-        let (mut tets, mut weights) = (Vec::new(), Vec::new());
-        for (t, w) in patches {
-            tets.extend(t);
-            weights.extend(w);
-            pointers.push(tets.len());
-        }
+        let found: Vec<Vec<(u32, f64)>> = (0..around.nodes.len()).into_par_iter().map(patch).collect();
+        let mut patches = Lists::default();
+        found.into_iter().for_each(|p| patches.push(p));
         Self {
-            pointers,
-            tets,
-            weights,
+            patches,
             corners: around.corners(mesh),
             fits: Vec::new(),
         }
@@ -145,15 +128,13 @@ impl StrainRecovery {
 
     fn quadratic(mesh: &TetMesh, around: &Around) -> Self {
         let patch = |k: usize| {
-            let (own, centre) = (around.patch(k), mesh.points()[around.nodes[k] as usize]);
+            let (own, centre) = (around.patches.of(k), mesh.points()[around.nodes[k] as usize]);
             let first = Some(own).filter(|own| own.len() >= SMALL_PATCH);
             let fit = first.and_then(|own| Fit::quadratic(mesh, own, centre));
             fit.unwrap_or_else(|| Fit::best(mesh, &around.wide(mesh, k), centre))
         };
         Self {
-            pointers: vec![0],
-            tets: Vec::new(),
-            weights: Vec::new(),
+            patches: Lists::default(),
             corners: around.corners(mesh),
             fits: (0..around.nodes.len()).into_par_iter().map(patch).collect(),
         }

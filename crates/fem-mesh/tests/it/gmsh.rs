@@ -4,7 +4,7 @@ use allocation_counter::measure;
 use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use signorini_fem_mesh::gmsh::{GmshError, parse_gmsh, parse_named_gmsh, read_gmsh, read_named_gmsh, write_sizes};
+use signorini_fem_mesh::gmsh::{GmshError, parse_gmsh, read_gmsh, write_sizes};
 use signorini_fem_mesh::{FacetTag, MeshError};
 
 /// Two tetrahedra in two volumes (groups 7 and 8) with a tagged face (group 3) of surface 1 and an
@@ -120,7 +120,7 @@ fn binary(big: bool) -> Vec<u8> {
 
 #[test]
 fn text_and_binary() {
-    let mesh = parse_gmsh(TEXT.as_bytes()).unwrap();
+    let mesh = parse_gmsh(TEXT.as_bytes()).unwrap().0;
     assert_eq!(mesh.points()[..2], [[0.0; 3], [1.0, 0.0, 0.0]]);
     assert_eq!(mesh.points().len(), 5);
     assert_eq!(mesh.regions(), [7, 8]);
@@ -128,13 +128,13 @@ fn text_and_binary() {
     // Only the triangle in a group is tagged.
     assert_eq!(mesh.facets().len(), 1);
     assert_eq!(mesh.nodes_on(FacetTag(3)), [0, 1, 2]);
-    assert_eq!(parse_gmsh(&binary(false)).unwrap(), mesh);
-    assert_eq!(parse_gmsh(&binary(true)).unwrap(), mesh);
+    assert_eq!(parse_gmsh(&binary(false)).unwrap().0, mesh);
+    assert_eq!(parse_gmsh(&binary(true)).unwrap().0, mesh);
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), TEXT).unwrap();
-    assert_eq!(read_gmsh(file.path()).unwrap(), mesh);
+    assert_eq!(read_gmsh(file.path()).unwrap().0, mesh);
     let windows = TEXT.replace('\n', "\r\n");
-    assert_eq!(parse_gmsh(windows.as_bytes()).unwrap(), mesh);
+    assert_eq!(parse_gmsh(windows.as_bytes()).unwrap().0, mesh);
 }
 
 #[test]
@@ -143,8 +143,8 @@ fn names_of_groups() {
         "1\n2 3 \"foundation\"\n",
         "4\n1 3 \"an edge\"\n2 3 \"the foundation\"\n3 8 \"upper\"\n3 7 \"lower \\u{e9}\"\n",
     );
-    let (mesh, names) = parse_named_gmsh(more.as_bytes()).unwrap();
-    assert_eq!(mesh, parse_gmsh(TEXT.as_bytes()).unwrap());
+    let (mesh, names) = parse_gmsh(more.as_bytes()).unwrap();
+    assert_eq!(mesh, parse_gmsh(TEXT.as_bytes()).unwrap().0);
     assert_eq!(names.surface("the foundation").unwrap(), FacetTag(3));
     assert_eq!(names.volume("upper").unwrap(), 8);
     for name in ["upper", "an edge", "Side"] {
@@ -160,7 +160,7 @@ fn names_of_groups() {
     assert_eq!(volumes, [("lower \\u{e9}", 7), ("upper", 8)]);
     // the section is text in binary files, too
     for file in [TEXT.as_bytes(), &binary(false), &binary(true)] {
-        let (_, names) = parse_named_gmsh(file).unwrap();
+        let (_, names) = parse_gmsh(file).unwrap();
         let surfaces: Vec<_> = names.surfaces().collect();
         assert_eq!(surfaces, [("foundation", FacetTag(3))]);
         assert_eq!(names.volumes().count(), 0);
@@ -169,10 +169,9 @@ fn names_of_groups() {
     }
     let file = tempfile::NamedTempFile::new().unwrap();
     std::fs::write(file.path(), TEXT).unwrap();
-    assert_eq!(read_named_gmsh(file.path()).unwrap().0, mesh);
+    assert_eq!(read_gmsh(file.path()).unwrap().0, mesh);
     let twice = TEXT.replace("1\n2 3 \"foundation\"\n", "2\n2 3 \"a\"\n2 4 \"a\"\n");
-    assert!(parse_gmsh(twice.as_bytes()).is_ok());
-    let error = parse_named_gmsh(twice.as_bytes()).unwrap_err();
+    let error = parse_gmsh(twice.as_bytes()).unwrap().1.surface("a").unwrap_err();
     assert!(matches!(error, GmshError::RepeatedName { groups: [3, 4], .. }));
     for (from, to) in [
         ("\"foundation\"", "foundation"),
@@ -223,12 +222,12 @@ fn without_groups_the_entities_count() {
         .replace("1 0 0 0 1 1 0 1 3 0\n", "1 0 0 0 1 1 0 0 0\n")
         .replace("1 0 0 0 1 1 1 1 7 1 -1\n", "1 0 0 0 1 1 1 0 0\n")
         .replace("2 0 0 0 2 2 2 1 8 0\n", "2 0 0 0 2 2 2 0 0\n");
-    let mesh = parse_gmsh(text.as_bytes()).unwrap();
+    let mesh = parse_gmsh(text.as_bytes()).unwrap().0;
     assert_eq!(mesh.regions(), [1, 2]);
     assert_eq!(mesh.tags(), [FacetTag(1), FacetTag(2)]);
     // The same with the second surface between the two volumes.
     let inside = text.replace("3 3 1 5\n", "3 1 2 5\n");
-    assert_eq!(parse_gmsh(inside.as_bytes()).unwrap().tags(), [FacetTag(1)]);
+    assert_eq!(parse_gmsh(inside.as_bytes()).unwrap().0.tags(), [FacetTag(1)]);
 }
 
 #[test]
@@ -342,7 +341,7 @@ proptest! {
 fn modest(bytes: &[u8], what: &str) {
     let mut text = String::new();
     let used = measure(|| {
-        if let Err(error) = parse_named_gmsh(bytes) {
+        if let Err(error) = parse_gmsh(bytes) {
             text = error.to_string();
         }
     });
@@ -415,7 +414,7 @@ fn long_files_of_nothing_end() {
 /// One scalar tetrahedron a line: twelve coordinates, four lengths.
 #[test]
 fn sizes_are_a_view_of_scalar_tetrahedra() {
-    let mesh = parse_gmsh(TEXT.as_bytes()).expect("mesh");
+    let mesh = parse_gmsh(TEXT.as_bytes()).expect("mesh").0;
     let folder = tempfile::tempdir().expect("folder");
     let path = folder.path().join("sizes.pos");
     let sizes: Vec<f64> = (1..=mesh.points().len()).map(|k| k as f64 / 3.0).collect();

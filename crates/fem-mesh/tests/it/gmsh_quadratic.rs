@@ -49,7 +49,7 @@ fn elements_of_second_order_keep_their_nodes() {
     let straight = Brick::new([1.0; 3], [2, 1, 1]).build().unwrap().raise_order().unwrap();
     let mesh = straight.map_points(|[x, y, z]| [x, y + 0.1 * x * x, z]).unwrap();
     for groups in [true, false] {
-        let read = parse_gmsh(quadratic_text(&mesh, groups).as_bytes()).unwrap();
+        let read = parse_gmsh(quadratic_text(&mesh, groups).as_bytes()).unwrap().0;
         assert_eq!(read.points(), mesh.points());
         assert_eq!(read.quadratic_tets(), mesh.quadratic_tets());
         assert_eq!(

@@ -7,23 +7,17 @@ use crate::settings::settings;
 
 /// How the active set is enlarged when a conjugate gradient step leaves the set.
 ///
-/// All of them first go to the boundary along the conjugate direction. The long steps (all but the first) are kept
-/// only if they decrease the cost enough, else a fixed step is made instead, counted in [`Products::fallback`].
+/// Both first go to the boundary along the conjugate direction.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Hash)]
 #[non_exhaustive]
 pub enum Expansion {
     /// Projected step along the free gradient with the fixed length. Has the convergence proof of
     /// Kucera (2008); one product.
     FixedStep,
-    /// Projection of the full conjugate gradient step; one product.
+    /// Projection of the full conjugate gradient step; one product. Where that does not decrease the cost enough, the
+    /// fixed step is made instead, counted in [`Products::fallback`].
     #[default]
     ProjectedCg,
-    /// Projected step along the free gradient with the length that minimises the cost along it; two
-    /// products, or one if the step stays inside.
-    Optimal,
-    /// Projected step along the free gradient with the shorter Barzilai-Borwein length of the last
-    /// conjugate direction, `p·Ap / Ap·Ap`; one product.
-    BarzilaiBorwein,
 }
 
 settings! {

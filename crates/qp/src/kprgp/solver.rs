@@ -22,7 +22,7 @@
 
 use crate::error::{QpError, expect_finite, expect_lengths};
 use crate::problem::{ConvexSet, GradientNorms, SymmetricOperator};
-use crate::report::{Products, Status, Steps, Tolerance, usable};
+use crate::report::{Products, Status, Steps};
 use crate::settings::expect_setting;
 use crate::tolerances::{
     COST_RISE, DRIFTED, FAILED_CHECKS, KPRGP_PATIENCE, KPRGP_PROGRESS, LONG_STEP, NEGATIVE_CURVATURE, ROUNDED_GRADIENT,
@@ -35,7 +35,8 @@ use super::settings::{Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, Vec
 /// Minimises `1/2 x·Ax - b·x` over `set`, starting from the projection of `x`.
 ///
 /// `norm` is an upper bound of the norm of `A` ([`norm_estimate`](crate::norm_estimate)); the
-/// fixed step is derived from it. `Tolerance::Relative` refers to `|b|`. On return `x` is feasible, and
+/// fixed step is derived from it. `tolerance` is that of the projected gradient over `|b|`, or over the norm of the first
+/// gradient where that is zero. On return `x` is feasible, and
 /// [`KprgpWorkspace::gradient`] holds `A x - b`.
 ///
 /// # Errors
@@ -45,16 +46,14 @@ use super::settings::{Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, Vec
 ///
 /// # Example
 /// ```
-/// use signorini_qp::{DenseOperator, KprgpSettings, ProductSet, Segment, Tolerance, kprgp};
+/// use signorini_qp::{DenseOperator, KprgpSettings, ProductSet, Segment, kprgp};
 /// use signorini_qp::kprgp::KprgpWorkspace;
 ///
 /// let a = DenseOperator::new(2, vec![2.0, -1.0, -1.0, 2.0])?;
 /// let set = ProductSet::new(vec![Segment::lower(vec![0.0, 0.0])])?;
 /// let mut x = [0.0, 0.0];
 /// let mut work = KprgpWorkspace::new(&a);
-/// let tolerance = Tolerance::Relative(1e-10);
-/// let report =
-///     kprgp(&a, &[1.0, -3.0], &set, 3.0, tolerance, &KprgpSettings::default(), &mut x, &mut work)?;
+/// let report = kprgp(&a, &[1.0, -3.0], &set, 3.0, 1e-10, &KprgpSettings::default(), &mut x, &mut work)?;
 /// assert!(report.status.converged());
 /// assert!((x[0] - 0.5).abs() < 1e-9 && x[1] == 0.0);
 /// # Ok::<(), signorini_qp::QpError>(())
@@ -64,7 +63,7 @@ pub fn kprgp<A: SymmetricOperator, S: ConvexSet + ?Sized>(
     b: &[f64],
     set: &S,
     norm: f64,
-    tolerance: Tolerance,
+    tolerance: f64,
     settings: &KprgpSettings,
     x: &mut [f64],
     work: &mut KprgpWorkspace<A>,
@@ -73,6 +72,7 @@ pub fn kprgp<A: SymmetricOperator, S: ConvexSet + ?Sized>(
     settings.validate()?;
     set.validate()?;
     expect_setting("norm", norm, "(0, inf)")?;
+    expect_setting("tolerance", tolerance, "[0, inf)")?;
     expect_lengths([
         ("the right side b", b.len(), n),
         ("the start x", x.len(), n),
@@ -93,14 +93,13 @@ pub fn kprgp<A: SymmetricOperator, S: ConvexSet + ?Sized>(
     objective.gradient(x, &mut v.g);
     v.stale = 0;
     let load = vector::norm(b);
-    let tolerance = tolerance.resolve(if load > 0.0 { load } else { vector::norm(&v.g) });
-    if tolerance.is_nan() {
+    objective.tolerance = tolerance * if load > 0.0 { load } else { vector::norm(&v.g) };
+    if objective.tolerance.is_nan() {
         return Err(QpError::NotFinite {
             quantity: "the gradient",
             products: 1,
         });
     }
-    objective.tolerance = usable(tolerance)?;
     let mut report = iterate(
         &mut objective,
         set,
@@ -290,7 +289,7 @@ impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
             vector::xpby(&v.phi, -gamma, &mut v.p);
         } else {
             self.steps.expansion += 1;
-            self.expand(t_cg - t_f, pap)?;
+            self.expand(t_cg - t_f);
             self.restart();
         }
         Ok(())
@@ -318,46 +317,21 @@ impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
 
     /// From the boundary point `x` to a point with more active blocks. `rest` is what is left of the conjugate
     /// gradient step.
-    fn expand(&mut self, rest: f64, pap: f64) -> Result<(), QpError> {
-        // Barzilai-Borwein length of the conjugate direction, the shorter of the two: p·Ap / Ap·Ap
-        let spectral = pap / vector::dot(&self.v.ap, &self.v.ap);
+    fn expand(&mut self, rest: f64) {
         self.split();
         if self.norms.free == 0.0 {
             // nothing free is left to expand along; the gradient at x is known
-            return Ok(());
+            return;
         }
-        let length = match self.settings.expansion {
-            Expansion::FixedStep => None,
-            Expansion::ProjectedCg => Some(rest),
-            Expansion::BarzilaiBorwein => Some(spectral),
-            Expansion::Optimal => {
-                self.o.direction(&self.v.phi, &mut self.v.ap);
-                self.products.expansion += 1;
-                let curvature = vector::dot(&self.v.phi, &self.v.ap);
-                let t = self.minimising(&self.v.phi, self.norms.free, curvature)?;
-                if t <= self.set.feasible_step(self.x, &self.v.phi) && t.is_finite() {
-                    self.set.advance(self.x, &self.v.phi, t);
-                    self.follow(t);
-                    self.decrease += 0.5 * t * self.norms.free;
-                    return Ok(());
-                }
-                Some(t)
-            }
-        };
-        // the point before the step goes to p, its gradient to ap
+        // the gradient before the step goes to ap, the point to p
         vector::copy(&self.v.g, &mut self.v.ap);
         self.products.expansion += 1;
-        if let Some(t) = length.filter(|t| t.is_finite() && *t > 0.0) {
-            let gained = if self.settings.expansion == Expansion::ProjectedCg {
-                vector::step_keeping_start(&mut self.v.p, self.x, t);
-                self.project()
-            } else {
-                vector::copy(self.x, &mut self.v.p);
-                self.projected_step(t)
-            };
+        if self.settings.expansion == Expansion::ProjectedCg && rest.is_finite() && rest > 0.0 {
+            vector::step_keeping_start(&mut self.v.p, self.x, rest);
+            let gained = self.project();
             if gained >= LONG_STEP * self.fixed * self.norms.reduced_free_dot {
                 self.decrease += gained;
-                return Ok(());
+                return;
             }
             self.products.fallback += 1;
             vector::copy(&self.v.p, self.x);
@@ -367,7 +341,6 @@ impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
         let gained = self.projected_step(self.fixed);
         self.check_fixed(gained);
         self.decrease += gained;
-        Ok(())
     }
 
     /// `x = P(x - t phi)`; what it gained from the point in `p`.

@@ -22,7 +22,7 @@
 use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
 use crate::kprgp::{KprgpReport, Objective, Vectors, drifted, iterate};
 use crate::problem::{ConvexSet, Equality, SymmetricOperator};
-use crate::report::{Products, Status, Steps, Tolerance, usable};
+use crate::report::{Products, Status, Steps};
 use crate::settings::expect_setting;
 use crate::tolerances::{LEAST_PRECISION, LEAST_RESPONSE, PROJECTED_LOAD, STAGNATIONS};
 use crate::vector;
@@ -192,7 +192,7 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, '_, A, C,
     fn start(&mut self) -> Result<(), QpError> {
         let settings = self.settings;
         // eps_1 = eps |P h|
-        let (load, rounding) = reference(&mut self.o, settings.tolerance, &mut self.v.ap, &mut self.products);
+        let (load, rounding) = reference(&mut self.o, &mut self.v.ap, &mut self.products);
         self.least = self.least.max(rounding / self.o.norm);
         self.set.project(self.x);
         self.compute_gradient();
@@ -200,7 +200,7 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, '_, A, C,
         // without a load the set alone pushes
         let reference = if load > 0.0 { load } else { vector::norm(&self.v.g) };
         let reference = reference.max(LEAST_RESPONSE * self.o.norm * settings.least);
-        self.o.floor = usable(settings.tolerance.resolve(reference))?;
+        self.o.floor = settings.tolerance * reference;
         self.o.cap = settings.gradient_cap * reference;
         self.set_equality_tolerance();
         Ok(())
@@ -313,22 +313,20 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, '_, A, C,
     }
 }
 
-/// Reference of the tolerance: `|P (b - A C'e)|`, or `|P b|` for an absolute tolerance; and what of it may be
-/// rounding errors of a load that the equality carries alone.
+/// Reference of the tolerance, `|P (b - A C'e)|`, and what of it may be rounding errors of a load that the equality
+/// carries alone.
 fn reference<A: SymmetricOperator, C: Equality>(
     o: &mut Penalised<'_, A, C>,
-    tolerance: Tolerance,
     h: &mut [f64],
     products: &mut Products,
 ) -> (f64, f64) {
-    match tolerance {
-        Tolerance::Relative(_) if o.e.iter().any(|v| *v != 0.0) => {
-            o.c.apply_transpose(o.e, &mut o.s.y, o.c_scratch);
-            o.a.apply(&o.s.y, h, o.a_scratch);
-            vector::axpby(1.0, o.b, -1.0, h);
-            products.reference += 1;
-        }
-        _ => vector::copy(o.b, h),
+    if o.e.iter().any(|v| *v != 0.0) {
+        o.c.apply_transpose(o.e, &mut o.s.y, o.c_scratch);
+        o.a.apply(&o.s.y, h, o.a_scratch);
+        vector::axpby(1.0, o.b, -1.0, h);
+        products.reference += 1;
+    } else {
+        vector::copy(o.b, h);
     }
     let rounding = PROJECTED_LOAD * (vector::norm(h) + o.norm * vector::norm(o.e));
     o.c.apply(h, &mut o.s.cx, o.c_scratch);

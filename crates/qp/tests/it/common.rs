@@ -5,7 +5,7 @@ use signorini_qp::problem::Identity;
 use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{
     ActiveSetSettings, DenseEquality, DenseOperator, EqualityProjector, KprgpSettings, ProductSet, Projected, QpError,
-    Segment, SmalseSettings, Status, SymmetricOperator, Tolerance, active_set, kprgp, norm_estimate, smalse, vector,
+    Segment, SmalseSettings, Status, SymmetricOperator, active_set, kprgp, norm_estimate, smalse, vector,
 };
 
 /// Reproducible numbers.
@@ -147,7 +147,7 @@ pub(crate) fn run(
     s: &KprgpSettings,
 ) -> Result<Status, QpError> {
     let mut work = KprgpWorkspace::new(a);
-    kprgp(a, b, set, 3.0, Tolerance::Relative(1e-10), s, x, &mut work).map(|r| r.status)
+    kprgp(a, b, set, 3.0, 1e-10, s, x, &mut work).map(|r| r.status)
 }
 
 /// A problem with an equality.

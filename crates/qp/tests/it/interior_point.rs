@@ -5,8 +5,8 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use signorini_qp::kprgp::KprgpWorkspace;
 use signorini_qp::{
-    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment, SmalseSettings, Tolerance,
-    kprgp, vector,
+    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment, SmalseSettings, kprgp,
+    vector,
 };
 
 /// Row-by-row matrix `rows x n` in compressed columns.
@@ -118,7 +118,7 @@ fn bounds_and_discs_agree_with_clarabel() {
         let b = r.vector(n);
         let mut x = vec![0.0; n];
         let mut work = KprgpWorkspace::new(&a);
-        let t = Tolerance::Relative(1e-10);
+        let t = 1e-10;
         let report = kprgp(&a, &b, &set, norm, t, &KprgpSettings::default(), &mut x, &mut work).expect("solve");
         assert!(report.status.converged());
         let y = reference(&a, &b, &set, None);
@@ -138,7 +138,7 @@ fn equalities_agree_with_clarabel() {
         let mut p = Quadratic::new(a, r.vector(n), (c, e), set);
         let (mut x, mut beta) = (vec![0.0; n], vec![0.0; p.e.len()]);
         let settings = SmalseSettings::default()
-            .with_tolerance(Tolerance::Relative(1e-10))
+            .with_tolerance(1e-10)
             .with_equality(1e-10)
             .with_max_outer(20_000)
             .with_inner(KprgpSettings::default().with_max_products(500_000));

@@ -4,16 +4,9 @@ use crate::common::{self, Random, pair, run};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_qp::kprgp::{Expansion, KprgpWorkspace};
-use signorini_qp::{
-    ConvexSet, DenseOperator, KprgpSettings, ProductSet, QpError, Segment, Status, Tolerance, kkt, kprgp, vector,
-};
+use signorini_qp::{ConvexSet, DenseOperator, KprgpSettings, ProductSet, QpError, Segment, Status, kkt, kprgp, vector};
 
-const EXPANSIONS: [Expansion; 4] = [
-    Expansion::FixedStep,
-    Expansion::ProjectedCg,
-    Expansion::Optimal,
-    Expansion::BarzilaiBorwein,
-];
+const EXPANSIONS: [Expansion; 2] = [Expansion::FixedStep, Expansion::ProjectedCg];
 
 fn config() -> ProptestConfig {
     ProptestConfig {
@@ -28,7 +21,7 @@ proptest! {
     #![proptest_config(config())]
 
     #[test]
-    fn finds_the_minimiser(seed in any::<u64>(), expansion in 0_usize..4, scale in -8_i32..8) {
+    fn finds_the_minimiser(seed in any::<u64>(), expansion in 0_usize..2, scale in -8_i32..8) {
         let mut r = Random::new(seed);
         let set = common::set(&mut r);
         let n = set.dim();
@@ -43,7 +36,7 @@ proptest! {
             .with_expansion(EXPANSIONS[expansion])
             .with_max_products(60_000);
         let mut work = KprgpWorkspace::new(&a);
-        let report = kprgp(&a, &b, &set, s * norm, Tolerance::Relative(1e-9), &settings, &mut x, &mut work)
+        let report = kprgp(&a, &b, &set, s * norm, 1e-9, &settings, &mut x, &mut work)
             .expect("solve");
         prop_assert!(report.status.converged(), "{report:?} {set:?}");
         let check = kkt::check(&a, &b, &set, &x, s * norm).expect("lengths");
@@ -65,7 +58,7 @@ proptest! {
         for i in 0..3 { x[6 + 2 * i] = 0.2; }
         let mut work = KprgpWorkspace::new(&a);
         let settings = KprgpSettings::default();
-        let t = Tolerance::Relative(1e-10);
+        let t = 1e-10;
         let report = kprgp(&a, &b, &set, norm, t, &settings, &mut x, &mut work).expect("solve");
         prop_assert!(report.status.converged(), "{report:?}");
         prop_assert!(kkt::check(&a, &b, &set, &x, norm).expect("lengths").relative() <= 1e-9);
@@ -84,7 +77,7 @@ fn empty_and_fixed_problems_need_one_product() {
     let mut x = [0.0; 2];
     let a = pair();
     let mut work = KprgpWorkspace::new(&a);
-    let t = Tolerance::Relative(1e-10);
+    let t = 1e-10;
     let report = kprgp(&a, &[1.0, 1.0], &fixed, 3.0, t, &settings, &mut x, &mut work).expect("solve");
     assert_eq!(
         (report.status, report.products.total(), x),
@@ -97,7 +90,7 @@ fn a_zero_right_side_and_a_solved_start_need_one_product() {
     let a = pair();
     let mut work = KprgpWorkspace::new(&a);
     let settings = KprgpSettings::default();
-    let t = Tolerance::Relative(1e-10);
+    let t = 1e-10;
     let mut x = [0.0; 2];
     let report = kprgp(
         &a,
@@ -120,7 +113,7 @@ fn conjugate_gradients_without_constraints_end_after_n_steps() {
     let b = r.vector(10);
     let mut x = vec![0.0; 10];
     let mut work = KprgpWorkspace::new(&a);
-    let t = Tolerance::Relative(1e-9);
+    let t = 1e-9;
     let report = kprgp(
         &a,
         &b,
@@ -144,13 +137,13 @@ fn limits_and_rounding_are_statuses() {
     let mut work = KprgpWorkspace::new(&a);
     let few = KprgpSettings::default().with_max_products(7);
     let mut x = vec![0.0; 30];
-    let t = Tolerance::Relative(1e-9);
+    let t = 1e-9;
     let report = kprgp(&a, &b, &set, norm, t, &few, &mut x, &mut work).expect("solve");
     assert_eq!(report.status, Status::IterationLimit);
     assert!(report.products.total() <= 9 && set.violation(&x) == 0.0);
     // a tolerance below rounding
     let mut x = vec![0.0; 30];
-    let tight = Tolerance::Absolute(1e-30);
+    let tight = 1e-30;
     let settings = KprgpSettings::default();
     let report = kprgp(&a, &b, &set, norm, tight, &settings, &mut x, &mut work).expect("solve");
     assert_eq!(report.status, Status::Stagnated, "{report:?}");
@@ -167,7 +160,7 @@ fn curvature_that_underflows_is_no_descent_for_ever() {
     let mut work = KprgpWorkspace::new(&a);
     let settings = KprgpSettings::default().with_max_products(500);
     let mut x = [1e-150, 1e-170, 0.0];
-    let t = Tolerance::Relative(1e-10);
+    let t = 1e-10;
     let b = [0.0, 0.0, 1.0];
     let report = kprgp(&a, &b, &set, 1e-9, t, &settings, &mut x, &mut work).expect("solve");
     assert!(x.iter().all(|v| v.is_finite()) && set.violation(&x) == 0.0);
@@ -227,7 +220,7 @@ fn not_a_number_is_noticed_where_it_appears() {
             let a = Failing(first.into());
             let set = ProductSet::new(vec![Segment::lower(vec![-5.0, bound])]).expect("set");
             let mut work = KprgpWorkspace::new(&a);
-            let t = Tolerance::Relative(1e-9);
+            let t = 1e-9;
             let result = kprgp(&a, &[1.0, -1.0], &set, 3.0, t, &settings, &mut [0.0; 2], &mut work);
             assert!(matches!(result, Err(QpError::NotFinite { .. })), "{result:?}");
         }
@@ -257,7 +250,7 @@ fn a_norm_that_is_too_small_is_survived_and_reported() {
         let mut x = vec![0.0; 30];
         let mut work = KprgpWorkspace::new(&a);
         let settings = KprgpSettings::default().with_expansion(Expansion::FixedStep);
-        let t = Tolerance::Relative(1e-8);
+        let t = 1e-8;
         let report = kprgp(&a, &b, &set, 0.05 * norm, t, &settings, &mut x, &mut work).expect("solve");
         assert!(report.status.converged(), "{report:?}");
         assert!(kkt::check(&a, &b, &set, &x, norm).expect("lengths").relative() <= 1e-7);

@@ -3,8 +3,8 @@
 use signorini_qp::kprgp::KprgpWorkspace;
 use signorini_qp::smalse::SmalseWorkspace;
 use signorini_qp::{
-    DenseEquality, DenseOperator, KprgpSettings, ProductSet, QpError, Segment, SetError, SmalseSettings, Status,
-    Tolerance, kprgp, smalse,
+    DenseEquality, DenseOperator, KprgpSettings, ProductSet, QpError, Segment, SetError, SmalseSettings, Status, kprgp,
+    smalse,
 };
 
 use crate::common::{pair, run};
@@ -44,16 +44,7 @@ fn wrong_input_of_kprgp_is_named() {
         ));
     }
     let mut work = KprgpWorkspace::new(&a);
-    let wrong_norm = kprgp(
-        &a,
-        &[0.0; 2],
-        &free,
-        0.0,
-        Tolerance::default(),
-        &s,
-        &mut [0.0; 2],
-        &mut work,
-    );
+    let wrong_norm = kprgp(&a, &[0.0; 2], &free, 0.0, 1e-6, &s, &mut [0.0; 2], &mut work);
     assert!(matches!(wrong_norm, Err(QpError::Setting { name: "norm", .. })));
 }
 

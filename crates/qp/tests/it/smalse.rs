@@ -6,7 +6,7 @@ use proptest::test_runner::RngSeed;
 use signorini_qp::kkt::{EqualityPart, check_with};
 use signorini_qp::{
     ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment, SmalseSettings, Status,
-    Tolerance, vector,
+    vector,
 };
 
 fn config() -> ProptestConfig {
@@ -30,7 +30,7 @@ fn problem(seed: u64) -> Quadratic {
 
 fn tight() -> SmalseSettings {
     SmalseSettings::default()
-        .with_tolerance(Tolerance::Relative(1e-8))
+        .with_tolerance(1e-8)
         .with_equality(1e-8)
         .with_max_outer(5_000)
         .with_inner(KprgpSettings::default().with_max_products(200_000))
@@ -72,7 +72,7 @@ proptest! {
         let (mut x, mut beta) = (vec![0.0; p.set.dim()], vec![0.0; p.c.rows()]);
         let (first, ..) = p.smalse(&tight(), &mut |_, _| false, &mut x, &mut beta);
         prop_assert!(first.status.converged());
-        let loose = tight().with_tolerance(Tolerance::Relative(2e-8)).with_equality(2e-8);
+        let loose = tight().with_tolerance(2e-8).with_equality(2e-8);
         let (again, ..) = p.smalse(&loose, &mut |_, _| false, &mut x, &mut beta);
         prop_assert!(again.status.converged());
         prop_assert!(again.products.total() <= 2 && again.outer == 1, "{again:?}");

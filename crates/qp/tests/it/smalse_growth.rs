@@ -2,7 +2,7 @@
 
 use crate::common::{self, Quadratic, Random};
 use signorini_qp::smalse::SmalseReport;
-use signorini_qp::{ConvexSet, Equality, KprgpSettings, ProductSet, SmalseSettings, Tolerance, vector};
+use signorini_qp::{ConvexSet, Equality, KprgpSettings, ProductSet, SmalseSettings, vector};
 
 impl Quadratic {
     fn residual(&self, x: &[f64]) -> Vec<f64> {
@@ -31,7 +31,7 @@ impl Quadratic {
             .with_penalty(PENALTY)
             .with_precision(precision)
             .with_shrink(SHRINK)
-            .with_tolerance(Tolerance::Relative(1e-6))
+            .with_tolerance(1e-6)
             .with_equality(1e-6)
             .with_max_outer(300)
             .with_inner(KprgpSettings::default().with_max_products(100_000));

@@ -178,7 +178,5 @@ fn a_scene_tells_what_it_was_made_of() -> Result<(), Error> {
     assert_eq!(scene.partition(), &Partition::Boxes([3, 1, 1]));
     let contact = scene.contacts().first().expect("contact");
     assert_eq!(contact.tags(), [brick::Z_MIN]);
-    assert!(matches!(contact.gap(), Gap::Constant(gap) if *gap == 0.1));
-    assert_eq!(contact.normal(), ContactNormal::Body);
     Ok(())
 }

@@ -5,6 +5,7 @@ use crate::error::TfetiError;
 use crate::linalg::dense;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{DEPENDENT, DEPENDENT_FEW, DEPENDENT_JOINED, GROUP_ROWS, SINGULAR};
+use signorini_fem_mesh::internal::Lists;
 use signorini_qp::active_set::{ActiveSetView, Freedom};
 use std::collections::HashMap;
 
@@ -39,43 +40,18 @@ pub(crate) struct ScalingScratch {
     joined: Option<JoinedScratch>,
 }
 
-/// Groups of rows, and the inverse of the matrix of each.
-#[derive(Debug)]
+/// Groups of rows, and the inverse of the matrix of each, column-major.
+#[derive(Debug, Default)]
 struct Groups {
-    pointers: Vec<usize>,
-    rows: Vec<u32>,
-    /// Column-major.
-    inverse_pointers: Vec<usize>,
-    inverses: Vec<f64>,
-}
-
-impl Default for Groups {
-    fn default() -> Self {
-        Self {
-            pointers: vec![0],
-            rows: Vec::new(),
-            inverse_pointers: vec![0],
-            inverses: Vec::new(),
-        }
-    }
+    rows: Lists<u32>,
+    inverses: Lists<f64>,
 }
 
 impl Groups {
-    fn count(&self) -> usize {
-        self.pointers.len() - 1
-    }
-
-    fn push(&mut self, rows: impl Iterator<Item = u32>, inverse: Vec<f64>) {
-        self.rows.extend(rows);
-        self.pointers.push(self.rows.len());
-        self.inverses.extend(inverse);
-        self.inverse_pointers.push(self.inverses.len());
-    }
-
     /// Calls `f` with the rows of each group and its part of `inverses`.
     fn for_each(&self, inverses: &[f64], mut f: impl FnMut(&[u32], &[f64])) {
-        for (rows, inverse) in self.pointers.windows(2).zip(self.inverse_pointers.windows(2)) {
-            f(&self.rows[rows[0]..rows[1]], &inverses[inverse[0]..inverse[1]]);
+        for (group, ends) in self.inverses.starts().windows(2).enumerate() {
+            f(self.rows.of(group), &inverses[ends[0] as usize..ends[1] as usize]);
         }
     }
 }
@@ -153,11 +129,12 @@ impl Scaling {
             let inverse = inverse.map_err(|_| TfetiError::DependentRows { node })?;
             for (place, &(_, row)) in rows.iter().enumerate() {
                 if let Some(contact) = out.contact.get_mut(row as usize) {
-                    *contact = Some((out.groups.count() as u32, place as u32));
+                    *contact = Some((out.groups.rows.count() as u32, place as u32));
                 }
             }
             let target = if plain { &mut out.triples } else { &mut out.groups };
-            target.push(rows.iter().map(|r| r.1), inverse);
+            target.rows.push(rows.iter().map(|r| r.1));
+            target.inverses.push(inverse);
         }
         if !joined.is_empty() {
             out.joined = Some(JoinedGroups::new(system, joined, &compliance, &gives_way)?);
@@ -179,7 +156,7 @@ impl Scaling {
         }
         let groups = &mut s.groups;
         groups.clear();
-        groups.extend_from_slice(&self.groups.inverses);
+        groups.extend_from_slice(self.groups.inverses.items());
         let mut image = Vec::new();
         view.for_each(|row, count, freedom| match freedom {
             Freedom::Free => {}
@@ -197,11 +174,10 @@ impl Scaling {
         let Some(&Some((group, _))) = self.contact.get(row) else {
             return;
         };
-        let group = group as usize;
         let own = &self.groups;
-        let range = own.inverse_pointers[group]..own.inverse_pointers[group + 1];
-        let matrix = &mut groups[range];
-        let count = own.pointers[group + 1] - own.pointers[group];
+        let count = own.rows.of(group as usize).len();
+        let start = own.inverses.starts()[group as usize] as usize;
+        let matrix = &mut groups[start..start + count * count];
         image.clear();
         image.resize(count, 0.0);
         let places = || {
@@ -243,7 +219,7 @@ impl Scaling {
             joined.solve(x, y, s);
         }
         let inverses = if s.groups.is_empty() {
-            &self.groups.inverses
+            self.groups.inverses.items()
         } else {
             &s.groups
         };
@@ -253,7 +229,7 @@ impl Scaling {
                 y[target as usize] = products.map(|(v, &row)| v * x[row as usize]).sum();
             }
         });
-        self.triples.for_each(&self.triples.inverses, |rows, inverse| {
+        self.triples.for_each(self.triples.inverses.items(), |rows, inverse| {
             for (column, &target) in inverse.chunks_exact(rows.len()).zip(rows) {
                 let mut sum = [0.0; 3];
                 for (v, &row) in column.iter().zip(rows) {

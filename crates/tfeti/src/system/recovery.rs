@@ -153,25 +153,11 @@ impl Tfeti {
         }
     }
 
-    /// Sum of loads: `sum factor * force`.
-    pub fn combine_forces(&self, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
-        self.combine_some(Vec::new(), loads, std::iter::once(0..self.torn_dim()))
-    }
-
-    /// The same in old memory, on the subdomains of this process, zero on the others'.
+    /// Sum of loads, `sum factor * force`, in old memory: on the subdomains of this process, zero on the others'.
     #[doc(hidden)]
-    pub fn combine_forces_here(&self, old: Vec<f64>, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
-        self.combine_some(old, loads, self.torn_here())
-    }
-
-    fn combine_some(
-        &self,
-        old: Vec<f64>,
-        loads: &[(f64, &LoadResponse)],
-        all: impl Iterator<Item = Range<usize>>,
-    ) -> Vec<f64> {
+    pub fn combine_forces(&self, old: Vec<f64>, loads: &[(f64, &LoadResponse)]) -> Vec<f64> {
         let mut force = zeros(old, self.torn_dim());
-        for range in all {
+        for range in self.torn_here() {
             for (factor, load) in loads {
                 signorini_qp::vector::axpy(*factor, &load.force[range.clone()], &mut force[range.clone()]);
             }
@@ -184,20 +170,12 @@ impl Tfeti {
     /// and of the force needs theirs only; [`complete_torn`](Self::complete_torn) tells it the others'.
     ///
     /// `force` is a torn vector in newtons, `alpha` the rigid amplitudes, for instance from
-    /// [`CoarseFactor::amplitudes`](crate::CoarseFactor::amplitudes).
+    /// [`CoarseFactor::amplitudes`](crate::CoarseFactor::amplitudes). The displacement is made in old memory, which may be
+    /// empty, the residual in that of the force.
     ///
     /// # Errors
     /// [`TfetiError::Length`] and [`TfetiError::NotFinite`], also of a displacement that is not finite.
-    pub fn recover(&self, force: &[f64], lambda: &[f64], alpha: &[f64]) -> Result<[Vec<f64>; 2], TfetiError> {
-        self.recover_in([Vec::new(), force.to_vec()], lambda, alpha)
-    }
-
-    /// The same in old memory, the residual in that of the force.
-    ///
-    /// # Errors
-    /// As [`recover`](Self::recover).
-    #[doc(hidden)]
-    pub fn recover_in(
+    pub fn recover(
         &self,
         [old, mut force]: [Vec<f64>; 2],
         lambda: &[f64],
@@ -239,14 +217,9 @@ impl Tfeti {
         out
     }
 
-    /// Row offsets `c` of prescribed displacements: `sum factor * offset` over `(case, factor)`.
-    pub fn prescribed_offsets(&self, factors: &[(usize, f64)]) -> Vec<f64> {
-        self.prescribed_offsets_in(Vec::new(), factors)
-    }
-
-    /// The same in old memory.
-    #[doc(hidden)]
-    pub fn prescribed_offsets_in(&self, old: Vec<f64>, factors: &[(usize, f64)]) -> Vec<f64> {
+    /// Row offsets `c` of prescribed displacements, `sum factor * offset` over `(case, factor)`, in old memory, which may
+    /// be empty.
+    pub fn prescribed_offsets(&self, old: Vec<f64>, factors: &[(usize, f64)]) -> Vec<f64> {
         let mut c = zeros(old, self.dual_dim());
         for &(case, factor) in factors {
             for &(row, value) in self.gluing().prescribed(case) {

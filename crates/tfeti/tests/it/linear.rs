@@ -49,7 +49,9 @@ fn solve(decomposition: &Decomposition, system: &Tfeti, loads: &[Vec<f64>], offs
     let residual: Vec<f64> = fl.iter().zip(&d).map(|(f, d)| f - d).collect();
     let mut alpha = vec![0.0; factor.coarse().rows()];
     factor.amplitudes(&residual, &mut alpha, &mut cs);
-    let [u, balance] = system.recover(&response.force, &lambda, &alpha).unwrap();
+    let [u, balance] = system
+        .recover([Vec::new(), response.force.clone()], &lambda, &alpha)
+        .unwrap();
     let mut rows = vec![0.0; dim];
     system.rows_times(&u, &mut rows);
     assert!(
@@ -172,7 +174,7 @@ fn prescribed_displacement_is_reached() {
         &b.decomposition,
         &system,
         &zero,
-        &system.prescribed_offsets(&[(0, 2.0)]),
+        &system.prescribed_offsets(Vec::new(), &[(0, 2.0)]),
     );
     let none = LoadDensity::body([0.0; 3]);
     let value = |node: u32| {

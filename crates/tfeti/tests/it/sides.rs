@@ -157,7 +157,7 @@ fn supports_at_some_nodes_leave_the_row() {
     }
     let (mut rows, offsets) = (
         vec![0.0; system.dual_dim()],
-        system.prescribed_offsets(&[(0, 1.0), (1, 1.0)]),
+        system.prescribed_offsets(Vec::new(), &[(0, 1.0), (1, 1.0)]),
     );
     system.rows_times(&u, &mut rows);
     for info in g.contact() {

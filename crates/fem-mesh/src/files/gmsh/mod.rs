@@ -75,60 +75,33 @@ fn listed(what: &str, known: &[String]) -> String {
     format!("the {what}s in it are {}", names.join(", "))
 }
 
-/// Reads a mesh with its tags and regions from a file.
-///
-/// # Errors
-/// [`GmshError`] if the file cannot be read or understood, or its mesh is not valid.
-pub fn read_gmsh(path: impl AsRef<Path>) -> Result<TetMesh, GmshError> {
-    parse_gmsh(&read(path.as_ref())?)
-}
-
-/// As [`read_gmsh`], with the names of the physical groups.
+/// Reads a mesh with its tags and regions from a file, and the names of its physical groups.
 ///
 /// ```no_run
-/// use signorini_fem_mesh::gmsh::read_named_gmsh;
+/// use signorini_fem_mesh::gmsh::read_gmsh;
 ///
-/// let (mesh, names) = read_named_gmsh("block.msh")?;
+/// let (mesh, names) = read_gmsh("block.msh")?;
 /// let floor = names.surface("foundation")?;
 /// println!("{} nodes can touch", mesh.nodes_on(floor).len());
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 ///
 /// # Errors
-/// As [`read_gmsh`], and if two groups have the same name.
-pub fn read_named_gmsh(path: impl AsRef<Path>) -> Result<(TetMesh, GroupNames), GmshError> {
-    parse_named_gmsh(&read(path.as_ref())?)
-}
-
-fn read(path: &Path) -> Result<Vec<u8>, GmshError> {
-    std::fs::read(path).map_err(|source| GmshError::Io {
+/// [`GmshError`] if the file cannot be read or understood, or its mesh is not valid.
+pub fn read_gmsh(path: impl AsRef<Path>) -> Result<(TetMesh, GroupNames), GmshError> {
+    let path = path.as_ref();
+    let bytes = std::fs::read(path).map_err(|source| GmshError::Io {
         path: path.into(),
         source,
-    })
+    })?;
+    parse_gmsh(&bytes)
 }
 
-/// Reads a mesh with its tags and regions from the contents of a file.
+/// The same from the contents of a file.
 ///
 /// # Errors
 /// [`GmshError`] if the contents cannot be understood or the mesh is not valid.
-pub fn parse_gmsh(bytes: &[u8]) -> Result<TetMesh, GmshError> {
-    Ok(parse_contents(bytes)?.0)
-}
-
-/// As [`parse_gmsh`], with the names of the physical groups.
-///
-/// # Errors
-/// As [`parse_gmsh`], and if two groups have the same name.
-pub fn parse_named_gmsh(bytes: &[u8]) -> Result<(TetMesh, GroupNames), GmshError> {
-    let (mesh, list) = parse_contents(bytes)?;
-    let mut names = GroupNames::default();
-    for (dimension, group, name) in list {
-        names.insert(dimension, group, name)?;
-    }
-    Ok((mesh, names))
-}
-
-fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<reader::Name>), GmshError> {
+pub fn parse_gmsh(bytes: &[u8]) -> Result<(TetMesh, GroupNames), GmshError> {
     let file = reader::read(bytes)?;
     let mut number = HashMap::with_capacity(file.tags.len());
     for (place, &tag) in file.tags.iter().enumerate() {
@@ -160,7 +133,7 @@ fn parse_contents(bytes: &[u8]) -> Result<(TetMesh, Vec<reader::Name>), GmshErro
         (0, _) => mesh(TetMesh::quadratic, file.points, quadratic, facets)?,
         (linear, quadratic) => return Err(GmshError::MixedOrder { linear, quadratic }),
     };
-    Ok((mesh.with_regions(regions)?, file.names))
+    Ok((mesh.with_regions(regions)?, GroupNames::new(file.names)))
 }
 
 /// The first nodes of an element by their places in the file.

@@ -1,24 +1,24 @@
 //! Names of physical groups.
 
-use std::collections::BTreeMap;
-
 use super::GmshError;
+use super::reader::Name;
 use crate::mesh::FacetTag;
+use crate::tables::distinct;
 
 /// Names of the physical groups of surfaces and volumes of a file: what to look tags and regions up by.
 ///
 /// A group that the file names need not have elements.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct GroupNames {
-    surfaces: BTreeMap<String, u32>,
-    volumes: BTreeMap<String, u32>,
+    surfaces: Vec<(String, u32)>,
+    volumes: Vec<(String, u32)>,
 }
 
 impl GroupNames {
     /// Tag of the facets in the surface group of this name.
     ///
     /// # Errors
-    /// [`GmshError::UnknownName`] with the names that there are.
+    /// [`GmshError::UnknownName`] with the names that there are, [`GmshError::RepeatedName`] if two groups have this one.
     pub fn surface(&self, name: &str) -> Result<FacetTag, GmshError> {
         look_up("surface", &self.surfaces, name).map(FacetTag)
     }
@@ -26,44 +26,46 @@ impl GroupNames {
     /// Region of the tetrahedra in the volume group of this name.
     ///
     /// # Errors
-    /// [`GmshError::UnknownName`] with the names that there are.
+    /// [`GmshError::UnknownName`] with the names that there are, [`GmshError::RepeatedName`] if two groups have this one.
     pub fn volume(&self, name: &str) -> Result<u32, GmshError> {
         look_up("volume", &self.volumes, name)
     }
 
     /// All named surface groups, by name.
     pub fn surfaces(&self) -> impl Iterator<Item = (&str, FacetTag)> {
-        self.surfaces.iter().map(|(n, &tag)| (&n[..], FacetTag(tag)))
+        self.surfaces.iter().map(|(n, tag)| (&n[..], FacetTag(*tag)))
     }
 
     /// All named volume groups, by name.
     pub fn volumes(&self) -> impl Iterator<Item = (&str, u32)> {
-        self.volumes.iter().map(|(n, &region)| (&n[..], region))
+        self.volumes.iter().map(|(n, region)| (&n[..], *region))
     }
 
-    /// Takes names as the file lists them; those of points and curves are of no use here.
-    pub(super) fn insert(&mut self, dimension: i32, group: i32, name: String) -> Result<(), GmshError> {
-        let groups = match dimension {
-            2 => &mut self.surfaces,
-            3 => &mut self.volumes,
-            _ => return Ok(()),
+    /// From names as the file lists them; those of points and curves are of no use here.
+    pub(super) fn new(list: Vec<Name>) -> Self {
+        let of = |wanted: i32| {
+            let own = list.iter().filter(|(dimension, ..)| *dimension == wanted);
+            distinct(own.map(|(_, group, name)| (name.clone(), group.unsigned_abs())))
         };
-        let group = group.unsigned_abs();
-        match groups.insert(name.clone(), group) {
-            Some(other) if other != group => Err(GmshError::RepeatedName {
-                name,
-                groups: [other, group],
-            }),
-            _ => Ok(()),
+        Self {
+            surfaces: of(2),
+            volumes: of(3),
         }
     }
 }
 
-fn look_up(what: &'static str, groups: &BTreeMap<String, u32>, name: &str) -> Result<u32, GmshError> {
-    let unknown = || GmshError::UnknownName {
-        what,
-        name: name.into(),
-        known: groups.keys().cloned().collect(),
-    };
-    groups.get(name).copied().ok_or_else(unknown)
+fn look_up(what: &'static str, groups: &[(String, u32)], name: &str) -> Result<u32, GmshError> {
+    let found: Vec<u32> = groups.iter().filter(|g| g.0 == name).map(|g| g.1).collect();
+    match found[..] {
+        [] => Err(GmshError::UnknownName {
+            what,
+            name: name.into(),
+            known: groups.iter().map(|g| g.0.clone()).collect(),
+        }),
+        [group] => Ok(group),
+        [first, second, ..] => Err(GmshError::RepeatedName {
+            name: name.into(),
+            groups: [first, second],
+        }),
+    }
 }
