@@ -186,21 +186,24 @@ fn bodies_are_measured_by_themselves() {
     assert!(mesh.points()[node as usize][2] >= 5.0 && extent == 0.5 && (displacement - 0.06).abs() < 1e-6);
 }
 
-/// An obstacle is drawn by 0.8 m under a block whose facets have edges of 0.5 and 0.71 m, at once or in four steps.
+/// An obstacle is drawn by 0.8 m under a block whose facets have edges of 0.5 and 0.71 m, at once or in four steps. Where
+/// its shape gives the normals it tells whether they have turned.
 #[test]
 fn slips_past_a_facet_are_named() {
-    let scene = |steps| {
-        let floor = Contact::rigid(brick::Z_MIN)
-            .with_gap(-1e-3)
-            .with_friction(Friction::coulomb(0.2));
+    let plane = Obstacle::half_space([0.0, 0.0, 1e-3], [0.0, 0.0, 1.0]);
+    let rigid = || Contact::rigid(brick::Z_MIN).with_gap(-1e-3);
+    let shaped = Contact::obstacle(brick::Z_MIN, plane);
+    let scene = |floor: Contact, steps| {
+        let floor = floor.with_friction(Friction::coulomb(0.2));
         Scene::new(block([1.0; 3], [2; 3]), uniform(1e9, 0.3))
             .with_support(Support::fixed(brick::Z_MAX))
             .with_contact(floor.with_motion([0.8, 0.0, 0.0], ramp()))
             .with_analysis(Analysis::quasistatic(1.0, steps))
     };
     let long = |w: &Warning| matches!(w, Warning::LongSlip { .. });
-    assert!(!told(scene(4)).0.warnings().iter().any(long));
-    let (report, _) = told(scene(1));
+    assert!(!told(scene(rigid(), 4)).0.warnings().iter().any(long));
+    assert!(!told(scene(shaped, 1)).0.warnings().iter().any(long));
+    let (report, _) = told(scene(rigid(), 1));
     let warning = only(report.warnings(), long);
     let Warning::LongSlip {
         step: 0,
