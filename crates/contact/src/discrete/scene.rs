@@ -56,7 +56,7 @@ impl DiscreteScene {
         let springs = Springs::new(scene, &supports)?;
         let contacts = scene.contacts.iter().enumerate();
         let started = Instant::now();
-        let paired = contacts.map(|(index, contact)| Paired::new(&scene.mesh, index, contact));
+        let paired = contacts.map(|(index, contact)| Paired::new(&scene.mesh, &scene.materials, index, contact));
         let paired = paired.collect::<Result<Vec<_>, _>>()?;
         let search = started.elapsed();
         let mortar = paired.iter().enumerate().filter(|(_, p)| p.is_apart());
