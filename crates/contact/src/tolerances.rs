@@ -274,7 +274,7 @@ pub(crate) const LARGE_GAP: f64 = 1.0;
 pub(crate) const FACETED: f64 = 0.1;
 
 /// Poisson's ratio above which linear tetrahedra lock: at 0.45 a clamped brick of four cells across has lost a tenth of
-/// its deflection.
+/// its deflection. Also that of rubber, which gives way along the surface between points on another side.
 pub(crate) const LOCKING: f64 = 0.45;
 
 /// Coefficient of friction above which it is rather one in per cent. Rubber has up to 2.
