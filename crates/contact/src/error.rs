@@ -157,7 +157,7 @@ signorini_fem_mesh::errors! {
         Finished { steps: usize } = "the scene has {steps} steps and all are solved";
         Observer { step: usize, source: Box<dyn std::error::Error + Send + Sync> } =
             "observer, after step {step}: {source}";
-        NotConverged(crate::status::StepFailure) = "{0}";
+        NotConverged(Box<crate::status::StepFailure>) = "{0}";
         UnconvergedHistory { step: usize } =
             "step {step} did not converge, and the slip of later steps depends on it; continue from a state before \
             it, with smaller steps or other settings";

@@ -2,6 +2,7 @@
 
 use crate::error::ContactError;
 use crate::part::Part;
+use crate::status::Slide;
 use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::{FacetTag, LoadError, MaterialError, MeshError, SurfaceError};
 use signorini_tfeti::TfetiError;
@@ -93,8 +94,12 @@ impl ContactError {
             Self::TooLarge { part, .. } => vec![*part],
             Self::Stiffness { region, .. } => vec![Part::Region(*region)],
             Self::NotConverged(failure) => {
-                let node = failure.slide.map(|s| Part::Node(s.node));
-                [Part::Step(failure.step)].into_iter().chain(node).collect()
+                let others = |s: &Slide| s.others.into_iter().flatten().map(|(_, node)| node);
+                let nodes = failure.slide.iter().flat_map(|s| [s.node].into_iter().chain(others(s)));
+                [Part::Step(failure.step)]
+                    .into_iter()
+                    .chain(nodes.map(Part::Node))
+                    .collect()
             }
             Self::Load { index, source } => {
                 let node = match source {

@@ -77,6 +77,8 @@ pub struct Slide {
     pub rotation: [f64; 3],
     /// By how much the loads exceed what contact holds along it, N.
     pub force: f64,
+    /// Other bodies that go at least half as far with it, each with a node of it: the first three.
+    pub others: [Option<(u32, u32)>; 3],
 }
 
 impl Slide {
@@ -101,7 +103,17 @@ impl fmt::Display for Slide {
             .into_iter()
             .chain(turn)
             .collect();
-        write!(f, "its {}", parts.join(" with "))
+        write!(f, "its {}", parts.join(" with "))?;
+        let others: Vec<String> = self
+            .others
+            .iter()
+            .flatten()
+            .map(|(body, node)| format!("body {body} (with node {node})"))
+            .collect();
+        match others.is_empty() {
+            true => Ok(()),
+            false => write!(f, ", together with {},", others.join(" and ")),
+        }
     }
 }
 

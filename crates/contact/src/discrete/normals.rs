@@ -2,9 +2,15 @@
 
 use crate::error::ContactError;
 use crate::scene::{Contact, ContactNormal};
-use crate::tolerances::{ALONG, AXIS, FACING, GRADIENT};
+use crate::tolerances::{ALONG, AXIS, FACING, GRADIENT, SAME_NORMAL};
 use signorini_fem_mesh::vec3::{cross, dot, norm, scale, sub};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
+
+/// Whether directions are not all one.
+pub(super) fn differ(mut normals: impl Iterator<Item = [f64; 3]>) -> bool {
+    let first = normals.next().unwrap_or_default();
+    normals.any(|n| dot(n, first) <= SAME_NORMAL)
+}
 
 /// The one frame of all nodes of a contact with a fixed direction.
 pub(super) fn fixed_frame(

@@ -5,15 +5,15 @@
 //! those of facets. Nodes on sides that do not face each other are no partners: a thin body has nodes of its far side
 //! on the same normal.
 
-use super::normals::fixed_frame;
+use super::normals::{differ, fixed_frame};
 use crate::error::ContactError;
 use crate::mortar::{MortarNode, mortar_nodes};
 use crate::scene::{Contact, Gap};
-use crate::tolerances::{BESIDE, COARSER, FACING, MOST_TILT, TILT};
+use crate::tolerances::{BESIDE, COARSER, FACING, LOCKING, MOST_TILT, TILT};
 use rayon::prelude::*;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
-use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
+use signorini_fem_mesh::{Materials, Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
 use std::collections::{HashMap, HashSet};
 
@@ -59,7 +59,15 @@ impl Paired {
 
     /// Finds the sides of a contact. Where meshes match the first side has the points, else the coarser one, of sides with
     /// facets of one size that with fewer points: rows are farther from depending on one another, and pressures smoother.
-    pub(super) fn new(mesh: &TetMesh, index: usize, contact: &Contact, rounding: f64) -> Result<Self, ContactError> {
+    /// But a curved side that hardly changes its volume has them, in meshes of order 2: between points of larger facets
+    /// it gives way, and loses its pressure. Linear tetrahedra are too stiff to.
+    pub(super) fn new(
+        mesh: &TetMesh,
+        materials: &Materials,
+        index: usize,
+        contact: &Contact,
+        rounding: f64,
+    ) -> Result<Self, ContactError> {
         let surface = Surface::new(mesh, &contact.tags)?;
         let fixed = fixed_frame(index, contact, &surface)?;
         let mut paired = Self {
@@ -94,16 +102,20 @@ impl Paired {
         let seen = |from: &Surface, to: &Surface| mortar_nodes(mesh, from, to, contact.tied);
         let there = || seen(&paired.surface, &other.surface);
         let back = || seen(&other.surface, &paired.surface);
-        let (mortar, swapped) = if others > COARSER * own {
-            (back(), true)
-        } else if own > COARSER * others {
-            (there(), false)
-        } else {
-            let count = |nodes: &[Option<MortarNode>]| nodes.iter().flatten().count();
-            let (there, back) = (there(), back());
-            match count(&back) < count(&there) {
-                true => (back, true),
-                false => (there, false),
+        let is_curved = |s: &Surface| differ(s.frames().iter().map(|f| f.normal));
+        let keeps = |s: &Surface| mesh.order() == 2 && is_curved(s) && keeps_volume(mesh, materials, s);
+        let (mortar, swapped) = match [keeps(&paired.surface), keeps(&other.surface)] {
+            [true, false] => (there(), false),
+            [false, true] => (back(), true),
+            _ if others > COARSER * own => (back(), true),
+            _ if own > COARSER * others => (there(), false),
+            _ => {
+                let count = |nodes: &[Option<MortarNode>]| nodes.iter().flatten().count();
+                let (there, back) = (there(), back());
+                match count(&back) < count(&there) {
+                    true => (back, true),
+                    false => (there, false),
+                }
             }
         };
         if mortar.iter().all(Option::is_none) {
@@ -119,6 +131,13 @@ impl Paired {
         }
         Ok(paired)
     }
+}
+
+/// Whether a body behind a side is nearly incompressible.
+fn keeps_volume(mesh: &TetMesh, materials: &Materials, surface: &Surface) -> bool {
+    let region = |facet: &u32| mesh.regions()[mesh.facet_owner(*facet as usize)];
+    let poisson = |region: u32| materials.get(region).ok()?.poisson();
+    surface.facets().iter().any(|f| poisson(region(f)) > Some(LOCKING))
 }
 
 /// The partner of each node; `None` where meshes do not match.
@@ -282,7 +301,11 @@ impl<'a> OtherSide<'a> {
 mod tests {
     use super::*;
     use signorini_fem_mesh::mesh::orient_tets;
-    use signorini_fem_mesh::{Brick, Facet, FacetTag, brick};
+    use signorini_fem_mesh::{Brick, Facet, FacetTag, Hooke, brick};
+
+    fn steel() -> Materials {
+        Materials::uniform(Hooke::isotropic(2e11, 0.3).expect("Hooke"))
+    }
 
     fn lower(tag: FacetTag) -> FacetTag {
         FacetTag(tag.0 + 100)
@@ -312,7 +335,7 @@ mod tests {
         for gap in [0.0, 1e-3, 0.02, 0.3] {
             let mesh = bent(gap);
             let contact = Contact::between(brick::Z_MIN, lower(brick::Z_MAX));
-            let paired = Paired::new(&mesh, 0, &contact, 1e-12).expect("partners");
+            let paired = Paired::new(&mesh, &steel(), 0, &contact, 1e-12).expect("partners");
             let (Partners::Nodes(found), surface) = (paired.partners, paired.surface) else {
                 panic!("meshes match");
             };
@@ -355,7 +378,7 @@ mod tests {
         let contact = Contact::between(above, below);
         for (inner, apart) in [(None, false), (Some([0.3, 0.3, 0.0]), true)] {
             let mesh = cone(None, 1.0, above).append(&cone(inner, -1.0, below)).expect("two");
-            let paired = Paired::new(&mesh, 0, &contact, 1e-12).expect("partners");
+            let paired = Paired::new(&mesh, &steel(), 0, &contact, 1e-12).expect("partners");
             assert_eq!(paired.is_apart(), apart);
         }
     }

@@ -10,7 +10,7 @@
 
 use super::creases::{SurfaceSide, creases};
 use super::means::{Means, mean_gap};
-use super::normals::{along_axis, shape_frames};
+use super::normals::{along_axis, differ, shape_frames};
 use super::partners::{Paired, Partners, check_overlap};
 use super::side::{Sides, turned};
 use crate::error::ContactError;
@@ -175,9 +175,7 @@ fn is_curved(partners: &Partners) -> bool {
     let Partners::Mortar(nodes) = partners else {
         return false;
     };
-    let mut normals = nodes.iter().flatten().map(|n| n.frame.normal);
-    let first = normals.next().unwrap_or_default();
-    normals.any(|n| vector::dot(&n, &first) <= SAME_NORMAL)
+    differ(nodes.iter().flatten().map(|n| n.frame.normal))
 }
 
 /// Facets of curved sides are apart where the sides touch, and forces of both act at two places: the partner turns over

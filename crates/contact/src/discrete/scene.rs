@@ -58,7 +58,8 @@ impl DiscreteScene {
         let rounding = ROUNDING * scene.mesh.points().iter().flatten().fold(0.0, largest);
         let contacts = scene.contacts.iter().enumerate();
         let started = Instant::now();
-        let paired = contacts.map(|(index, contact)| Paired::new(&scene.mesh, index, contact, rounding));
+        let paired =
+            contacts.map(|(index, contact)| Paired::new(&scene.mesh, &scene.materials, index, contact, rounding));
         let paired = paired.collect::<Result<Vec<_>, _>>()?;
         let search = started.elapsed();
         let mortar = paired.iter().enumerate().filter(|(_, p)| p.is_apart());

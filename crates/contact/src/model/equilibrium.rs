@@ -206,6 +206,9 @@ struct Part {
     motion: [f64; 6],
 }
 
+/// Length of a motion over the largest from which on a body is told to move, too.
+const WITH: f64 = 0.5;
+
 /// The part that moves most in a sum of motions, and how: one of length one; its radius, and its length in the sum.
 fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, f64, f64) {
     let mut parts: Vec<Part> = Vec::new();
@@ -233,12 +236,22 @@ fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, 
     let most = parts.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
     let most = most.copied().unwrap_or_default();
     let (m, length) = (most.motion.map(|v| v / size(&most)), size(&most));
+    let node = |part: &Part| model.discrete.decomposition.subdomains()[part.subdomain].nodes[0];
+    let mut others = [None; 3];
+    let far = parts.iter().filter(|p| p.body != most.body && size(p) >= WITH * length);
+    let mut far: Vec<&Part> = far.collect();
+    far.sort_by_key(|p| p.body);
+    far.dedup_by_key(|p| p.body);
+    for (other, part) in others.iter_mut().zip(far) {
+        *other = Some((part.body as u32, node(part)));
+    }
     let slide = Slide {
         body: most.body as u32,
-        node: model.discrete.decomposition.subdomains()[most.subdomain].nodes[0],
+        node: node(&most),
         translation: [m[0], m[1], m[2]],
         rotation: [m[3], m[4], m[5]],
         force: 0.0,
+        others,
     };
     (slide, most.radius, length)
 }

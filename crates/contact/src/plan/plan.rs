@@ -30,8 +30,8 @@ pub struct Plan {
     /// Smallest and largest gap of the contact points at the start, m; a negative one is inside the obstacle or the
     /// partner. `None` without points.
     pub gaps: Option<[f64; 2]>,
-    /// Contacts with non-matching meshes, and whether the side named second has the points (the side with the larger
-    /// facets has them).
+    /// Contacts with non-matching meshes, and whether the side named second has the points
+    /// ([which side has](crate::Contact::between)).
     pub apart: Vec<(usize, bool)>,
     /// Rows of `N`: contact points that can touch, nodes in edges and corners once for each normal (nodes whose normal
     /// displacement is fixed by supports are left out).

@@ -71,7 +71,7 @@ impl RunReport {
 /// An error for a step that failed, or an earlier one on whose displacement it depends.
 pub(crate) fn require(failure: Option<StepFailure>, history: Option<usize>) -> Result<(), ContactError> {
     match (failure, history) {
-        (Some(failure), _) => Err(ContactError::NotConverged(failure)),
+        (Some(failure), _) => Err(ContactError::NotConverged(Box::new(failure))),
         (None, Some(step)) => Err(ContactError::UnconvergedHistory { step }),
         (None, None) => Ok(()),
     }

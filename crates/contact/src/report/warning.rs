@@ -15,10 +15,10 @@ signorini_fem_mesh::errors! {
     /// [plain](Self::plain) one.
     ///
     /// The thresholds are a tenth of the body for displacements, 5 % for strains, an edge of a facet for slips, 0.1 for
-    /// the turn of normals, the body for gaps, 3 for coefficients, 0.45 for Poisson's ratios of linear tetrahedra and
-    /// 10 % for the error of the mesh. A body is as long as the longest side of the box around it. Strain is measured
-    /// per tetrahedron by the Frobenius norm; at clamped edges the strain of linear theory grows without
-    /// bound as the mesh is refined.
+    /// the turn of normals, the body for gaps, a tenth of an overlap for the distance of facets from their curve, 3 for
+    /// coefficients, 0.45 for Poisson's ratios of linear tetrahedra and 10 % for the error of the mesh. A body is as long
+    /// as the longest side of the box around it. Strain is measured per tetrahedron by the Frobenius norm; at clamped
+    /// edges the strain of linear theory grows without bound as the mesh is refined.
     ///
     /// Fields: `step` from 0; `node`, `tet`, `contact` and `region` are numbers in mesh and scene; `place` and lengths
     /// in m (of a tetrahedron its centroid), `turn` in degrees, other figures relative. `extent` is the length of the
@@ -46,9 +46,18 @@ signorini_fem_mesh::errors! {
             "contact {contact} begins {:.3e} {} its obstacle even at the nearest node, {node} at {}, and the body is \
             {extent:.3e} long; look at the unit of the gap and at the places of the bodies",
             gap.abs(), if *gap < 0.0 { "inside" } else { "from" }, at(place);
+        FacetedOverlap { contact: usize, node: u32, place: [f64; 3], overlap: f64, sagitta: f64 } =
+            "contact {contact} begins {overlap:.3e} inside its partner at node {node}, {}, between facets that are \
+            {sagitta:.3e} beside the curve that they stand for, which is measured with it and presses all the same: tell \
+            the gap (with_gap, 0 for sides that touch), or take smaller facets, or mid-nodes on the curve",
+            at(place);
         LargeCoefficient { contact: usize, node: u32, place: [f64; 3], coefficient: f64 } =
             "friction of contact {contact}: the coefficient at node {node}, {}, is {coefficient}; no pair of materials \
             has so much: {coefficient} in per cent is {}", at(place), 0.01 * coefficient;
+        NothingActs { held: bool } =
+            "no load acts, no support or obstacle moves and no sides overlap, so that all results are zero{}: look for \
+            loads, or supports that move, that are missing",
+            if *held { "" } else { "; no support or spring holds a body either" };
         UnusedMaterials { regions: Vec<u32>, present: Vec<u32> } =
             "materials are given for the regions {regions:?}, which the mesh does not have; it has {present:?}: look at \
             the numbers, or leave them out";
@@ -82,12 +91,14 @@ impl Warning {
             } => {
                 vec![Part::Step(*step), Part::Node(*node), Part::Contact(*contact)]
             }
-            Self::LargeGap { contact, node, .. } | Self::LargeCoefficient { contact, node, .. } => {
+            Self::LargeGap { contact, node, .. }
+            | Self::FacetedOverlap { contact, node, .. }
+            | Self::LargeCoefficient { contact, node, .. } => {
                 vec![Part::Contact(*contact), Part::Node(*node)]
             }
             Self::UnusedMaterials { regions, .. } => regions.iter().copied().map(Part::Region).collect(),
             Self::Locking { region, .. } => vec![Part::Region(*region)],
-            Self::DamagedCheckpoint { .. } | Self::Named { .. } => Vec::new(),
+            Self::NothingActs { .. } | Self::DamagedCheckpoint { .. } | Self::Named { .. } => Vec::new(),
         }
     }
 

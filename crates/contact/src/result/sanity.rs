@@ -126,8 +126,15 @@ fn size([xx, yy, zz, yz, xz, xy]: &[f64; 6]) -> f64 {
     squares.sqrt()
 }
 
+/// Whether an obstacle's shape gives the normals of a contact.
+fn is_shaped(model: &Model, contact: usize) -> bool {
+    model.scene.contacts[contact].normal() == ContactNormal::Obstacle
+}
+
+/// Not where a shape gives the normals: a drum may turn under a shoe as far as it likes, and turned normals are told.
 fn long_slip(model: &Model, lengths: &Lengths, recovered: &Recovered, step: usize) -> Option<Warning> {
     let touching = recovered.points.iter().filter(|p| p.state != ContactState::Open);
+    let touching = touching.filter(|p| !is_shaped(model, p.surface));
     let ways = touching.filter_map(|p| {
         let edge = lengths.edges[p.surface][model.discrete.surfaces[p.surface].local(p.node)?];
         let slip = norm(&p.difference);
@@ -148,19 +155,18 @@ fn long_slip(model: &Model, lengths: &Lengths, recovered: &Recovered, step: usiz
 /// inside the obstacle.
 fn turned_normal(model: &Model, recovered: &Recovered, u: &[f64], step: usize) -> Option<Warning> {
     let (scene, discrete) = (&model.scene, &model.discrete);
-    let is_shaped = |contact: usize| scene.contacts[contact].normal() == ContactNormal::Obstacle;
     let pose = |contact: usize| discrete.poses[contact].get(step).copied().unwrap_or_default();
     let displaced = |node: u32| {
         let (at, first) = (scene.mesh.points()[node as usize], 3 * node as usize);
         [0, 1, 2].map(|c| at[c] + u[first + c])
     };
     let pairs = model.points.iter().zip(&recovered.points);
-    let touching = pairs.filter(|(p, state)| is_shaped(p.surface()) && state.state != ContactState::Open);
+    let touching = pairs.filter(|(p, state)| is_shaped(model, p.surface()) && state.state != ContactState::Open);
     let turns = touching.map(|(p, _)| {
         let turn = turned(scene, &p.contact, &pose(p.surface()), &displaced(p.node()));
         ((p.surface(), p.node()), turn)
     });
-    let shaped = (0..scene.contacts.len()).filter(|&contact| is_shaped(contact));
+    let shaped = (0..scene.contacts.len()).filter(|&contact| is_shaped(model, contact));
     let without = shaped.flat_map(|contact| {
         let [first, end] = [contact, contact + 1].map(|k| discrete.conditions.partition_point(|c| c.surface < k));
         let nodes = beside(&discrete.surfaces[contact], &discrete.conditions[first..end]);

@@ -97,10 +97,11 @@ impl Contact {
     ///
     /// Where the meshes match, a node of the first side is a contact point, and its partner is the node of the other
     /// side on its normal, to within a fiftieth of the size of its facets, and a little more across a gap. Where they
-    /// do not, the side with the larger facets has the points, whichever is named first, and the partner of each is a
-    /// weighted mean of nodes (mortar method with dual multipliers): uniform pressure is transferred exactly, for any
-    /// ratio of mesh sizes and for sides that overlap only in part. Nodes with nothing opposite have no point. Put flat
-    /// sides that meet at an edge into separate contacts.
+    /// do not, the side with the larger facets has the points, whichever is named first (in meshes of order 2 the curved
+    /// side of a Poisson's ratio above 0.45, if the other's is below), and the partner of each is a weighted mean of
+    /// nodes (mortar method with dual multipliers): uniform pressure is transferred exactly, for any ratio of mesh sizes
+    /// and for sides that overlap only in part. Nodes with nothing opposite have no point. Put flat sides that meet at an
+    /// edge into separate contacts.
     ///
     /// All quantities of a contact point are those of the body of its [node](crate::result::PointState::node): the
     /// outward normal, the force on it, its displacement *relative* to the partner; sums over a contact are those of

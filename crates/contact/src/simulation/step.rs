@@ -75,8 +75,18 @@ impl Simulation {
         }
         self.controller = state.controller;
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment)?;
-        self.start(state, way);
-        let (mut report, recovered) = self.solve()?;
+        self.start(state, way, self.settings.extrapolate);
+        let (mut report, mut recovered) = self.solve()?;
+        let is_lost = matches!(report.status, StepStatus::Stagnated | StepStatus::NotHeld);
+        let is_led = self.settings.extrapolate && state.step() > 0 && state.unconverged_history().is_none();
+        if is_lost && is_led {
+            // where friction has turned round, the line through the last two steps leads astray
+            self.spare = recovered;
+            self.controller = state.controller;
+            self.start(state, way, false);
+            let (second, again) = self.solve()?;
+            (report, recovered) = (report.resumed(second), again);
+        }
         let (model, problem) = (&self.model, &self.problem);
         if report.status == StepStatus::NotHeld {
             report.slide = slides(model, &problem.rhs, &problem.multipliers(&self.iterate.lambda))?;
@@ -114,14 +124,14 @@ impl Simulation {
     }
 
     /// Start vectors of an increment: zero, the last vectors, or the line through the last two.
-    fn start(&mut self, state: &State, way: &Way) {
+    fn start(&mut self, state: &State, way: &Way, line: bool) {
         let (model, iterate) = (&self.model, &mut self.iterate);
         iterate.effort = state.effort;
         let (lambda, f_lambda) = (&state.lambda, &state.f_lambda);
         let (rows, coarse) = (model.tfeti.dual_dim(), model.tfeti.coarse().rows());
         // before the first step everything is at rest: zero is known, too
         let from_rest = state.step() <= 1 && !lambda[0].is_empty() && lambda[1].is_empty();
-        let along = self.settings.extrapolate.then(|| {
+        let along = line.then(|| {
             let last = way.increment().start.filter(|_| from_rest);
             let growth = last.map_or(f64::INFINITY, |last| self.problem.growth(model, last));
             growth.min(way.ratio())

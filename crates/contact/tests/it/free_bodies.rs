@@ -336,3 +336,26 @@ fn motions_along_a_smooth_plane_have_no_rows() {
     assert_eq!(rows.iter().filter(|c| **c == 0.0).count(), 3, "{rows:?}");
     assert_eq!(rows.iter().filter(|c| **c > 1e-3).count(), 3, "{rows:?}");
 }
+
+/// Two cubes on each other, rough between, on a smooth floor: pushed at the top they go together.
+#[test]
+fn bodies_that_go_together_are_all_named() {
+    let stack = |push: f64, between: f64| {
+        let mesh = with_second(&block([1.0; 3], [2; 3]), &lifted(&block([1.0; 3], [2; 3]), 1.0));
+        free(mesh)
+            .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.1)))
+            .with_contact(
+                Contact::between(brick::Z_MAX, second(brick::Z_MIN)).with_friction(Friction::coulomb(between)),
+            )
+            .with_load(Load::pressure(second(brick::Z_MAX), 1e6))
+            .with_load(Load::traction(second(brick::Z_MAX), [push, 0.0, 0.0]))
+    };
+    let (_, _, both, force) = not_held(stack(3e5, 0.9));
+    assert!(
+        both.contains("translation") && both.contains(", together with body "),
+        "{both}, {force}"
+    );
+    // the upper one alone
+    let (_, body, alone, _) = not_held(stack(3e5, 0.05));
+    assert!(body == 1 && !alone.contains("together"), "{alone}");
+}

@@ -1,6 +1,7 @@
 //! What is allowed but hardly meant is said once, with figure, place and remedy, and nothing of it changes a result.
 
 use crate::common::*;
+use signorini_fem_mesh::Eigenstrain;
 use std::mem::discriminant;
 
 /// All that an observer is told.
@@ -186,21 +187,24 @@ fn bodies_are_measured_by_themselves() {
     assert!(mesh.points()[node as usize][2] >= 5.0 && extent == 0.5 && (displacement - 0.06).abs() < 1e-6);
 }
 
-/// An obstacle is drawn by 0.8 m under a block whose facets have edges of 0.5 and 0.71 m, at once or in four steps.
+/// An obstacle is drawn by 0.8 m under a block whose facets have edges of 0.5 and 0.71 m, at once or in four steps. Where
+/// its shape gives the normals it tells whether they have turned.
 #[test]
 fn slips_past_a_facet_are_named() {
-    let scene = |steps| {
-        let floor = Contact::rigid(brick::Z_MIN)
-            .with_gap(-1e-3)
-            .with_friction(Friction::coulomb(0.2));
+    let plane = Obstacle::half_space([0.0, 0.0, 1e-3], [0.0, 0.0, 1.0]);
+    let rigid = || Contact::rigid(brick::Z_MIN).with_gap(-1e-3);
+    let shaped = Contact::obstacle(brick::Z_MIN, plane);
+    let scene = |floor: Contact, steps| {
+        let floor = floor.with_friction(Friction::coulomb(0.2));
         Scene::new(block([1.0; 3], [2; 3]), uniform(1e9, 0.3))
             .with_support(Support::fixed(brick::Z_MAX))
             .with_contact(floor.with_motion([0.8, 0.0, 0.0], ramp()))
             .with_analysis(Analysis::quasistatic(1.0, steps))
     };
     let long = |w: &Warning| matches!(w, Warning::LongSlip { .. });
-    assert!(!told(scene(4)).0.warnings().iter().any(long));
-    let (report, _) = told(scene(1));
+    assert!(!told(scene(rigid(), 4)).0.warnings().iter().any(long));
+    assert!(!told(scene(shaped, 1)).0.warnings().iter().any(long));
+    let (report, _) = told(scene(rigid(), 1));
     let warning = only(report.warnings(), long);
     let Warning::LongSlip {
         step: 0,
@@ -230,7 +234,9 @@ fn the_plan_has_the_warnings_of_the_scene() {
     );
     assert_eq!(plan(&clamped().with_contact(floor().with_gap(1.9))).warnings(), []);
     // where no support holds a node inside
+    let push = || Load::pressure(brick::X_MAX, 1.0);
     let hung = || Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), steel()).with_support(Support::fixed(brick::Z_MAX));
+    let hung = || hung().with_load(push());
     for (gap, word) in [(2.5, "2.500e0 from"), (-2.5, "2.500e0 inside")] {
         let plan = plan(&hung().with_contact(floor().with_gap(gap)));
         let [warning @ Warning::LargeGap { contact: 0, extent, .. }] = plan.warnings() else {
@@ -243,6 +249,7 @@ fn the_plan_has_the_warnings_of_the_scene() {
     let rising = Coefficient::Table(vec![(0.0, 0.3), (1.0, 30.0)]);
     let scene = Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), table)
         .with_support(Support::fixed(brick::X_MIN))
+        .with_load(push())
         .with_contact(
             Contact::rigid(brick::Y_MIN)
                 .with_gap(4.0)
@@ -369,7 +376,9 @@ fn a_mesh_that_locks_is_told() {
     let plan = |scene: &Scene| Plan::new(scene, &Settings::default()).expect("plan");
     let rubber = |poisson: f64| Hooke::isotropic(1e6, poisson).expect("Hooke");
     let scene = |mesh: TetMesh, poisson: f64| {
-        Scene::new(mesh, Materials::uniform(rubber(poisson))).with_support(Support::fixed(brick::X_MIN))
+        Scene::new(mesh, Materials::uniform(rubber(poisson)))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::pressure(brick::X_MAX, 1.0))
     };
     let mesh = || block([2.0, 1.0, 1.0], [4, 2, 2]);
     assert_eq!(plan(&scene(mesh(), 0.45)).warnings(), []);
@@ -383,6 +392,48 @@ fn a_mesh_that_locks_is_told() {
     };
     assert!(
         (poisson - 0.499).abs() < 1e-9 && warning.to_string().contains("raise_order"),
+        "{warning}"
+    );
+}
+
+#[test]
+fn a_scene_in_which_nothing_acts_is_told() {
+    let idle = |scene: Scene| {
+        let plan = Plan::new(&scene, &Settings::default()).expect("plan");
+        plan.warnings().iter().find_map(|w| match w {
+            Warning::NothingActs { held } => Some(*held),
+            _ => None,
+        })
+    };
+    let body = || Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), steel());
+    let held = || body().with_support(Support::fixed(brick::Z_MAX));
+    let floor = || Contact::rigid(brick::Z_MIN);
+    let push = Load::pressure(brick::X_MAX, 1e5);
+    let never = History::table(vec![(0.0, 1.0), (0.5, 0.0), (1.0, 0.0)]).expect("table");
+    let last = Analysis::Quasistatic {
+        times: vec![0.5, 1.0],
+        formula: DifferenceFormula::BACKWARD_EULER,
+    };
+    assert_eq!(idle(body().with_contact(floor().with_gap(0.1))), Some(false));
+    assert_eq!(idle(held().with_contact(floor())), Some(true));
+    let over = held().with_load(push.clone().with_history(never)).with_analysis(last);
+    assert_eq!(idle(over), Some(true));
+    let up = |way| Support::fixed(brick::Z_MIN).with_motion([0.0, 0.0, way], ramp());
+    assert_eq!(idle(held().with_support(up(0.0))), Some(true));
+    let acting = [
+        held().with_load(push),
+        held().with_support(up(1e-3)),
+        held().with_contact(floor().with_gap(-1e-3)),
+        held().with_contact(floor().with_gap(0.1).with_motion([0.0, 0.0, 0.2], ramp())),
+        held().with_contact(floor().with_gap(1e-3).with_gap_history(History::constant(-1.0))),
+        held().with_load(Load::eigenstrain(Eigenstrain::expansion(1e-3))),
+    ];
+    for (k, scene) in acting.into_iter().enumerate() {
+        assert_eq!(idle(scene), None, "{k}");
+    }
+    let warning = Warning::NothingActs { held: false }.to_string();
+    assert!(
+        warning.contains("no support or spring") && warning.contains("missing"),
         "{warning}"
     );
 }
