@@ -102,6 +102,9 @@ pub const LAWS: [Law; 5] = [
     law("mortar", "MORTAR", [None, Some(1000.0)], [false, true, true]),
 ];
 
+/// Force of the floor on the brick, N; `None` if the code did not converge.
+pub type Force = Option<[f64; 3]>;
+
 /// What a code finds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
@@ -115,8 +118,8 @@ pub struct Row {
     pub own: bool,
     /// The contact.
     pub law: Law,
-    /// Force of the floor on the brick, N; `None` if the code did not converge.
-    pub force: Option<[f64; 3]>,
+    /// What it finds.
+    pub force: Force,
     /// Reading, solving and writing, s.
     pub seconds: f64,
 }
@@ -155,7 +158,7 @@ pub fn execute(options: &CalculixOptions, out: &mut impl Write) -> Result<Vec<Ro
                 let name = format!("{code}-order{order}-{cells}-{}", law.name.replace([' ', ','], ""));
                 options.out.join(name).with_extension("inp")
             };
-            let mut run = |own: bool, solve: &dyn Fn(&Path) -> Result<Option<[f64; 3]>, Failure>| {
+            let mut run = |own: bool, solve: &dyn Fn(&Path) -> Result<Force, Failure>| {
                 let path = job(code(own));
                 save(&path, &deck(&mesh, law, own)?)?;
                 let start = Instant::now();
@@ -228,7 +231,7 @@ fn table(rows: &[Row]) -> String {
 }
 
 /// Force of the floor by this library.
-fn solve(path: &Path) -> Result<Option<[f64; 3]>, Failure> {
+fn solve(path: &Path) -> Result<Force, Failure> {
     let mut simulation = Simulation::new(Deck::read(path)?.scene()?, Settings::default())?;
     let result = simulation.step()?;
     result.require_converged()?;
@@ -238,7 +241,7 @@ fn solve(path: &Path) -> Result<Option<[f64; 3]>, Failure> {
 }
 
 /// Force of the floor by CalculiX, in balance with loads and reactions; `None` if it does not converge in time.
-fn calculix(options: &CalculixOptions, path: &Path, mesh: &TetMesh) -> Result<Option<[f64; 3]>, Failure> {
+fn calculix(options: &CalculixOptions, path: &Path, mesh: &TetMesh) -> Result<Force, Failure> {
     let job = path.with_extension("");
     let name = job.file_name().ok_or("a deck has no name")?;
     let log = std::fs::File::create(job.with_extension("log"))?;
