@@ -33,6 +33,8 @@ fn later_steps_name_the_first_step_that_did_not_converge() {
     while !simulation.is_finished() {
         let frame = simulation.step().expect("step");
         seen.push((frame.report().status, frame.report().unconverged_history));
+        let line = frame.to_string();
+        assert_eq!(line.ends_with(", not contractive"), frame.step() == 0, "{line}");
         let strict = frame.require_converged();
         match frame.step() {
             0 => assert!(matches!(
@@ -249,4 +251,27 @@ fn what_is_certified_has_converged_whatever_came_first() {
         }
     }
     assert!(spared > 0, "no limit came first");
+}
+
+/// What a scene does not have its lines do not speak of.
+#[test]
+fn a_step_prints_as_a_line() {
+    let cube = Scene::new(block([1.0; 3], [2; 3]), uniform(1000.0, 0.3))
+        .with_support(Support::fixed(brick::Z_MAX))
+        .with_load(Load::pressure(brick::X_MAX, 1.0))
+        .with_analysis(Analysis::quasistatic(0.3, 3));
+    let line = |scene: Scene| {
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        simulation.step().expect("step").to_string()
+    };
+    let floor = || Contact::rigid(brick::Z_MIN).with_gap(0.0);
+    let plain = line(cube.clone());
+    assert!(plain.starts_with("t = 0.1 s: certificate "), "{plain}");
+    let smooth = line(cube.clone().with_contact(floor()));
+    assert!(smooth.contains(" of 9 points touch, certificate "), "{smooth}");
+    let rough = line(cube.with_contact(floor().with_friction(Friction::coulomb(0.3))));
+    assert!(
+        rough.contains(" of 9 points touch, ") && rough.contains(" slide, certificate "),
+        "{rough}"
+    );
 }
