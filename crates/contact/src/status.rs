@@ -3,13 +3,12 @@
 use std::fmt;
 
 /// How the solve of a step ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum StepStatus {
     /// The solver reached the tolerance, and the certificate is at most thirty times that (usually a tenth).
     Converged,
     /// A limit of iterations or products was reached first; the result is the last iterate.
-    #[default]
     IterationLimit,
     /// No further progress, above the tolerance.
     Stagnated,

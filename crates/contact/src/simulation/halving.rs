@@ -94,7 +94,7 @@ pub(super) struct Before {
 impl Before {
     /// An increment that failed and was halved; `None` where its solver broke down.
     pub(super) fn enter_halved(&mut self, failed: Option<StepReport>) {
-        let mut report = failed.unwrap_or_default();
+        let mut report = failed.unwrap_or_else(StepReport::new);
         report.counters.halvings += 1;
         self.enter(report);
     }

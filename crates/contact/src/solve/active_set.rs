@@ -129,7 +129,7 @@ impl ActiveSetSolver {
     }
 
     pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
-        let mut report = StepReport::default();
+        let mut report = StepReport::new();
         let contact = !task.model.points.is_empty();
         report.counters.inequality_solves = usize::from(contact);
         self.start.resize(iterate.lambda.len(), 0.0);
@@ -219,7 +219,7 @@ impl ActiveSetSolver {
         report: &mut StepReport,
     ) -> Result<Status, ContactError> {
         let Task { model, problem, .. } = task;
-        problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
+        problem.write_slip_bounds(model, &iterate.lambda, &mut self.set)?;
         let mut updates = usize::from(model.any_law(Friction::is_some));
         self.space.set_coarse_rhs(&problem.rhs);
         let part = self.part.as_ref();
@@ -242,9 +242,10 @@ impl ActiveSetSolver {
             let slopes = problem.slip_slopes(model);
             self.work.set_slopes(&slopes);
         }
+        let mut written = Ok(());
         let mut hook = |x: &[f64], set: &mut ProductSet| {
-            if coulomb {
-                problem.write_slip_bounds(model, x, set);
+            if coulomb && written.is_ok() {
+                written = problem.write_slip_bounds(model, x, set);
                 updates += 1;
             }
         };
@@ -295,7 +296,7 @@ impl ActiveSetSolver {
             turns += 1;
         };
         report.counters.slip_bound_updates = updates;
-        Ok(status)
+        written.map(|()| status)
     }
 
     fn fall_back(

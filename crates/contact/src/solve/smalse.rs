@@ -81,7 +81,7 @@ impl SmalseSolver {
         task: Task<'_>,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
-        let (mut all, mut left, mut share) = (StepReport::default(), limit, BALANCING);
+        let (mut all, mut left, mut share) = (StepReport::new(), limit, BALANCING);
         let mut before = [f64::INFINITY; 2];
         loop {
             let part = self.solve_within(left.min(share), task, iterate)?;
@@ -110,7 +110,7 @@ impl SmalseSolver {
     pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
         self.rows.set_rhs(&task.problem.rhs);
         iterate.multiplier.resize(self.rows.rhs.len(), 0.0);
-        let mut report = StepReport::default();
+        let mut report = StepReport::new();
         report.counters.setup_products = std::mem::take(&mut self.norm_products);
         report.counters.inequality_solves = 1;
         if !is_coulomb(task.model) {
@@ -129,7 +129,7 @@ impl SmalseSolver {
     /// One problem whose slip bounds are known.
     fn tresca(&mut self, task: Task<'_>, iterate: &mut Iterate, report: &mut StepReport) -> Result<(), ContactError> {
         task.problem
-            .write_slip_bounds(task.model, &iterate.lambda, &mut self.set);
+            .write_slip_bounds(task.model, &iterate.lambda, &mut self.set)?;
         report.counters.slip_bound_updates = usize::from(task.model.any_law(Friction::is_some));
         let tolerance = task.settings.tolerance * SMALSE_SAFETY;
         let qp = self.tresca_problem(task, tolerance, &mut |_, _| false, iterate)?;
@@ -192,7 +192,9 @@ impl SmalseSolver {
                 return Err(None);
             }
             iterate.lambda[normal.clone()].copy_from_slice(x);
-            problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
+            problem
+                .write_slip_bounds(model, &iterate.lambda, &mut self.set)
+                .map_err(Some)?;
             report.counters.slip_bound_updates += 1;
             let qp = self
                 .tresca_problem(task, tolerance, &mut |_, _| false, iterate)
@@ -236,7 +238,7 @@ impl SmalseSolver {
         report: &mut StepReport,
     ) -> Result<(), ContactError> {
         let Task { model, problem, .. } = task;
-        problem.write_slip_bounds(model, &iterate.lambda, &mut self.set);
+        problem.write_slip_bounds(model, &iterate.lambda, &mut self.set)?;
         let tolerance = task.settings.tolerance * SMALSE_SAFETY;
         let mut contraction = Contraction::default();
         let mut updates = 1;
@@ -244,9 +246,12 @@ impl SmalseSolver {
         // bounds of normal forces that vanish
         let coefficient = problem.coefficients.iter().fold(0.0_f64, |a, b| a.max(*b));
         let least = coefficient * problem.least(task.settings.tolerance)[1];
+        let mut written = Ok(());
         let mut hook = |x: &[f64], set: &mut ProductSet| {
             let old = radii(set);
-            problem.write_slip_bounds(model, x, set);
+            if written.is_ok() {
+                written = problem.write_slip_bounds(model, x, set);
+            }
             let new = radii(set);
             updates += 1;
             let difference = vector::distance(&old, &new);
@@ -260,6 +265,7 @@ impl SmalseSolver {
             !settled
         };
         let qp = self.tresca_problem(task, tolerance, &mut hook, iterate)?;
+        written?;
         add(report, &qp);
         report.counters.slip_bound_updates += updates;
         report.iterations = qp.outer;

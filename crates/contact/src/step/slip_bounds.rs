@@ -5,8 +5,8 @@ use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, DISCS, INTERVALS, Model};
 use crate::scene::Friction;
 use crate::state::State;
-use signorini_qp::ProductSet;
 use signorini_qp::active_set::RadiusSlope;
+use signorini_qp::{ProductSet, QpError};
 use signorini_tfeti::TangentialRows;
 
 impl StepProblem {
@@ -47,24 +47,31 @@ impl StepProblem {
         tresca / unit + coefficient * pressure
     }
 
-    /// Writes the slip bounds that go with `lambda` into a feasible set of the model, in units of the rows.
-    pub(crate) fn write_slip_bounds(&self, model: &Model, lambda: &[f64], set: &mut ProductSet) {
+    /// Writes the slip bounds that go with `lambda` into the feasible set, in units of the rows; an error for a set
+    /// that has no discs or intervals in their places.
+    pub(crate) fn write_slip_bounds(
+        &self,
+        model: &Model,
+        lambda: &[f64],
+        set: &mut ProductSet,
+    ) -> Result<(), ContactError> {
         let ranges = model.tfeti.gluing().ranges();
         for (k, point) in model.points.iter().enumerate() {
             let bound = self.slip_bound(k, point, lambda);
             match point.tangential {
                 TangentialRows::Disc { row, scale } => {
-                    let radii = set.radii_mut(DISCS).unwrap_or_default();
+                    let radii = set.radii_mut(DISCS).map_err(QpError::from)?;
                     radii[(row - ranges.discs.start) / 2] = bound / scale;
                 }
                 TangentialRows::Interval { row, scale, .. } => {
                     let interval = row - ranges.intervals.start;
-                    let (lower, upper) = set.bounds_mut(INTERVALS).unwrap_or_default();
+                    let (lower, upper) = set.bounds_mut(INTERVALS).map_err(QpError::from)?;
                     (lower[interval], upper[interval]) = (-bound / scale, bound / scale);
                 }
                 _ => {}
             }
         }
+        Ok(())
     }
 
     /// How the radii of discs follow the normal rows.
@@ -99,5 +106,26 @@ impl StepProblem {
             }
         }
         changed
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::step::example::{block, first_step};
+    use signorini_qp::Segment;
+
+    /// A set of another model is no place for slip bounds.
+    #[test]
+    fn a_set_without_discs_is_refused() {
+        let (model, problem) = first_step(block(0.0, Friction::coulomb(0.5)));
+        let lambda = vec![0.0; model.tfeti.dual_dim()];
+        let mut own = model.set.clone();
+        assert!(problem.write_slip_bounds(&model, &lambda, &mut own).is_ok());
+        let mut other = ProductSet::new(vec![Segment::Free(lambda.len())]).expect("a set");
+        let error = problem
+            .write_slip_bounds(&model, &lambda, &mut other)
+            .expect_err("no discs");
+        assert!(error.to_string().contains("disc"), "{error}");
     }
 }
