@@ -153,6 +153,7 @@ pub fn execute(options: &CalculixOptions, out: &mut impl Write) -> Result<Vec<Ro
     {
         let mesh = Brick::new(LENGTHS, LENGTHS.map(|length| length as usize * cells)).build()?;
         let mesh = if order == 2 { mesh.raise_order()? } else { mesh };
+        let forces = forces(&mesh);
         for law in LAWS {
             let job = |code: &str| {
                 let name = format!("{code}-order{order}-{cells}-{}", law.name.replace([' ', ','], ""));
@@ -160,7 +161,7 @@ pub fn execute(options: &CalculixOptions, out: &mut impl Write) -> Result<Vec<Ro
             };
             let mut run = |own: bool, solve: &dyn Fn(&Path) -> Result<Force, Failure>| {
                 let path = job(code(own));
-                save(&path, &deck(&mesh, law, own)?)?;
+                save(&path, &deck(&mesh, &forces, law, own)?)?;
                 let start = Instant::now();
                 let force = solve(&path)?;
                 let row = Row {
@@ -181,7 +182,7 @@ pub fn execute(options: &CalculixOptions, out: &mut impl Write) -> Result<Vec<Ro
                 run(true, &|path| pool.install(|| solve(path)))?;
             }
             if found && if order == 1 { linear } else { quadratic } {
-                run(false, &|path| calculix(options, path, &mesh))?;
+                run(false, &|path| calculix(options, path, &forces))?;
             }
         }
     }
@@ -241,7 +242,7 @@ fn solve(path: &Path) -> Result<Force, Failure> {
 }
 
 /// Force of the floor by CalculiX, in balance with loads and reactions; `None` if it does not converge in time.
-fn calculix(options: &CalculixOptions, path: &Path, mesh: &TetMesh) -> Result<Force, Failure> {
+fn calculix(options: &CalculixOptions, path: &Path, loads: &[(u32, [f64; 3])]) -> Result<Force, Failure> {
     let job = path.with_extension("");
     let name = job.file_name().ok_or("a deck has no name")?;
     let log = std::fs::File::create(job.with_extension("log"))?;
@@ -269,14 +270,13 @@ fn calculix(options: &CalculixOptions, path: &Path, mesh: &TetMesh) -> Result<Fo
     let total: Option<Vec<f64>> = total
         .map(|line| line.split_whitespace().map(str::parse).collect::<Result<_, _>>())
         .transpose()?;
-    let loads = forces(mesh);
     let balance = |reaction: Vec<f64>| [0, 1, 2].map(|d| -reaction[d] - loads.iter().map(|(_, f)| f[d]).sum::<f64>());
     Ok(total.filter(|total| status.success() && total.len() == 3).map(balance))
 }
 
 /// The brick above a rigid floor, clamped at x = 0, with half of the benchmark's tractions in one static increment.
 /// Rigid bodies are what this library reads; CalculiX diverges with one, and holds all nodes of the floor.
-fn deck(mesh: &TetMesh, law: Law, own: bool) -> Result<String, Failure> {
+fn deck(mesh: &TetMesh, loads: &[(u32, [f64; 3])], law: Law, own: bool) -> Result<String, Failure> {
     let floor = Brick::new([4.0, 2.0, 1.0], [1; 3]).build()?;
     let floor = floor.map_points(|[x, y, z]| [x - 0.5, y - 0.5, z - 1.0 - GAP])?;
     let mut text = String::from("*HEADING\nstatic brick on a rigid floor; mm, N, MPa\n");
@@ -320,7 +320,7 @@ fn deck(mesh: &TetMesh, law: Law, own: bool) -> Result<String, Failure> {
         false => (first..reference).try_for_each(|node| writeln!(text, "{node}, 1, 3"))?,
     }
     writeln!(text, "*STEP\n*STATIC, DIRECT\n1., 1.\n*CLOAD")?;
-    for (node, force) in forces(mesh) {
+    for (node, force) in loads {
         for (d, force) in force.iter().enumerate().filter(|(_, force)| **force != 0.0) {
             writeln!(text, "{}, {}, {force:?}", node + 1, d + 1)?;
         }

@@ -103,6 +103,9 @@ pub(crate) const DEPTH: f64 = 1e-9;
 /// Work on a free motion below this part of the size of the loads is rounding.
 pub(crate) const FREE_WORK: f64 = 1e-9;
 
+/// Length of the motion of a body, over the largest, from which on it is told to move along.
+pub(crate) const ALONGSIDE: f64 = 0.5;
+
 /// What contact forces leave of loads of length one, below which it is rounding.
 pub(crate) const WRENCH_RESIDUAL: f64 = 1e-8;
 

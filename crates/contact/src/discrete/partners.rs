@@ -86,14 +86,7 @@ impl Paired {
             });
         }
         let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
-        if let Some(nodes) = nodes(
-            (mesh, rounding),
-            index,
-            contact,
-            &paired.surface,
-            fixed.as_ref(),
-            &other,
-        )? {
+        if let Some(nodes) = nodes(mesh, index, contact, &paired.surface, fixed.as_ref(), &other, rounding)? {
             paired.partners = Partners::Nodes(nodes);
             return Ok(paired);
         }
@@ -142,12 +135,13 @@ fn keeps_volume(mesh: &TetMesh, materials: &Materials, surface: &Surface) -> boo
 
 /// The partner of each node; `None` where meshes do not match.
 fn nodes(
-    (mesh, rounding): (&TetMesh, f64),
+    mesh: &TetMesh,
     index: usize,
     contact: &Contact,
     surface: &Surface,
     fixed: Option<&SurfaceFrame>,
     other: &OtherSide<'_>,
+    rounding: f64,
 ) -> Result<Option<Vec<Partner>>, ContactError> {
     let partner = |(local, &node): (usize, &u32)| {
         let seen_from = Viewer {

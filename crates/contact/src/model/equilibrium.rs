@@ -12,7 +12,7 @@ use super::model::Model;
 use crate::error::ContactError;
 use crate::scene::Friction;
 use crate::status::Slide;
-use crate::tolerances::{FREE_WORK, ROUNDING};
+use crate::tolerances::{ALONGSIDE, FREE_WORK, ROUNDING};
 use signorini_qp::vector;
 use signorini_tfeti::{BodyMotion, FreeMotion, RowWeights};
 
@@ -206,9 +206,6 @@ struct Part {
     motion: [f64; 6],
 }
 
-/// Length of a motion over the largest from which on a body is told to move, too.
-const WITH: f64 = 0.5;
-
 /// The part that moves most in a sum of motions, and how: one of length one; its radius, and its length in the sum.
 fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, f64, f64) {
     let mut parts: Vec<Part> = Vec::new();
@@ -238,7 +235,9 @@ fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, 
     let (m, length) = (most.motion.map(|v| v / size(&most)), size(&most));
     let node = |part: &Part| model.discrete.decomposition.subdomains()[part.subdomain].nodes[0];
     let mut others = [None; 3];
-    let far = parts.iter().filter(|p| p.body != most.body && size(p) >= WITH * length);
+    let far = parts
+        .iter()
+        .filter(|p| p.body != most.body && size(p) >= ALONGSIDE * length);
     let mut far: Vec<&Part> = far.collect();
     far.sort_by_key(|p| p.body);
     far.dedup_by_key(|p| p.body);
