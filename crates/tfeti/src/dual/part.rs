@@ -81,8 +81,8 @@ impl RowPart {
                 unit.ranks.iter().for_each(|&r| counts[chunk][r] += unit.within(chunk));
             }
         }
-        // the first of those with most rows of a chunk
-        let most = |counts: &Vec<usize>| (0..ranks).rev().max_by_key(|&r| counts[r]).unwrap_or(0);
+        // the last of those with most rows of a chunk: those of contact are on all, and the first have the contact
+        let most = |counts: &Vec<usize>| (0..ranks).max_by_key(|&r| counts[r]).unwrap_or(0);
         let owner: Vec<usize> = counts.iter().map(most).collect();
         let (mut kept, mut lengths) = (vec![Vec::<(Range<usize>, usize)>::new(); ranks], vec![0; ranks]);
         let mut given: Vec<(usize, Range<usize>)> = Vec::new();

@@ -53,10 +53,14 @@ struct Spread {
 }
 
 impl Spread {
-    /// Rows of these tables, as many on each rank.
+    /// Rows of these tables, about as many blocks on each rank.
     fn new(exchange: &Arc<Exchange>, tables: [&BlockTable; 2], count: usize) -> Self {
         let ranks = exchange.ranks();
-        let rows: Vec<Range<usize>> = (0..ranks).map(|r| count * r / ranks..count * (r + 1) / ranks).collect();
+        let blocks = |s: usize| tables.iter().map(|table| table.columns(s..s + 1).len()).sum::<usize>();
+        let mut ends = vec![0];
+        (0..count).for_each(|s| ends.push(ends[s] + 1 + blocks(s)));
+        let start = |r: usize| ends.partition_point(|end| end * ranks < ends[count] * r);
+        let rows: Vec<Range<usize>> = (0..ranks).map(|r| start(r)..start(r + 1)).collect();
         let mut read = vec![false; count];
         for own in rows.iter().filter(|_| ranks > 1) {
             let columns = tables.iter().flat_map(|table| table.columns(own.clone()));
