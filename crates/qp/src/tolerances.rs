@@ -78,6 +78,10 @@ pub(crate) const STAGNATIONS: usize = 3;
 
 // Active set: the point
 
+/// Step of the natural map, in units of the preconditioner's diagonal.
+pub(crate) const NATURAL_STEP: f64 = 0.4;
+/// Share of the free bounded components that may change for the hook to be called.
+pub(crate) const SETTLED: f64 = 0.3;
 /// Distance from a circle, over the radius, at which a point may slide. Wider than [`ON_CIRCLE`]: projectors round
 /// more.
 pub(crate) const MAY_SLIDE: f64 = 1e-9;
@@ -159,6 +163,8 @@ pub(crate) const BEHIND_PATH: f64 = 0.01;
 
 // Active set: without progress
 
+/// Sets without a better error after which every move has to descend.
+pub(crate) const PATIENCE: usize = 12;
 /// Sets without progress after which the solved set tells what is active next, not the point moved to.
 pub(crate) const UNSURE: usize = 4;
 /// Times that a body which constraints alone hold is balanced with a set that follows.
@@ -168,9 +174,9 @@ pub(crate) const BALANCE_ROUNDS: usize = 3;
 pub(crate) const SWING: f64 = 0.3;
 pub(crate) const SWINGING_ROUNDS: usize = 8;
 pub(crate) const LEAST_PART: f64 = 0.1;
-/// Factor on patience for moves in a row that find no balance, from which on there seems to be none.
+/// Factor on `PATIENCE` for moves in a row that find no balance, from which on there seems to be none.
 pub(crate) const UNBALANCED: usize = 2;
-/// With the safeguard: factor on the forcing; factor on patience and sets; very short steps in a row that end it.
+/// With the safeguard: factor on the forcing; factor on `PATIENCE` and sets; very short steps in a row that end it.
 pub(crate) const FINER: f64 = 0.05;
 pub(crate) const LONGER: usize = 5;
 pub(crate) const HELD_UP: usize = 20;

@@ -3,7 +3,7 @@
 use crate::error::QpError;
 use crate::problem::{EqualityProjector, SymmetricOperator};
 use crate::tolerances::{
-    BALANCE_ROUNDS, LEAST_PART, NEGLIGIBLE, SHORT, SHORTEST, SWING, SWINGING_ROUNDS, UNSURE, VERY_SHORT,
+    BALANCE_ROUNDS, LEAST_PART, NEGLIGIBLE, SETTLED, SHORT, SHORTEST, SWING, SWINGING_ROUNDS, UNSURE, VERY_SHORT,
 };
 use crate::vector;
 
@@ -108,11 +108,10 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         if at.constrained() == 0 || self.safeguard.is_some() {
             return false;
         }
-        let joint = self.settings.joint_step_fraction * length;
-        if joint > 0.0 {
-            vector::axpy(joint, &at.work.p, at.x);
+        if length > 0.0 {
+            vector::axpy(length, &at.work.p, at.x);
         }
-        joint > 0.0
+        length > 0.0
     }
 
     fn settle_bounds(&mut self) {
@@ -124,7 +123,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
     /// Whether few bounded components changed between free and active.
     pub(crate) fn has_settled(&self) -> bool {
         let active = &self.at.work.active;
-        let few = (self.settings.settled_fraction * active.free_bounds as f64).max(2.0);
+        let few = (SETTLED * active.free_bounds as f64).max(2.0);
         active.changed as f64 <= few
     }
 

@@ -3,7 +3,7 @@
 //! | local | meaning |
 //! |---|---|
 //! | `x`, `g` | point, and gradient without its part in the image of `Gᵀ` |
-//! | `s` | `x - a g`, the natural map before projection; `a = natural_step * scale` |
+//! | `s` | `x - a g`, the natural map before projection; `a = NATURAL_STEP * scale` |
 //! | `n`, `tau` | outward normal and tangent of a disc at `x` |
 //! | `kappa` | curvature `-g·n / radius` that a disc adds along its tangent (`|du_T| / r` in contact) |
 
@@ -19,7 +19,7 @@ pub(crate) struct NaturalMap<'a> {
     /// `g`.
     pub(crate) gradient: &'a [f64],
     pub(crate) scale: &'a [f64],
-    /// `natural_step`.
+    /// `NATURAL_STEP`, on a path that of its springs.
     pub(crate) step: f64,
 }
 

@@ -8,7 +8,7 @@
 
 use crate::problem::{ConvexSet, EqualityProjector, SymmetricOperator};
 use crate::tolerances::{
-    AWAY, AWAY_SETS, FAR, LEAST_COMPLIANCE, LESS_COMPLIANT, MORE_COMPLIANT, PATHS, START_COMPLIANCE,
+    AWAY, AWAY_SETS, FAR, LEAST_COMPLIANCE, LESS_COMPLIANT, MORE_COMPLIANT, PATHS, PATIENCE, START_COMPLIANCE,
 };
 
 use super::iterate::Lengths;
@@ -63,7 +63,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
 
     /// Whether supports hold the bodies, and a path has not been left for long.
     pub(crate) fn is_near_path(&self) -> bool {
-        let soon = self.at.report.active_sets <= self.path.since + self.settings.patience;
+        let soon = self.at.report.active_sets <= self.path.since + PATIENCE;
         self.repairs_suffice && self.path.begun > 0 && (soon || self.at.compliance.c > 0.0)
     }
 

@@ -6,8 +6,8 @@ use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    BEHIND_PATH, FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NEGLIGIBLE, ON_PATH, PASSING_PART, PROGRESS, ROUNDED,
-    RUNAWAY, SHRUNK, SMALL_PART, UNBALANCED,
+    BEHIND_PATH, FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NATURAL_STEP, NEGLIGIBLE, ON_PATH, PASSING_PART, PATIENCE,
+    PROGRESS, ROUNDED, RUNAWAY, SHRUNK, SMALL_PART, UNBALANCED,
 };
 use crate::vector;
 
@@ -158,7 +158,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
                 work,
                 report: ActiveSetReport::new(),
                 compliance: Compliance::default(),
-                step: settings.natural_step,
+                step: NATURAL_STEP,
             },
         }
     }
@@ -336,8 +336,8 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
 
     /// Whether predictions without a safeguard have made no progress for too long.
     pub(crate) fn in_circles(&self) -> bool {
-        let (patience, on_path) = (self.settings.patience, self.at.compliance.c > 0.0);
-        let waited = self.progress.waited >= patience || on_path && self.moved.unbalanced >= patience;
+        let on_path = self.at.compliance.c > 0.0;
+        let waited = self.progress.waited >= PATIENCE || on_path && self.moved.unbalanced >= PATIENCE;
         waited && self.safeguard.is_none()
     }
 
@@ -352,11 +352,11 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
     /// Why the solve ends without a solution, if it does.
     pub(crate) fn gives_up(&self) -> Option<Status> {
         let (settings, report) = (self.settings, &self.at.report);
-        if self.moved.unbalanced >= settings.patience.saturating_mul(UNBALANCED) {
+        if self.moved.unbalanced >= PATIENCE * UNBALANCED {
             return Some(Status::Infeasible);
         }
         let held_up = self.safeguard.as_ref().map_or(0, |safeguard| safeguard.held_up);
-        if self.progress.waited >= settings.patience.saturating_mul(LONGER) || held_up >= HELD_UP {
+        if self.progress.waited >= PATIENCE * LONGER || held_up >= HELD_UP {
             return Some(Status::Stagnated);
         }
         let longer = if self.safeguard.is_some() || self.path.begun > 0 {
@@ -403,7 +403,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         self.first_error = place.errors.constrained;
         self.least_error = self.least_error.min(place.errors.all);
         let matters = place.limits.constrained > PASSING_PART * place.limits.all;
-        let passes = steady && falls && matters && self.settings.joint_step_fraction > 0.0 && at.is_on_the_way();
+        let passes = steady && falls && matters && at.is_on_the_way();
         let length = if passes {
             at.pass()
         } else {

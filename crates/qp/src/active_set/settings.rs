@@ -16,19 +16,10 @@ settings! {
         contact_error_floor, with_contact_error_floor: f64 = 0.0, in "[0, inf)";
         /// Decrease of the error on one active set before the set is looked at again.
         forcing, with_forcing: f64 = 0.4, in "(0, 1)";
-        /// Step of the natural map that predicts the next active set, in units of the preconditioner's diagonal.
-        natural_step, with_natural_step: f64 = 0.4, in "(0, 1]";
-        /// Part of the next step of conjugate gradients that shares the product of the move to the next active set.
-        joint_step_fraction, with_joint_step_fraction: f64 = 1.0, in "[0, 1]";
-        /// Share of the free bounded components that may change for the hook to be called.
-        settled_fraction, with_settled_fraction: f64 = 0.3, in "[0, 1]";
         /// Most active sets; five times as many once descent is enforced.
         max_active_sets, with_max_active_sets: usize = 100, in "[1, inf)";
         /// Most operator products.
         max_products, with_max_products: usize = 10_000, in "[1, inf)";
-        /// Active sets without a better error before every move has to descend; five times as many before
-        /// [`Status::Stagnated`].
-        patience, with_patience: usize = 12, in "[1, inf)";
     }
 }
 

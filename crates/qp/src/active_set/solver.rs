@@ -10,7 +10,7 @@
 //! this step leads over it. Where predictions run in circles, or away from a start that told nothing, a path
 //! of compliant constraints leads to another set ([`path`](super::path)).
 //!
-//! The error is the length of the preconditioned residual. After `patience` sets without progress they are solved
+//! The error is the length of the preconditioned residual. After `PATIENCE` sets without progress they are solved
 //! more accurately, every move has to lower the cost, and the set follows the solution only where the problem with
 //! the present set is solved. [`Status::Stagnated`] tells that this did not help either; [`smalse`](crate::smalse())
 //! is proved to converge.

@@ -185,7 +185,6 @@ fn wrong_input_is_refused() {
     for settings in [
         ActiveSetSettings::default().with_tolerance(0.0),
         ActiveSetSettings::default().with_forcing(1.0),
-        ActiveSetSettings::default().with_natural_step(0.0),
         ActiveSetSettings::default().with_max_active_sets(0),
         ActiveSetSettings::default().with_max_products(0),
     ] {
