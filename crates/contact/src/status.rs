@@ -32,6 +32,11 @@ impl StepStatus {
         self == Self::Converged
     }
 
+    /// Whether nothing of what was reached is of use.
+    pub(crate) fn is_lost(self) -> bool {
+        matches!(self, Self::Stagnated | Self::NotHeld)
+    }
+
     /// What to do about it; empty for a step that converged.
     pub fn remedy(self) -> &'static str {
         match self {

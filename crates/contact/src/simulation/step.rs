@@ -77,9 +77,7 @@ impl Simulation {
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment)?;
         self.start(state, way, self.settings.extrapolate);
         let (mut report, mut recovered) = self.solve()?;
-        let is_lost = matches!(report.status, StepStatus::Stagnated | StepStatus::NotHeld);
-        let is_led = self.settings.extrapolate && state.step() > 0 && state.unconverged_history().is_none();
-        if is_lost && is_led {
+        if report.status.is_lost() && self.iterate.is_led {
             // where friction has turned round, the line through the last two steps leads astray
             self.spare = recovered;
             self.controller = state.controller;
@@ -127,6 +125,7 @@ impl Simulation {
     fn start(&mut self, state: &State, way: &Way, line: bool) {
         let (model, iterate) = (&self.model, &mut self.iterate);
         iterate.effort = state.effort;
+        iterate.is_led = line && state.step() > 0 && state.unconverged_history().is_none();
         let (lambda, f_lambda) = (&state.lambda, &state.f_lambda);
         let (rows, coarse) = (model.tfeti.dual_dim(), model.tfeti.coarse().rows());
         // before the first step everything is at rest: zero is known, too

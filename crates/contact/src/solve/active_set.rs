@@ -15,7 +15,6 @@ use crate::model::Model;
 use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::{Preconditioner, Settings};
-use crate::status::StepStatus;
 use crate::tolerances::{
     CONTRADICTION, EASY, EXPLICIT_PRODUCTS, LINEAR_SLACK, LITTLE, SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS,
 };
@@ -138,8 +137,30 @@ impl ActiveSetSolver {
         report.status = step_status(status);
         task.model.tfeti.check_processes()?;
         if contact && !report.status.converged() {
-            return self.fall_back(task, iterate, report);
+            if report.status.is_lost() || !iterate.lambda.iter().all(|v| v.is_finite()) {
+                vector::copy(&self.start, &mut iterate.lambda);
+            }
+            // another start comes before another method
+            return match iterate.is_led && report.status.is_lost() {
+                true => self.stay(task, iterate, report),
+                false => self.fall_back(task, iterate, report),
+            };
         }
+        iterate.known = true;
+        self.amplitudes(task, iterate);
+        Ok(report)
+    }
+
+    /// What was reached stands, with its status.
+    fn stay(
+        &mut self,
+        task: Task<'_>,
+        iterate: &mut Iterate,
+        mut report: StepReport,
+    ) -> Result<StepReport, ContactError> {
+        let dual = task.model.tfeti.dual();
+        dual.apply(&iterate.lambda, &mut iterate.f_lambda, &mut dual.scratch());
+        report.counters.products += 1;
         iterate.known = true;
         self.amplitudes(task, iterate);
         Ok(report)
@@ -303,28 +324,16 @@ impl ActiveSetSolver {
         &mut self,
         task: Task<'_>,
         iterate: &mut Iterate,
-        mut report: StepReport,
+        report: StepReport,
     ) -> Result<StepReport, ContactError> {
-        if !iterate.lambda.iter().all(|v| v.is_finite())
-            || matches!(report.status, StepStatus::Stagnated | StepStatus::NotHeld)
-        {
-            iterate.lambda.copy_from_slice(&self.start);
-        }
         let paper = self
             .paper
             .take()
             .map_or_else(|| SmalseSolver::new(task.model, task.settings).map(Box::new), Ok);
         let mut paper = match paper {
             Ok(paper) => paper,
-            // the paper's method needs rows that stop every motion: what was reached stands, with its status
-            Err(ContactError::NotDetermined { .. }) => {
-                let dual = task.model.tfeti.dual();
-                dual.apply(&iterate.lambda, &mut iterate.f_lambda, &mut dual.scratch());
-                report.counters.products += 1;
-                iterate.known = true;
-                self.amplitudes(task, iterate);
-                return Ok(report);
-            }
+            // the paper's method needs rows that stop every motion
+            Err(ContactError::NotDetermined { .. }) => return self.stay(task, iterate, report),
             Err(error) => return Err(error),
         };
         iterate.multiplier.clear();

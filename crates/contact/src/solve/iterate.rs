@@ -30,6 +30,8 @@ pub(crate) struct Iterate {
     pub(crate) alpha: Vec<f64>,
     /// Products beyond those of easy solves, over all steps so far: where they are many, F is formed.
     pub(crate) effort: usize,
+    /// Whether the start was on the line through the last two steps, and can be made again without.
+    pub(crate) is_led: bool,
 }
 
 /// Status of a step from the status of a quadratic program.

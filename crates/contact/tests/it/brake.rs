@@ -86,4 +86,7 @@ fn a_stiff_shoe_is_held_after_friction_has_turned_round() {
     let (_, results) = run(shoe((1e9, 12), 1.2, 0.5), Settings::default());
     let [third, last] = [2, 3].map(|k: usize| results[k].summary.normal_force);
     assert!((last / third - 1.0).abs() < 1e-6, "{third}, then {last}");
+    // another start comes before another method
+    let report = &results[3].report;
+    assert!(!report.fallback && report.counters.products < 1200, "{report:?}");
 }
