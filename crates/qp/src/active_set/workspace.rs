@@ -5,7 +5,7 @@ use crate::problem::{LineWeight, SymmetricOperator};
 use super::blocks::ActiveSet;
 use super::coupling::{Coupling, RadiusSlope};
 
-/// Vectors of the active-set method: five of the length of `x`, a sixth where radii follow other components, four
+/// Vectors of the active-set method: five of the length of `x`, a sixth where radii follow other components, five
 /// of its constrained part and the classification of the blocks.
 #[derive(Debug)]
 pub struct ActiveSetWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
