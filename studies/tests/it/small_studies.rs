@@ -60,8 +60,8 @@ fn a_pad_on_a_rail_sticks_then_slides() {
     assert_eq!((last.stick, last.slip), (0, last.active));
     let ratio = bodies::final_ratio(run);
     assert!((ratio / COEFFICIENT - 1.0).abs() < 0.01, "{ratio}");
-    // 176 when it was made; an eighth more or less
-    assert!((154..=198).contains(&run.n_m), "{}", run.n_m);
+    // 155 measured; 164 where the first set is solved as far as one that follows a solved set
+    assert!((136..=160).contains(&run.n_m), "{}", run.n_m);
     for file in ["body.pvd", "contact.pvd", "steps.csv"] {
         assert!(folder.join("n1-bodies").join(file).exists());
     }

@@ -124,7 +124,7 @@ impl Simulation {
     /// Start vectors of an increment: zero, the last vectors, or the line through the last two.
     fn start(&mut self, state: &State, way: &Way, line: bool) {
         let (model, iterate) = (&self.model, &mut self.iterate);
-        iterate.effort = state.effort;
+        (iterate.effort, iterate.shortest_step) = (state.effort, state.shortest_step);
         iterate.is_led = line && state.step() > 0 && state.unconverged_history().is_none();
         let (lambda, f_lambda) = (&state.lambda, &state.f_lambda);
         let (rows, coarse) = (model.tfeti.dual_dim(), model.tfeti.coarse().rows());
@@ -144,8 +144,11 @@ impl Simulation {
         iterate.known = (0..2).all(|k| lambda[k].len() == f_lambda[k].len());
         let [last, before] = &state.multiplier;
         start_vector(last, Some(before), coarse, along, &mut iterate.multiplier);
+        iterate.known_rows.clear();
         if state.sliding.iter().any(|s| *s) {
-            iterate.known &= !(self.problem).restore_sliding(model, &state.sliding, &mut iterate.lambda);
+            let contact = model.tfeti.gluing().ranges().contact().end;
+            iterate.known_rows.extend_from_slice(&iterate.lambda[..contact]);
+            (self.problem).restore_sliding(model, &state.sliding, &mut iterate.lambda);
         }
     }
 
@@ -158,6 +161,7 @@ impl Simulation {
             halved: way.halved(),
             between: way.goes_on(),
             effort: self.iterate.effort,
+            shortest_step: self.iterate.shortest_step,
             ..Kept::default()
         };
         if history {

@@ -263,6 +263,8 @@ impl ActiveSetSolver {
             let slopes = problem.slip_slopes(model);
             self.work.set_slopes(&slopes);
         }
+        self.work.set_start(&iterate.known_rows, iterate.shortest_step);
+        iterate.known_rows.clear();
         let mut written = Ok(());
         let mut hook = |x: &[f64], set: &mut ProductSet| {
             if coulomb && written.is_ok() {
@@ -316,6 +318,9 @@ impl ActiveSetSolver {
             iterate.known = false;
             turns += 1;
         };
+        if self.work.shortest_step().is_finite() {
+            iterate.shortest_step = self.work.shortest_step();
+        }
         report.counters.slip_bound_updates = updates;
         written.map(|()| status)
     }

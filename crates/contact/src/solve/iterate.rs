@@ -24,6 +24,8 @@ pub(crate) struct Iterate {
     pub(crate) f_lambda: Vec<f64>,
     /// Whether `f_lambda` is `F lambda`.
     pub(crate) known: bool,
+    /// Contact rows with which it is that, in place of those of `lambda`; empty for these.
+    pub(crate) known_rows: Vec<f64>,
     /// Multiplier of the orthonormal coarse equality, for SMALSE.
     pub(crate) multiplier: Vec<f64>,
     /// Rigid amplitudes `alpha` of (5.27), set by the solver.
@@ -32,6 +34,8 @@ pub(crate) struct Iterate {
     pub(crate) effort: usize,
     /// Whether the start was on the line through the last two steps, and can be made again without.
     pub(crate) is_led: bool,
+    /// The shortest step of conjugate gradients in the last solve with contact, in the end in this one; 0 if there was none.
+    pub(crate) shortest_step: f64,
 }
 
 /// Status of a step from the status of a quadratic program.

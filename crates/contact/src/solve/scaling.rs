@@ -44,6 +44,7 @@ pub(super) fn scaled(model: &Model, problem: &StepProblem, iterate: &mut Iterate
     scaled.units = model.points.iter().map(|p| units.rows[p.row]).collect();
     divide(&mut iterate.lambda, &units.rows);
     divide(&mut iterate.f_lambda, &units.rows);
+    divide(&mut iterate.known_rows, &units.rows);
     // its rows are not those of single bodies
     iterate.multiplier.clear();
     Some((scaled, units))

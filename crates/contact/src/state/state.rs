@@ -36,6 +36,8 @@ pub struct State {
     pub(crate) halved: u32,
     /// Products beyond those of easy solves.
     pub(crate) effort: usize,
+    /// The shortest step of conjugate gradients in the last solve; 0 if there was none.
+    pub(crate) shortest_step: f64,
     /// What its numbers refer to; `None` if that is not to be compared.
     pub(crate) origin: Option<Fingerprint>,
     /// Of each product what it was made from and came to be, see [`seal`].
@@ -86,6 +88,8 @@ pub(crate) struct Kept {
     pub(crate) between: bool,
     /// Products beyond those of easy solves, over all steps.
     pub(crate) effort: usize,
+    /// The shortest step of conjugate gradients.
+    pub(crate) shortest_step: f64,
 }
 
 impl State {
@@ -103,7 +107,7 @@ impl State {
     /// only. Multipliers serve as start values; tangential displacements and slip rates are assigned to the points with
     /// the same numbers.
     pub fn without_origin(mut self) -> Self {
-        (self.origin, self.effort) = (None, 0);
+        (self.origin, self.effort, self.shortest_step) = (None, 0, 0.0);
         self
     }
 
@@ -159,6 +163,7 @@ impl State {
         self.sliding = new.sliding;
         self.halved = new.halved;
         self.effort = new.effort;
+        self.shortest_step = new.shortest_step;
         if !new.between {
             self.step += 1;
             if let Some(origin) = &mut self.origin {
@@ -209,7 +214,7 @@ impl State {
             ));
         }
         let sizes = self.peaks.iter().flat_map(|p| [p.multipliers, p.force, p.displacement]);
-        let mut sizes = sizes.chain(self.controller.numbers());
+        let mut sizes = sizes.chain(self.controller.numbers()).chain([self.shortest_step]);
         let damage = if self.halved > MOST_HALVINGS {
             "it says that a step was halved more often than it can be"
         } else if !self.numbers().flatten().all(|v| v.is_finite()) {
@@ -295,6 +300,9 @@ pub(crate) mod tests {
             let mut other = state.clone();
             other.controller.discretisation.relative = bad;
             assert!(other.fits(2, 6, 1, 1).is_err(), "controller {bad}");
+            let mut other = state.clone();
+            other.shortest_step = bad;
+            assert!(other.fits(2, 6, 1, 1).is_err(), "shortest step {bad}");
         }
         let mut other = state.clone();
         other.halved = 21;

@@ -89,9 +89,8 @@ impl StepProblem {
     }
 
     /// Puts the friction forces of points that slide back on their circles: extrapolation leaves them a little inside,
-    /// where they would be taken for sticking. Whether any has changed.
-    pub(crate) fn restore_sliding(&self, model: &Model, sliding: &[bool], lambda: &mut [f64]) -> bool {
-        let mut changed = false;
+    /// where they would be taken for sticking.
+    pub(crate) fn restore_sliding(&self, model: &Model, sliding: &[bool], lambda: &mut [f64]) {
         for (k, point) in model.points.iter().enumerate() {
             let TangentialRows::Disc { row, scale } = point.tangential else {
                 continue;
@@ -99,13 +98,10 @@ impl StepProblem {
             let length = lambda[row].hypot(lambda[row + 1]);
             if sliding.get(k) == Some(&true) && length > 0.0 {
                 let radius = self.slip_bound(k, point, lambda) / scale;
-                let old = [lambda[row], lambda[row + 1]];
                 lambda[row] *= radius / length;
                 lambda[row + 1] *= radius / length;
-                changed |= old != lambda[row..row + 2];
             }
         }
-        changed
     }
 }
 

@@ -8,7 +8,7 @@ use signorini_qp::ActiveSetSettings;
 // rounding, an eighth for the default. A count below is too good to be true (products that are no longer counted).
 const PAPER: [usize; 2] = [11744, 11240];
 const ONE_LOOP: [usize; 2] = [8874, 8381];
-const FACE: [usize; 2] = [676, 734];
+const FACE: [usize; 2] = [639, 685];
 
 fn is_near(found: usize, measured: usize, part: usize) -> bool {
     found.abs_diff(measured) <= measured / part
@@ -97,7 +97,7 @@ fn steps_without_loads_are_solved_by_all_methods() {
     }
 }
 
-/// Six decades of accuracy: 2.5 times the products.
+/// Six decades of accuracy: 2.7 times the products.
 #[test]
 fn accuracy_is_not_dear() {
     let [loose, tight] = [1e-4, 1e-10].map(|tolerance| {
@@ -108,7 +108,7 @@ fn accuracy_is_not_dear() {
         }
         simulation.counters().products
     });
-    assert!(is_near(loose, 481, 8), "{loose}");
+    assert!(is_near(loose, 409, 8), "{loose}");
     assert!(10 * tight <= 27 * loose, "{tight} and {loose}");
 }
 

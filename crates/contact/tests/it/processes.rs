@@ -42,7 +42,7 @@ fn the_benchmark_has_the_same_bits_on_any_number_of_ranks() {
     let scene = benchmark(ramp(), 50);
     let runs = the_same_on(&[1, 2, 3, 4], &scene, Settings::default(), "benchmark");
     let products: usize = runs[1][0].0.iter().map(|(_, counters, _)| counters.products).sum();
-    assert_eq!(products, 676);
+    assert_eq!(products, 639);
 }
 
 /// A part cut along its graph: no two subdomains share matrices, each rank holds its own.

@@ -148,7 +148,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
     }
 
     /// `p = -z`.
-    fn first_direction(&mut self) {
+    pub(crate) fn first_direction(&mut self) {
         // not by a factor of zero: what an earlier solve has left need not be finite
         vector::copy(&self.work.z, &mut self.work.p);
         vector::scale(-1.0, &mut self.work.p);

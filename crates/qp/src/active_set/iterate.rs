@@ -54,6 +54,8 @@ pub(crate) struct Iterate<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) compliance: Compliance,
     /// Step of the natural map.
     pub(crate) step: f64,
+    /// Whether `x` is a start that has left the point whose product is known, by `t`.
+    pub(crate) ahead: bool,
 }
 
 impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Iterate<'_, A, C, M> {
@@ -62,15 +64,23 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         self.work.restricted.len()
     }
 
-    /// Notes the point whose product is known: `t = x`.
+    /// Notes the point whose product is known in `t`: `x`, or what it has left.
     pub(crate) fn mark(&mut self) {
-        vector::copy(self.x, &mut self.work.t);
+        match std::mem::take(&mut self.ahead) {
+            true => vector::axpby(1.0, self.x, -1.0, &mut self.work.t),
+            false => vector::copy(self.x, &mut self.work.t),
+        }
+    }
+
+    /// How far `x` has moved from the [mark](Iterate::mark); `t` becomes that move.
+    pub(crate) fn moved(&mut self) -> f64 {
+        vector::axpby(1.0, self.x, -1.0, &mut self.work.t);
+        self.problem.operator.norm(&self.work.t)
     }
 
     /// The product follows `x` from the [mark](Iterate::mark), if it has moved by more than `length`. Whether it does.
     pub(crate) fn correct(&mut self, length: f64) -> bool {
-        vector::axpby(1.0, self.x, -1.0, &mut self.work.t);
-        let follows = self.problem.operator.norm(&self.work.t) > length;
+        let follows = self.moved() > length;
         if follows {
             self.catch_up();
         }
@@ -84,6 +94,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         self.compliance
             .apply(self.problem, part, &work.t, &mut work.ap, &mut work.operator);
         vector::axpy(1.0, &work.ap, self.ax);
+        self.ahead = false;
         self.report.corrections += 1;
     }
 
@@ -92,13 +103,18 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         let part = self.constrained();
         self.compliance
             .apply(self.problem, part, self.x, self.ax, &mut self.work.operator);
+        self.ahead = false;
         self.report.corrections += 1;
     }
 
-    /// `residual = P_Wᵀ (A x - b)`.
+    /// `residual = P_Wᵀ (A x - b)`; of what a start has moved, each constrained component tells its own answer.
     pub(crate) fn residual(&mut self) {
-        let residual = &mut self.work.residual;
+        let constrained = self.constrained();
+        let ActiveSetWorkspace { residual, t, .. } = &mut *self.work;
         vector::difference(self.ax, self.problem.linear, residual);
+        if self.ahead {
+            Compliance { c: 1.0 }.add(self.problem.scale, &t[..constrained], residual);
+        }
         self.projector.project_gradient(residual);
     }
 

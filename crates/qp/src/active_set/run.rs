@@ -159,6 +159,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
                 report: ActiveSetReport::new(),
                 compliance: Compliance::default(),
                 step: NATURAL_STEP,
+                ahead: false,
             },
         }
     }
@@ -274,6 +275,22 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let (problem, norm) = (self.at.problem, |v: &[f64]| self.at.problem.operator.norm(v));
         let load = norm(problem.linear);
         !self.at.work.leapt || load == 0.0 || place.rho <= RUNAWAY * place.errors.all * (load + norm(self.at.ax))
+    }
+
+    /// A start that is ahead of its product needs one in any case: a step of a safe length and the move to the next
+    /// active set share it. Whether that was so.
+    pub(crate) fn sets_out(&mut self, place: &Place) -> Result<bool, QpError> {
+        let ahead = self.at.ahead;
+        if ahead {
+            self.at.first_direction();
+            self.first_error = place.errors.constrained;
+            self.moved.drifted = self.at.projector.rounds_steps();
+            let length = self.at.step.min(self.at.work.first_step);
+            self.move_on(length, place)?;
+            // from a set that was not solved: it does not tell how far the next one is worth solving
+            self.moved.jump = f64::INFINITY;
+        }
+        Ok(ahead)
     }
 
     /// Lets the product follow the last move, if that is yet to be done. Whether it was.
@@ -436,6 +453,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
 
     pub(crate) fn finish(mut self, status: Status) -> ActiveSetReport {
         self.leave_path();
+        if self.at.ahead {
+            self.at.catch_up();
+        }
         self.at.report.status = status;
         self.at.report
     }

@@ -7,7 +7,8 @@
 //! fallen by `forcing`; then `x - a g` tells which blocks are active next (a primal-dual active-set step), `x` is
 //! moved there, made to satisfy `G x = e` again, and one product keeps `A x` exact. That product is shared with the
 //! next step of conjugate gradients, of the length of the last one. A set of which much has just changed is not solved:
-//! this step leads over it. Where predictions run in circles, or away from a start that told nothing, a path
+//! this step leads over it, and over the first one where the product of the start is known before the set has moved it.
+//! Where predictions run in circles, or away from a start that told nothing, a path
 //! of compliant constraints leads to another set ([`path`](super::path)).
 //!
 //! The error is the length of the preconditioned residual. After `PATIENCE` sets without progress they are solved
@@ -64,6 +65,9 @@ pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrecon
         if run.refreshes(&place) || run.releases(&place) {
             continue;
         }
+        if run.sets_out(&place)? {
+            continue;
+        }
         if run.is_solved(&place) {
             if run.is_balanced(&place) && run.set_agrees(&place)? {
                 break Status::Converged;
@@ -117,6 +121,10 @@ fn check<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         ("the projector", projector.dim(), n),
         ("the workspace", work.z.len(), n),
     ])?;
+    if !work.known.is_empty() {
+        expect_length("the known components", work.known.len(), set.constrained())?;
+        expect_finite("the known components", &work.known)?;
+    }
     expect_length("the right side of the equality", problem.rhs.len(), projector.rows())?;
     set.validate()?;
     expect_finite("x", x)?;

@@ -12,6 +12,10 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
     /// A feasible point that satisfies `G x = e`, a first active set and the product with the point.
     pub(crate) fn start(&mut self, ax_known: bool) -> Result<(), QpError> {
         self.at.mark();
+        let work = &mut *self.at.work;
+        let partly = !work.known.is_empty();
+        work.t[..work.known.len()].copy_from_slice(&work.known);
+        work.known.clear();
         self.path.unknown = !self.is_known();
         self.guess();
         let stopped = if self.repairs_suffice {
@@ -41,12 +45,18 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         }
         self.at.projector.repair(self.at.x, self.at.problem.rhs);
         self.peak = self.at.problem.operator.norm(self.at.x);
-        if ax_known {
-            // without constraints nothing but rounding may have moved
-            let moves = self.at.constrained() > 0;
-            self.at.correct(if moves { 0.0 } else { ROUNDED * self.peak });
-        } else {
+        // without constraints nothing but rounding may have moved
+        let moves = self.at.constrained() > 0;
+        // from nothing there is no way yet that a step could go on
+        let shares = moves && self.at.work.first_step > 0.0 && stopped && self.repairs_suffice && !self.path.unknown;
+        // all of a start costs as much as its move, and rounds less
+        if !ax_known || partly && !shares {
             self.at.multiply();
+        } else if self.at.moved() > if moves { 0.0 } else { ROUNDED * self.peak } {
+            self.at.ahead = shares;
+            if !shares {
+                self.at.catch_up();
+            }
         }
         Ok(())
     }

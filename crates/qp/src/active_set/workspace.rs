@@ -5,7 +5,7 @@ use crate::problem::{LineWeight, SymmetricOperator};
 use super::blocks::ActiveSet;
 use super::coupling::{Coupling, RadiusSlope};
 
-/// Vectors of the active-set method: five of the length of `x`, a sixth where radii follow other components, four
+/// Vectors of the active-set method: five of the length of `x`, a sixth where radii follow other components, five
 /// of its constrained part and the classification of the blocks.
 #[derive(Debug)]
 pub struct ActiveSetWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
@@ -27,6 +27,10 @@ pub struct ActiveSetWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     pub(crate) w: Vec<f64>,
     pub(crate) lines: Vec<LineWeight>,
     pub(crate) t: Vec<f64>,
+    /// Constrained components of the point that the product handed in is of; empty for those of the start.
+    pub(crate) known: Vec<f64>,
+    /// Length of a step that may share the product of the start; 0 for none.
+    pub(crate) first_step: f64,
     pub(crate) active: ActiveSet,
     pub(crate) coupling: Coupling,
     /// Length of the last step of conjugate gradients.
@@ -58,6 +62,8 @@ impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
             w: Vec::new(),
             lines: Vec::new(),
             t: v(),
+            known: Vec::new(),
+            first_step: 0.0,
             active: ActiveSet::default(),
             coupling: Coupling::default(),
             length: 0.0,
@@ -73,6 +79,22 @@ impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
     /// The solution does not depend on it. Slopes in the order of the discs are found fastest.
     pub fn set_slopes(&mut self, slopes: &[RadiusSlope]) {
         self.coupling.set(slopes);
+    }
+
+    /// Tells the next solve that the product handed in is that of the start with these constrained components in place of
+    /// its own (none: with its own), and the [shortest step](Self::shortest_step) of an earlier solve, 0 if there was
+    /// none: where the set moves the start, a step of that length shares the product.
+    pub fn set_start(&mut self, known: &[f64], shortest: f64) {
+        self.known.clear();
+        self.known.extend_from_slice(known);
+        self.first_step = shortest;
+    }
+
+    /// The shortest step of conjugate gradients in the last solve, infinite if it made none: one of that length magnifies
+    /// next to nothing.
+    #[must_use]
+    pub fn shortest_step(&self) -> f64 {
+        self.shortest
     }
 
     /// Makes room for `constrained` leading components with constraints.

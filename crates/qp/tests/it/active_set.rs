@@ -1,6 +1,6 @@
 //! The active-set method against the independent optimality check, SMALSE, and its own promises.
 
-use crate::common::{Random, from_zero, spd};
+use crate::common::{Random, from_zero, product, spd};
 use proptest::prelude::*;
 use signorini_qp::active_set::{ActiveSetProblem, ActiveSetReport, ActiveSetWorkspace};
 use signorini_qp::problem::Identity;
@@ -247,6 +247,89 @@ fn a_scale_that_is_no_number_is_refused() {
             ),
             "{found:?}"
         );
+    }
+}
+
+/// A product that is known of other constrained components than those of the start needs one more, which a step shares.
+#[test]
+fn a_start_that_left_the_point_of_its_product_costs_one() {
+    let mut products = [0; 2];
+    for seed in 0..50 {
+        let p = problem(seed);
+        let n = p.b.len();
+        let constrained = n - p.set.segments()[2].len();
+        let identity = Identity(n);
+        let mut r = Random::new(seed);
+        let settings = ActiveSetSettings::default().with_tolerance(1e-9);
+        let (solution, _, _) = solve(&p, &settings).expect("no breakdown");
+        let from: Vec<f64> = solution.iter().map(|x| x + 0.01 * r.real()).collect();
+        for (known, products) in [true, false].into_iter().zip(&mut products) {
+            let mut projector = DenseProjector::new(p.rows, n, p.g.clone()).expect("rows");
+            let mut work = ActiveSetWorkspace::new(&p.a, &identity);
+            let (mut x, mut ax) = (from.clone(), product(&p.a, &from));
+            x[..constrained].copy_from_slice(&solution[..constrained]);
+            if known {
+                work.set_start(&from[..constrained], 0.5);
+            }
+            let dual = ActiveSetProblem {
+                operator: &p.a,
+                preconditioner: &identity,
+                scale: &vec![1.0; n],
+                linear: &p.b,
+                rhs: &p.e,
+            };
+            let hook = &mut |_: &[f64], _: &mut ProductSet| {};
+            let report = active_set(
+                &dual,
+                &mut projector,
+                &mut p.set.clone(),
+                &mut x,
+                &mut ax,
+                known,
+                &settings,
+                &mut work,
+                hook,
+            );
+            let report = report.expect("no breakdown");
+            assert_eq!(report.status, Status::Converged);
+            assert!(vector::distance(&x, &solution) < 1e-7, "{seed}");
+            assert!(vector::distance(&ax, &product(&p.a, &x)) < 1e-9, "{seed}");
+            *products += report.products();
+        }
+    }
+    assert!(products[0] < products[1], "{products:?}");
+}
+
+#[test]
+fn known_components_of_another_length_or_not_finite_are_refused() {
+    let (a, identity) = (crate::common::pair(), Identity(2));
+    let problem = ActiveSetProblem {
+        operator: &a,
+        preconditioner: &identity,
+        scale: &[1.0; 2],
+        linear: &[1.0, -3.0],
+        rhs: &[],
+    };
+    for bad in [&[0.0; 3][..], &[0.0, f64::NAN]] {
+        let mut set = ProductSet::new(vec![Segment::lower(vec![0.0; 2])]).expect("a set");
+        let (mut x, mut ax) = ([0.0; 2], [0.0; 2]);
+        let (mut projector, settings) = (no_equality(2), ActiveSetSettings::default());
+        let mut work = ActiveSetWorkspace::new(&a, &identity);
+        work.set_start(bad, 0.5);
+        let (x, ax, hook) = (&mut x, &mut ax, &mut |_: &[f64], _: &mut ProductSet| {});
+        let found = active_set(
+            &problem,
+            &mut projector,
+            &mut set,
+            x,
+            ax,
+            true,
+            &settings,
+            &mut work,
+            hook,
+        );
+        let found = found.expect_err("refused").to_string();
+        assert!(found.contains("the known components"), "{found}");
     }
 }
 
