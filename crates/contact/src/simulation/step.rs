@@ -75,10 +75,13 @@ impl Simulation {
         }
         self.controller = state.controller;
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment)?;
-        self.start(state, way, self.settings.extrapolate);
+        // the line through the last two steps leads on where the loads have stopped
+        let rests = |last| self.problem.rests(&self.model, last);
+        let line = self.settings.extrapolate && !increment.start.is_some_and(rests);
+        self.start(state, way, line);
         let (mut report, mut recovered) = self.solve()?;
         let is_lost = matches!(report.status, StepStatus::Stagnated | StepStatus::NotHeld);
-        let is_led = self.settings.extrapolate && state.step() > 0 && state.unconverged_history().is_none();
+        let is_led = line && state.step() > 0 && state.unconverged_history().is_none();
         if is_lost && is_led {
             // where friction has turned round, the line through the last two steps leads astray
             self.spare = recovered;
