@@ -75,7 +75,10 @@ impl Simulation {
         }
         self.controller = state.controller;
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment)?;
-        self.start(state, way, self.settings.extrapolate);
+        // the line through the last two steps leads on where the loads have stopped
+        let rests = |last| self.problem.rests(&self.model, last);
+        let line = self.settings.extrapolate && !increment.start.is_some_and(rests);
+        self.start(state, way, line);
         let (mut report, mut recovered) = self.solve()?;
         if report.status.is_lost() && self.iterate.is_led {
             // where friction has turned round, the line through the last two steps leads astray

@@ -86,8 +86,8 @@ impl ActiveSetSolver {
         if model.points.is_empty() && !free.is_empty() {
             return Err(not_determined(model, free));
         }
-        // rows that depend on one another leave F singular, and bodies that contact alone holds other sets than they need
-        let definite = gluing.dependent_nodes().is_empty() && space.loose().is_empty();
+        // rows that depend on one another leave F singular
+        let definite = gluing.dependent_nodes().is_empty();
         let explicit_cost = match settings.preconditioner {
             Preconditioner::None => None,
             _ if model.points.is_empty() || !definite => None,

@@ -6,6 +6,7 @@ use crate::scene::{Contact, DifferenceFormula, Increment, Pose, Scene};
 use crate::state::{Peak, State};
 use crate::tolerances::{REACHED, REST, ROUNDED, ROUNDING};
 use crate::vec3::dot;
+use signorini_fem_mesh::History;
 use signorini_qp::vector;
 use signorini_tfeti::LoadResponse;
 use signorini_tfeti::internal::zeros;
@@ -122,6 +123,17 @@ impl StepProblem {
             true => growth.max(0.0) * (1.0 + ROUNDING),
             false => f64::INFINITY,
         }
+    }
+
+    /// Whether nothing that acts has changed since a time: loads, supports, obstacles, ties.
+    pub(crate) fn rests(&self, model: &Model, since: f64) -> bool {
+        let stays = |history: &History| history.value(since) == history.value(self.time);
+        let scene = &model.scene;
+        let ties = scene.contacts.iter().filter(|contact| contact.tied);
+        scene.loads.iter().all(|load| stays(&load.history))
+            && model.discrete.supports.motions.iter().all(stays)
+            && ties.filter_map(|tie| tie.motion.as_ref()).all(|(_, way)| stays(way))
+            && self.obstacles[0] == self.obstacles[1]
     }
 
     /// Adds to the offsets of contact rows what is theirs: gap, position of rest, way of the obstacle.

@@ -37,6 +37,37 @@ fn a_plate_that_lies_down_and_slides_is_solved_on_few_products() {
     assert!(distance(whole, cut) <= 1e-5, "{}", distance(whole, cut));
 }
 
+/// The same plate on a floor that curves away, pulled by half of what friction holds, and held by nothing else. Without a
+/// formed F the first step took 9,700 products and then was called not held, the third ended at a limit: 53,000 in all.
+#[test]
+fn a_plate_that_friction_alone_holds_is_solved_on_few_products() {
+    let mesh = block([1.0, 1.0, 0.02], [8, 8, 1]).raise_order().expect("quadratic");
+    let floor =
+        Contact::rigid(brick::Z_MIN).with_gap_field(|[x, y, _]| 1e-4 * ((x - 0.4).powi(2) + 0.7 * (y - 0.55).powi(2)));
+    let scene = Scene::new(mesh, uniform(2e11, 0.3))
+        .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -1e4]))
+        .with_load(Load::body([0.5 * 0.3 * 1e4 / 0.02, 0.0, 0.0]).with_history(ramp()))
+        .with_contact(floor.with_friction(Friction::coulomb(0.3)))
+        .with_analysis(Analysis::quasistatic(1.0, 4));
+    let (simulation, results) = run(scene, Settings::default());
+    let products: Vec<usize> = results.iter().map(|r| r.report.counters.products).collect();
+    println!("{products:?}");
+    assert_eq!(results[0].report.counters.setup_products, simulation.tfeti().dual_dim());
+    assert!(results.iter().all(|r| !r.report.fallback), "{products:?}");
+    assert!(
+        products[0] <= 3500 && products[1..].iter().all(|p| *p <= 100),
+        "{products:?}"
+    );
+    for (k, result) in results.iter().enumerate() {
+        let [along, _, up] = result.summary.resultant;
+        let pull = 1.5e3 * result.time;
+        assert!(
+            (up / 1e4 - 1.0).abs() < 1e-6 && (along / pull + 1.0).abs() < 1e-4,
+            "step {k}: {along}, {up}"
+        );
+    }
+}
+
 #[test]
 fn what_is_hard_continues_bit_for_bit() {
     let new = || Simulation::new(plate(1), Settings::default()).expect("set-up");

@@ -41,6 +41,7 @@ mod refusals;
 mod restart;
 mod sanity;
 mod shapes;
+mod sheets;
 mod springs;
 mod step_doubling;
 mod supports;
