@@ -152,10 +152,6 @@ pub(crate) const AWAY_SETS: usize = 3;
 /// it, or with the next.
 pub(crate) const START_COMPLIANCE: f64 = 1e3;
 pub(crate) const MORE_COMPLIANT: f64 = 100.0;
-/// Factor on the step of the natural map with a first path, for bodies that constraints alone hold. Where points that move
-/// together give way much further than one alone, as in a thin soft sheet, long steps lead away even from a point next
-/// to the solution.
-pub(crate) const CALMER: f64 = 0.25;
 /// Paths that are tried.
 pub(crate) const PATHS: i32 = 2;
 /// Factor from one compliance to the next, and below which there is none.

@@ -8,7 +8,8 @@ use crate::model::{Model, slides};
 use crate::report::StepReport;
 use crate::result::{ContactState, PointState, Recovered, Sizes, summarise};
 use crate::scene::Friction;
-use crate::solve::{Iterate, Task};
+use crate::settings::Method;
+use crate::solve::{Attempt, Iterate, Task};
 use crate::state::{Kept, Peak, State};
 use crate::status::StepStatus;
 use crate::step::StepProblem;
@@ -75,18 +76,24 @@ impl Simulation {
         }
         self.controller = state.controller;
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment)?;
-        // the line through the last two steps leads on where the loads have stopped
+        // the line through the last two steps leads on where the loads have stopped, and astray where friction has turned
+        // round: there is another start
         let rests = |last| self.problem.rests(&self.model, last);
         let line = self.settings.extrapolate && !increment.start.is_some_and(rests);
-        self.start(state, way, line);
+        let two_starts = self.settings.extrapolate && state.step() > 0 && state.unconverged_history().is_none();
+        let first = if two_starts { Attempt::First } else { Attempt::Whole };
+        self.start(state, way, (line, first));
         let (mut report, mut recovered) = self.solve()?;
-        if report.status.is_lost() && self.iterate.is_led {
-            // where friction has turned round, the line through the last two steps leads astray
+        for attempt in [Attempt::Whole, Attempt::Fallback] {
+            let differs = attempt == Attempt::Whole || matches!(self.settings.method, Method::ActiveSet(_));
+            if !(two_starts && differs && report.status.is_lost()) {
+                break;
+            }
             self.spare = recovered;
             self.controller = state.controller;
-            self.start(state, way, false);
-            let (second, again) = self.solve()?;
-            (report, recovered) = (report.resumed(second), again);
+            self.start(state, way, (line == (attempt == Attempt::Fallback), attempt));
+            let (next, again) = self.solve()?;
+            (report, recovered) = (report.resumed(next), again);
         }
         let (model, problem) = (&self.model, &self.problem);
         if report.status == StepStatus::NotHeld {
@@ -125,10 +132,10 @@ impl Simulation {
     }
 
     /// Start vectors of an increment: zero, the last vectors, or the line through the last two.
-    fn start(&mut self, state: &State, way: &Way, line: bool) {
+    fn start(&mut self, state: &State, way: &Way, (line, attempt): (bool, Attempt)) {
         let (model, iterate) = (&self.model, &mut self.iterate);
         (iterate.effort, iterate.shortest_step) = (state.effort, state.shortest_step);
-        iterate.is_led = line && state.step() > 0 && state.unconverged_history().is_none();
+        iterate.attempt = attempt;
         let (lambda, f_lambda) = (&state.lambda, &state.f_lambda);
         let (rows, coarse) = (model.tfeti.dual_dim(), model.tfeti.coarse().rows());
         // before the first step everything is at rest: zero is known, too

@@ -6,7 +6,7 @@
 //! Tresca problem.
 
 use super::coarse::not_determined;
-use super::iterate::{Iterate, Task, is_coulomb, step_status};
+use super::iterate::{Attempt, Iterate, Task, is_coulomb, step_status};
 use super::preconditioner::SelectedPreconditioner;
 use super::release::Exchanges;
 use super::smalse::SmalseSolver;
@@ -15,6 +15,7 @@ use crate::model::Model;
 use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::{Preconditioner, Settings};
+use crate::status::StepStatus;
 use crate::tolerances::{
     CONTRADICTION, EASY, EXPLICIT_PRODUCTS, LINEAR_SLACK, LITTLE, SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS,
 };
@@ -133,15 +134,17 @@ impl ActiveSetSolver {
         report.counters.inequality_solves = usize::from(contact);
         self.start.resize(iterate.lambda.len(), 0.0);
         vector::copy(&iterate.lambda, &mut self.start);
-        let status = self.active_sets_or_explicit(task, iterate, &mut report)?;
-        report.status = step_status(status);
+        report.status = match iterate.attempt {
+            Attempt::Fallback => StepStatus::Stagnated,
+            _ => step_status(self.active_sets_or_explicit(task, iterate, &mut report)?),
+        };
         task.model.tfeti.check_processes()?;
         if contact && !report.status.converged() {
             if report.status.is_lost() || !iterate.lambda.iter().all(|v| v.is_finite()) {
                 vector::copy(&self.start, &mut iterate.lambda);
             }
             // another start comes before another method
-            return match iterate.is_led && report.status.is_lost() {
+            return match iterate.attempt == Attempt::First && report.status.is_lost() {
                 true => self.stay(task, iterate, report),
                 false => self.fall_back(task, iterate, report),
             };
@@ -196,8 +199,16 @@ impl ActiveSetSolver {
             if self.use_explicit(true, task, report) {
                 status = self.active_sets(task, iterate, EXPLICIT_PRODUCTS, report)?;
             }
-            if is_open(status) {
+            let is_loose = !self.space.loose().is_empty();
+            if is_open(status) || is_loose && status != Status::Converged {
                 iterate.effort = NO_HELP;
+            }
+            if iterate.effort == NO_HELP && is_loose {
+                // bodies that contact alone holds may need other sets than these
+                self.use_explicit(false, task, report);
+                vector::copy(&self.start, &mut iterate.lambda);
+                iterate.known = false;
+                status = self.active_sets(task, iterate, usize::MAX, report)?;
             }
         }
         Ok(status)

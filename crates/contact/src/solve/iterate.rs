@@ -32,10 +32,22 @@ pub(crate) struct Iterate {
     pub(crate) alpha: Vec<f64>,
     /// Products beyond those of easy solves, over all steps so far: where they are many, F is formed.
     pub(crate) effort: usize,
-    /// Whether the start was on the line through the last two steps, and can be made again without.
-    pub(crate) is_led: bool,
+    /// Which attempt at the step its start is for.
+    pub(crate) attempt: Attempt,
     /// The shortest step of conjugate gradients in the last solve with contact, in the end in this one; 0 if there was none.
     pub(crate) shortest_step: f64,
+}
+
+/// Attempts at a step, one after another as long as it is lost.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) enum Attempt {
+    /// By active sets alone: there is another start.
+    First,
+    /// From that start, or the only one, by active sets and then by the paper's method.
+    #[default]
+    Whole,
+    /// From the first start, by the paper's method.
+    Fallback,
 }
 
 /// Status of a step from the status of a quadratic program.

@@ -15,5 +15,5 @@ mod scaling;
 mod smalse;
 mod solver;
 
-pub(crate) use iterate::{Iterate, Task};
+pub(crate) use iterate::{Attempt, Iterate, Task};
 pub(crate) use solver::Solver;

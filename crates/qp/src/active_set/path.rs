@@ -8,7 +8,7 @@
 
 use crate::problem::{ConvexSet, EqualityProjector, SymmetricOperator};
 use crate::tolerances::{
-    AWAY, AWAY_SETS, CALMER, FAR, LEAST_COMPLIANCE, LESS_COMPLIANT, MORE_COMPLIANT, PATHS, PATIENCE, START_COMPLIANCE,
+    AWAY, AWAY_SETS, FAR, LEAST_COMPLIANCE, LESS_COMPLIANT, MORE_COMPLIANT, PATHS, PATIENCE, START_COMPLIANCE,
 };
 
 use super::iterate::Lengths;
@@ -29,16 +29,11 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         lost && self.path.begun < PATHS && self.safeguard.is_none()
     }
 
-    /// Begins the path, or one of more compliance, from no forces. Where predictions for bodies that constraints alone hold
-    /// first run in circles, steps of the natural map are shorter from now on, also behind the path.
+    /// Begins the path, or one of more compliance, from no forces.
     pub(crate) fn begin_path(&mut self) {
-        let calmer = self.path.begun == 0 && !self.repairs_suffice && self.in_circles();
         let at = &mut self.at;
         let c = START_COMPLIANCE * MORE_COMPLIANT.powi(self.path.begun);
         self.path.begun += 1;
-        if calmer {
-            at.step *= CALMER;
-        }
         at.x.fill(0.0);
         at.set.project(at.x);
         at.projector.balance(at.x, at.problem.rhs);

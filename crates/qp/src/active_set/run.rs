@@ -259,8 +259,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         let current = self.safeguard.as_ref().is_none_or(|safeguard| safeguard.current);
         let moved = self.moved.length();
         let settled = at.report.active_sets == 0 || current && moved <= limit.max(f64::MIN_POSITIVE);
-        // a shorter step would judge less strictly
-        let map = natural_map(at.problem, &at.work.residual, NATURAL_STEP);
+        let map = natural_map(at.problem, &at.work.residual, at.step);
         at.compliance.c == 0.0
             && place.errors.within(place.limits)
             && settled
