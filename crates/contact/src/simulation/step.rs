@@ -85,7 +85,8 @@ impl Simulation {
         self.start(state, way, (line, first));
         let (mut report, mut recovered) = self.solve()?;
         for attempt in [Attempt::Whole, Attempt::Fallback] {
-            let differs = attempt == Attempt::Whole || matches!(self.settings.method, Method::ActiveSet(_));
+            let falls_back = matches!(self.settings.method, Method::ActiveSet(_)) && !self.model.points.is_empty();
+            let differs = attempt == Attempt::Whole || falls_back;
             if !(two_starts && differs && report.status.is_lost()) {
                 break;
             }
