@@ -199,11 +199,10 @@ impl ActiveSetSolver {
             if self.use_explicit(true, task, report) {
                 status = self.active_sets(task, iterate, EXPLICIT_PRODUCTS, report)?;
             }
-            let is_loose = !self.space.loose().is_empty();
-            if is_open(status) || is_loose && status != Status::Converged {
+            if is_open(status) {
                 iterate.effort = NO_HELP;
             }
-            if iterate.effort == NO_HELP && is_loose {
+            if is_open(status) && !self.space.loose().is_empty() {
                 // bodies that contact alone holds may need other sets than these
                 self.use_explicit(false, task, report);
                 vector::copy(&self.start, &mut iterate.lambda);
