@@ -8,9 +8,9 @@ use super::pose::Rotation;
 use super::scene::Scene;
 use super::support::Place;
 use crate::error::ContactError;
-use signorini_fem_mesh::FacetTag;
 use signorini_fem_mesh::internal::tag_list;
 use signorini_fem_mesh::vec3::{is_finite, norm};
+use signorini_fem_mesh::{FacetTag, History};
 
 impl Scene {
     /// Nodes of the support at a position, checked; as many displacements as nodes, if it has not one for all.
@@ -73,20 +73,22 @@ impl Scene {
 
     /// Checks that all histories have a value at a time.
     pub(crate) fn check_histories(&self, time: f64) -> Result<(), ContactError> {
+        self.histories()
+            .try_for_each(|(what, index, history)| check_value((what, index), time, history.value(time)))
+    }
+
+    /// All that acts, with its history: what it is, its number, and how it goes.
+    pub(crate) fn histories(&self) -> impl Iterator<Item = (&'static str, usize, &History)> {
         let loads = self.loads.iter().enumerate();
         let supports = self.supports.iter().enumerate();
         let contacts = self.contacts.iter().enumerate();
-        let histories = (loads.map(|(k, l)| ("load", k, &l.history)))
+        (loads.map(|(k, l)| ("load", k, &l.history)))
             .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
             .chain(contacts.flat_map(|(k, c)| {
                 let motion = c.motion.as_ref().map(|(_, history)| history);
                 let turn = c.rotation.as_ref().map(|rotation| &rotation.angle);
                 (motion.into_iter().chain(turn).chain(&c.gap_history)).map(move |h| ("contact", k, h))
-            }));
-        for (what, index, history) in histories {
-            check_value((what, index), time, history.value(time))?;
-        }
-        Ok(())
+            }))
     }
 
     fn check(&self, index: usize, contact: &Contact) -> Result<(), ContactError> {

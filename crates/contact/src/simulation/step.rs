@@ -78,21 +78,27 @@ impl Simulation {
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment)?;
         // the line through the last two steps leads on where the loads have stopped, and astray where friction has turned
         // round: there is another start
-        let rests = |last| self.problem.rests(&self.model, last);
+        let rests = |last| self.problem.rests(&self.model.scene, last);
         let line = self.settings.extrapolate && !increment.start.is_some_and(rests);
         let two_starts = self.settings.extrapolate && state.step() > 0 && state.unconverged_history().is_none();
-        let first = if two_starts { Attempt::First } else { Attempt::Whole };
-        self.start(state, way, (line, first));
+        let falls_back = matches!(self.settings.method, Method::ActiveSet(_)) && !self.model.points.is_empty();
+        let (first, others) = match (two_starts, falls_back) {
+            (false, _) => (Attempt::Whole, &[][..]),
+            (true, false) => (Attempt::First, &[(!line, Attempt::Whole)][..]),
+            (true, true) => (
+                Attempt::First,
+                &[(!line, Attempt::Whole), (line, Attempt::Fallback)][..],
+            ),
+        };
+        self.start(state, way, line, first);
         let (mut report, mut recovered) = self.solve()?;
-        for attempt in [Attempt::Whole, Attempt::Fallback] {
-            let falls_back = matches!(self.settings.method, Method::ActiveSet(_)) && !self.model.points.is_empty();
-            let differs = attempt == Attempt::Whole || falls_back;
-            if !(two_starts && differs && report.status.is_lost()) {
+        for &(line, attempt) in others {
+            if !report.status.is_lost() {
                 break;
             }
             self.spare = recovered;
             self.controller = state.controller;
-            self.start(state, way, (line == (attempt == Attempt::Fallback), attempt));
+            self.start(state, way, line, attempt);
             let (next, again) = self.solve()?;
             (report, recovered) = (report.resumed(next), again);
         }
@@ -133,7 +139,7 @@ impl Simulation {
     }
 
     /// Start vectors of an increment: zero, the last vectors, or the line through the last two.
-    fn start(&mut self, state: &State, way: &Way, (line, attempt): (bool, Attempt)) {
+    fn start(&mut self, state: &State, way: &Way, line: bool, attempt: Attempt) {
         let (model, iterate) = (&self.model, &mut self.iterate);
         (iterate.effort, iterate.shortest_step) = (state.effort, state.shortest_step);
         iterate.attempt = attempt;

@@ -141,7 +141,7 @@ impl ActiveSetSolver {
         task.model.tfeti.check_processes()?;
         if contact && !report.status.converged() {
             if report.status.is_lost() || !iterate.lambda.iter().all(|v| v.is_finite()) {
-                vector::copy(&self.start, &mut iterate.lambda);
+                self.begin_again(iterate);
             }
             // another start comes before another method
             return match iterate.attempt == Attempt::First && report.status.is_lost() {
@@ -193,24 +193,28 @@ impl ActiveSetSolver {
         if let Some(cost) = cost.filter(|&cost| is_open(status) && hard(cost)) {
             iterate.effort = cost;
             if status == Status::Stagnated {
-                vector::copy(&self.start, &mut iterate.lambda);
-                iterate.known = false;
+                self.begin_again(iterate);
             }
             if self.use_explicit(true, task, report) {
                 status = self.active_sets(task, iterate, EXPLICIT_PRODUCTS, report)?;
             }
             if is_open(status) {
                 iterate.effort = NO_HELP;
-            }
-            if is_open(status) && !self.space.loose().is_empty() {
-                // bodies that contact alone holds may need other sets than these
-                self.use_explicit(false, task, report);
-                vector::copy(&self.start, &mut iterate.lambda);
-                iterate.known = false;
-                status = self.active_sets(task, iterate, usize::MAX, report)?;
+                if !self.space.loose().is_empty() {
+                    // bodies that contact alone holds may need other sets than these
+                    self.use_explicit(false, task, report);
+                    self.begin_again(iterate);
+                    status = self.active_sets(task, iterate, usize::MAX, report)?;
+                }
             }
         }
         Ok(status)
+    }
+
+    /// Back to the start of the step.
+    fn begin_again(&self, iterate: &mut Iterate) {
+        vector::copy(&self.start, &mut iterate.lambda);
+        iterate.known = false;
     }
 
     /// Takes the inverse of a formed F, or the preconditioner of the settings. Whether it is the one asked for.

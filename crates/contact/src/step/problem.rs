@@ -125,15 +125,10 @@ impl StepProblem {
         }
     }
 
-    /// Whether nothing that acts has changed since a time: loads, supports, obstacles, ties.
-    pub(crate) fn rests(&self, model: &Model, since: f64) -> bool {
+    /// Whether nothing that acts has changed since a time.
+    pub(crate) fn rests(&self, scene: &Scene, since: f64) -> bool {
         let stays = |history: &History| history.value(since) == history.value(self.time);
-        let scene = &model.scene;
-        let ties = scene.contacts.iter().filter(|contact| contact.tied);
-        scene.loads.iter().all(|load| stays(&load.history))
-            && model.discrete.supports.motions.iter().all(stays)
-            && ties.filter_map(|tie| tie.motion.as_ref()).all(|(_, way)| stays(way))
-            && self.obstacles[0] == self.obstacles[1]
+        scene.histories().all(|(.., history)| stays(history))
     }
 
     /// Adds to the offsets of contact rows what is theirs: gap, position of rest, way of the obstacle.

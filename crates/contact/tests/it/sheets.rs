@@ -9,7 +9,7 @@ fn tags(body: u32) -> impl Fn(FacetTag) -> FacetTag {
 
 /// A sheet of 20 times its thickness, pressed within a second and then left alone for another. Nothing holds the upper
 /// block and the sheet but the lower block.
-fn squeezed(coefficient: f64) -> Scene {
+fn squeezed() -> Scene {
     let steel = || block([20.0, 20.0, 8.0], [17, 17, 2]);
     let lifted = |mesh: TetMesh, by: f64| mesh.map_points(|[x, y, z]| [x, y, z + by]).expect("lifted");
     let sheet = lifted(block([20.0, 20.0, 1.0], [16, 16, 1]), 8.0).map_tags(tags(1));
@@ -25,7 +25,7 @@ fn squeezed(coefficient: f64) -> Scene {
         (2, material(210e3, 0.3)),
     ];
     let regions = mesh.components();
-    let on = |own, other| Contact::between(own, other).with_friction(Friction::coulomb(coefficient));
+    let on = |own, other| Contact::between(own, other).with_friction(Friction::coulomb(0.2));
     let course = History::table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, 1.0)]).expect("table");
     Scene::new(
         mesh.with_regions(regions).expect("regions"),
@@ -41,13 +41,12 @@ fn squeezed(coefficient: f64) -> Scene {
 /// The steps in which nothing changes took 1,700 and 1,080 products: the line through the last two steps led on.
 #[test]
 fn a_sheet_that_is_squeezed_out_is_solved_and_then_rests() {
-    let (coefficient, most) = (0.2, 1500);
-    let (_, results) = run(squeezed(coefficient), Settings::default());
+    let (_, results) = run(squeezed(), Settings::default());
     let products: Vec<usize> = results.iter().map(|r| r.report.counters.products).collect();
-    let what = format!("{coefficient}: {products:?}");
+    let what = format!("{products:?}");
     println!("{what}");
     assert!(results.iter().all(|r| !r.report.fallback), "{what}");
-    assert!(products[0] <= most && products[1..].iter().all(|p| *p <= 4), "{what}");
+    assert!(products[0] <= 1500 && products[1..].iter().all(|p| *p <= 4), "{what}");
     // 2 MPa on 20 x 20 mm, on both faces; at least a third of the points slide
     for (k, result) in results.iter().enumerate() {
         let pressed = 2.0 * 800.0 * result.time.min(1.0);

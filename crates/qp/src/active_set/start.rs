@@ -52,11 +52,10 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         // all of a start costs as much as its move, and rounds less
         if !ax_known || partly && !shares {
             self.at.multiply();
-        } else if self.at.moved() > if moves { 0.0 } else { ROUNDED * self.peak } {
-            self.at.ahead = shares;
-            if !shares {
-                self.at.catch_up();
-            }
+        } else if shares {
+            self.at.ahead = self.at.moved() > 0.0;
+        } else {
+            self.at.correct(if moves { 0.0 } else { ROUNDED * self.peak });
         }
         Ok(())
     }
