@@ -46,6 +46,26 @@ impl Load {
         Self::new(LoadDensity::force(tag, value))
     }
 
+    /// A moment on a tag, N m, for instance the torque of a shaft at its end. The traction is that of beam theory: it
+    /// grows linearly from the centroid of the facets, along the surface about its normal and along the normal about an
+    /// axis in a plane. Its force is zero and its moment, about any point, the given one, both to rounding.
+    ///
+    /// ```
+    /// use signorini_contact::{Load, Scene, Settings, Simulation, Support};
+    /// use signorini_fem_mesh::{Brick, Hooke, Materials, brick};
+    ///
+    /// let bar = Brick::new([0.2, 0.02, 0.02], [10, 2, 2]).build()?;
+    /// let scene = Scene::new(bar, Materials::uniform(Hooke::isotropic(2e11, 0.3)?))
+    ///     .with_support(Support::fixed(brick::X_MIN))
+    ///     .with_load(Load::moment(brick::X_MAX, [50.0, 0.0, 0.0]));
+    /// let clamp = Simulation::new(scene, Settings::default())?.step()?.reactions().supports[0].resultant;
+    /// assert!((clamp.moment[0] + 50.0).abs() < 1e-4 && clamp.force[0].abs() < 1e-3);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn moment(tag: FacetTag, value: [f64; 3]) -> Self {
+        Self::new(LoadDensity::moment(tag, value))
+    }
+
     /// Pressure on a tag, Pa, positive into the body.
     pub fn pressure(tag: FacetTag, value: f64) -> Self {
         Self::new(LoadDensity::pressure(tag, value))

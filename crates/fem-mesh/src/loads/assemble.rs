@@ -8,6 +8,7 @@ use crate::quadrature;
 use crate::vec3::{Vec3, add, is_finite, norm, scale, tet_volume};
 
 use super::density::{LoadDensity, LoadError};
+use super::moment::traction_of_moment;
 
 /// Turns a load into nodal forces of the subdomains, one vector each with component i of local
 /// node n at 3 n + i.
@@ -38,6 +39,10 @@ pub fn assemble_load(
         LoadDensity::Force(tag, value) => {
             let share = scale(1.0 / tagged_area(mesh, *tag), *value);
             traction(mesh, decomposition, *tag, |_| Density::Constant(share))
+        }
+        LoadDensity::Moment(tag, value) => {
+            let field = traction_of_moment(mesh, *tag, *value);
+            traction(mesh, decomposition, *tag, |_| Density::Varying(&field))
         }
         LoadDensity::NodalForces(forces) => nodal(mesh, decomposition, forces),
     }

@@ -31,6 +31,9 @@ pub enum LoadDensity {
     /// A force, N, spread evenly over all facets of a tag: a uniform traction whose resultant on the discrete facets is
     /// this force. Facets inscribed in a curved surface have less area than it, so a given traction would lose a part.
     Force(FacetTag, [f64; 3]),
+    /// A moment, N m, without a force: the traction on all facets of a tag grows linearly from their centroid, as the
+    /// displacement of a rigid rotation does, and its resultant on the discrete facets is this moment.
+    Moment(FacetTag, [f64; 3]),
     /// Forces at single nodes (global numbers); forces at the same node add up.
     NodalForces(Vec<(u32, [f64; 3])>),
 }
@@ -67,6 +70,11 @@ impl LoadDensity {
     /// A force, spread evenly over all facets of a tag.
     pub fn force(tag: FacetTag, value: [f64; 3]) -> Self {
         Self::Force(tag, value)
+    }
+
+    /// A moment without a force, spread linearly over all facets of a tag.
+    pub fn moment(tag: FacetTag, value: [f64; 3]) -> Self {
+        Self::Moment(tag, value)
     }
 
     /// Forces at single nodes.

@@ -1,7 +1,7 @@
 //! Loads: in space, in time, and as nodal forces of the subdomains.
 //!
 //! `density` says where a load acts, `history` how it changes in time, `function` wraps what a user gives for either,
-//! `assemble` makes consistent nodal forces, `eigenstrain` describes stress-free strain.
+//! `assemble` makes consistent nodal forces, `moment` the traction of a moment, `eigenstrain` describes stress-free strain.
 //!
 //! Uses: `decomposition`, `element`, `material`, `mesh`, `vec3`. In: a mesh, a decomposition, a load. Out: a force
 //! vector per subdomain.
@@ -11,6 +11,7 @@ mod density;
 mod eigenstrain;
 mod function;
 mod history;
+mod moment;
 
 pub use assemble::assemble_load;
 pub use density::{LoadDensity, LoadError};

@@ -79,6 +79,33 @@ fn varying_loads() {
     assert_abs_diff_eq!(b.0[2], 21.0, epsilon = 1e-12);
 }
 
+/// A moment about any axis on flat and curved sides, linear and quadratic: no force, and the moment to rounding.
+#[test]
+fn moments_have_no_force() {
+    let bend = |[x, y, z]: [f64; 3]| {
+        let (sin, cos) = (0.6 * y).sin_cos();
+        [(1.0 + z) * sin + 5.0, (1.0 + z) * cos - 2.0, x]
+    };
+    let linear = brick().map_points(bend).unwrap();
+    let quadratic = brick().raise_order().unwrap().map_points(bend).unwrap();
+    let moment = [0.7, -2.0, 3.0];
+    for mesh in [brick(), linear, quadratic] {
+        for tag in [X_MAX, Z_MIN, Z_MAX] {
+            let found = resultant(&mesh, [3, 1, 2], &LoadDensity::moment(tag, moment));
+            check(found, [0.0; 3], moment);
+        }
+    }
+    // pure bending of a side of 1 x 2: the tractions of the beam, M z / (b h^3 / 12) along x
+    let bending = LoadDensity::moment(X_MAX, [0.0, 4.0, 0.0]);
+    let beam = LoadDensity::traction_field(X_MAX, |[_, _, z], _| [4.0 * (z - 1.0) * 1.5, 0.0, 0.0]);
+    let straight = Brick::new([3.0, 1.0, 2.0], [6, 2, 4]).build().unwrap();
+    let parts = Decomposition::whole(&straight);
+    let of = |load| assemble_load(&straight, &parts, &load).unwrap().remove(0);
+    for (a, b) in of(bending).into_iter().zip(of(beam)) {
+        assert!((a - b).abs() < 1e-13, "{a} {b}");
+    }
+}
+
 #[test]
 fn nodal_forces_act_once() {
     let mesh = brick();

@@ -356,9 +356,14 @@ fn loads() {
         error(LoadDensity::force(Z_MIN, nan)),
         LoadError::NotFinite { .. }
     ));
+    assert!(matches!(
+        error(LoadDensity::moment(Z_MIN, nan)),
+        LoadError::NotFinite { .. }
+    ));
     for missing in [
         LoadDensity::traction(FacetTag(77), [1.0; 3]),
         LoadDensity::force(FacetTag(77), [1.0; 3]),
+        LoadDensity::moment(FacetTag(77), [1.0; 3]),
     ] {
         assert!(matches!(
             error(missing),
