@@ -84,6 +84,11 @@ signorini_fem_mesh::errors! {
             "support {support}: node {node} does not exist, the mesh has {nodes} nodes, numbered from 0";
         ValueCount { support: usize, values: usize, nodes: usize } =
             "support {support}: {values} displacements for {nodes} nodes; give one for all, or one a node";
+        SupportAxis { support: usize, point: [f64; 3], axis: [f64; 3] } =
+            "support {support}: its axis through {point:?} along {axis:?} must be finite, and the direction not zero";
+        OnAxis { support: usize, node: u32 } =
+            "support {support}: node {node} lies on its axis, where no direction is radial or tangential; leave it out, \
+            or hold it along x, y, z by a support of its own";
         Gap { contact: usize, node: u32, position: [f64; 3], value: f64 } =
             "contact {contact}: the gap at node {node}, at {position:?}, is {value}; it must be finite at every \
             node of the surface";

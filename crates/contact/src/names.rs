@@ -90,7 +90,12 @@ impl ContactError {
                 Part::of_scene(what, *index).into_iter().collect()
             }
             Self::SpringStiffness { spring, .. } => vec![Part::Spring(*spring)],
-            Self::UnknownNode { support, .. } | Self::ValueCount { support, .. } => vec![Part::Support(*support)],
+            Self::UnknownNode { support, .. }
+            | Self::ValueCount { support, .. }
+            | Self::SupportAxis { support, .. } => {
+                vec![Part::Support(*support)]
+            }
+            Self::OnAxis { support, node } => vec![Part::Support(*support), Part::Node(*node)],
             Self::TooLarge { part, .. } => vec![*part],
             Self::Stiffness { region, .. } => vec![Part::Region(*region)],
             Self::NotConverged(failure) => {
@@ -128,6 +133,7 @@ impl ContactError {
                 | TfetiError::DependentRows { node } => vec![Part::Node(*node)],
                 TfetiError::EmptySupport { support, .. }
                 | TfetiError::BadDirection { support, .. }
+                | TfetiError::DirectionLists { support, .. }
                 | TfetiError::MotionLength { support, .. }
                 | TfetiError::CaseNumber { support, .. } => vec![Part::Support(*support)],
                 TfetiError::BadMotion { support, node } => vec![Part::Support(*support), Part::Node(*node)],

@@ -25,6 +25,8 @@ signorini_fem_mesh::errors! {
             "support {support}: direction {direction} is zero or not finite";
         MotionLength { support: usize, found: usize, nodes: usize } =
             "support {support}: {found} prescribed displacements for {nodes} nodes; give one for all or one for each";
+        DirectionLists { support: usize, found: usize, nodes: usize } =
+            "support {support}: {found} lists of directions for {nodes} nodes; give one for each";
         CaseNumber { support: usize, case: u32, supports: usize } =
             "support {support}: displacement case {case} is too large for {supports} supports; number the cases from \
             0 without gaps";

@@ -44,6 +44,8 @@ pub struct Support {
     pub(crate) place: Place,
     pub(crate) directions: Directions,
     pub(crate) motion: Option<(Vec<[f64; 3]>, History)>,
+    /// A point of the axis and its direction, of any length.
+    pub(crate) axis: Option<([f64; 3], [f64; 3])>,
 }
 
 impl Support {
@@ -67,11 +69,24 @@ impl Support {
     }
 
     /// Some directions are zero.
+    ///
+    /// ```
+    /// use signorini_contact::{Directions, Support};
+    /// # use signorini_fem_mesh::{Brick, Surface, brick};
+    ///
+    /// # let mesh = Brick::new([1.0; 3], [2; 3]).build()?;
+    /// // nodes of a surface of any shape stay on it
+    /// let surface = Surface::new(&mesh, &[brick::X_MAX])?;
+    /// let normals = surface.frames().iter().map(|frame| vec![frame.normal]).collect();
+    /// let guide = Support::partial(surface.nodes(), Directions::EachNode(normals));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn partial(place: impl Into<Place>, directions: Directions) -> Self {
         Self {
             place: place.into(),
             directions,
             motion: None,
+            axis: None,
         }
     }
 
@@ -98,6 +113,27 @@ impl Support {
         self
     }
 
+    /// Directions and displacements are radial, tangential (right-handed) and axial with respect to an axis through
+    /// `point`, in place of x, y, z.
+    ///
+    /// ```
+    /// use signorini_contact::Support;
+    /// use signorini_fem_mesh::{FacetTag, History};
+    ///
+    /// # let (bore, rim) = (FacetTag(1), FacetTag(2));
+    /// let (point, axis) = ([0.0; 3], [0.0, 0.0, 1.0]);
+    /// let bearing = Support::components(bore, [true, false, false]).with_axis(point, axis);
+    /// // the rim grows by a tenth of a millimetre
+    /// let grown = Support::components(rim, [true, false, false])
+    ///     .with_axis(point, axis)
+    ///     .with_motion([1e-4, 0.0, 0.0], History::ramp(1.0, 1.0)?);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_axis(mut self, point: [f64; 3], axis: [f64; 3]) -> Self {
+        self.axis = Some((point, axis));
+        self
+    }
+
     /// Where it acts.
     pub fn place(&self) -> &Place {
         &self.place
@@ -112,5 +148,11 @@ impl Support {
     pub fn motion(&self) -> Option<(&[[f64; 3]], &History)> {
         let (values, history) = self.motion.as_ref()?;
         Some((values, history))
+    }
+
+    /// A point of the axis to which directions and displacements refer, and its direction; `None` where they are along
+    /// x, y, z.
+    pub fn axis(&self) -> Option<([f64; 3], [f64; 3])> {
+        self.axis
     }
 }

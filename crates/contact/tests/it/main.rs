@@ -1,6 +1,7 @@
 //! One module a promise.
 
 mod accuracy;
+mod axis_supports;
 mod bar;
 mod bodies;
 mod brake;

@@ -16,16 +16,19 @@ pub enum Directions {
     Components([bool; 3]),
     /// Any directions; they are normalised, and dependent ones are left out.
     Vectors(Vec<[f64; 3]>),
+    /// The same with a list for each node of the support, in their order, for instance the normals of a curved surface.
+    EachNode(Vec<Vec<[f64; 3]>>),
 }
 
 impl Directions {
-    /// The directions as vectors, not normalised.
+    /// The directions as vectors, not normalised; those of all nodes where each has its own.
     pub fn vectors(&self) -> Vec<[f64; 3]> {
         const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         match self {
             Self::All => AXES.to_vec(),
             Self::Components(on) => (0..3).filter(|&c| on[c]).map(|c| AXES[c]).collect(),
             Self::Vectors(vectors) => vectors.clone(),
+            Self::EachNode(vectors) => vectors.concat(),
         }
     }
 }
@@ -199,7 +202,7 @@ impl MergedSupports {
         let mut fixed: BTreeMap<u32, FixedNode> = BTreeMap::new();
         let mut merged = Self::default();
         for (s, support) in supports.iter().enumerate() {
-            let directions = unit_directions(s, support)?;
+            let of_nodes = unit_directions(s, support)?;
             if let Some(motion) = &support.motion {
                 motion.check(s, support.nodes.len(), supports.len())?;
                 merged.cases = merged.cases.max(motion.case as usize + 1);
@@ -215,7 +218,12 @@ impl MergedSupports {
                     ..FixedNode::default()
                 };
                 let entry = fixed.entry(node).or_insert_with(new);
-                for direction in &directions {
+                let directions = if of_nodes.len() == 1 {
+                    &of_nodes[0]
+                } else {
+                    &of_nodes[k]
+                };
+                for direction in directions {
                     add_direction(entry, s, *direction, motion)?;
                 }
             }
@@ -225,17 +233,29 @@ impl MergedSupports {
     }
 }
 
-fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<[f64; 3]>, TfetiError> {
-    let mut directions = support.directions.vectors();
+/// Unit directions of a support: one list for all nodes, or one for each.
+fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<Vec<[f64; 3]>>, TfetiError> {
+    let mut of_nodes = match &support.directions {
+        Directions::EachNode(lists) => lists.clone(),
+        other => vec![other.vectors()],
+    };
+    let (found, nodes) = (of_nodes.len(), support.nodes.len());
     for (none, what) in [
-        (support.nodes.is_empty(), "nodes"),
-        (directions.is_empty(), "directions"),
+        (nodes == 0, "nodes"),
+        (of_nodes.iter().all(Vec::is_empty), "directions"),
     ] {
         if none {
             return Err(TfetiError::EmptySupport { support: s, what });
         }
     }
-    for (k, direction) in directions.iter_mut().enumerate() {
+    if found != 1 && found != nodes {
+        return Err(TfetiError::DirectionLists {
+            support: s,
+            found,
+            nodes,
+        });
+    }
+    for (k, direction) in of_nodes.iter_mut().flat_map(|list| list.iter_mut().enumerate()) {
         // Scaled first, so that neither tiny nor huge vectors lose their length.
         let largest = direction.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
         let finite = direction.iter().all(|v| v.is_finite());
@@ -249,7 +269,7 @@ fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<[f64; 3]>, Tfe
         let length = norm(scaled);
         *direction = scaled.map(|v| v / length);
     }
-    Ok(directions)
+    Ok(of_nodes)
 }
 
 /// Orthonormalises a direction against those already fixed, and adds it if something is left.
