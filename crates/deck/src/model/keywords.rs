@@ -1,13 +1,13 @@
 //! Which keyword is read by whom, where it may stand, and what is said about the others.
 
 use super::step::{self, SOLVER, Step};
-use super::{Ignored, Model, elastic, mesh, property, temperature};
+use super::{Ignored, Model, elastic, mesh, property, temperature, transform};
 use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
 
 /// What is read, as an error lists it.
 const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, *EXPANSION, \
-*INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, \
+*INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *TRANSFORM, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, \
 *TIE, *RIGID BODY, *SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
 which are ignored and reported";
 
@@ -17,7 +17,7 @@ CONTACTOUTPUT FACEPRINT SECTIONPRINT ENERGYFILE ENERGYPRINT ENERGYOUTPUT OUTPUT 
 TIMEPOINTS";
 
 /// Keywords of these programs that have no counterpart here, and what to do.
-const REFUSED: [(&str, &str); 15] = [
+const REFUSED: [(&str, &str); 14] = [
     (
         "ASSEMBLY PART INSTANCE",
         "decks with parts and an assembly are not read; write a flat one (in Abaqus/CAE: Edit Attributes, do not use \
@@ -35,10 +35,6 @@ const REFUSED: [(&str, &str); 15] = [
     (
         "DISTRIBUTING",
         "couplings of nodes are not here; put the force on the nodes themselves",
-    ),
-    (
-        "TRANSFORM",
-        "supports and forces are along x, y, z; a program can hold any direction with Directions::Vectors",
     ),
     ("ORIENTATION", "the axes of materials are x, y, z"),
     ("PLASTIC CREEP HYPERELASTIC DAMPING", "materials are linear and elastic"),
@@ -136,6 +132,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         "CONTACTPAIR" => Some(property::pair),
         "TIE" => Some(property::tie),
         "RIGIDBODY" => Some(property::rigid),
+        "TRANSFORM" => Some(transform::transform),
         _ => None,
     };
     if let Some(read) = of_model {

@@ -12,6 +12,7 @@ mod names;
 mod property;
 mod step;
 mod temperature;
+mod transform;
 
 use crate::error::{DeckError, Location, Word};
 use crate::lexer::Named;
@@ -23,6 +24,7 @@ pub(crate) use names::Names;
 pub(crate) use step::{
     COMPONENT, Component, Components, Condition, Conditions, DistributedKind, Given, INCREMENTS, Step, Target,
 };
+pub(crate) use transform::{Axes, Transform};
 
 /// A request of the deck that has no meaning here.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -208,6 +210,7 @@ pub(crate) struct Model {
     pub(crate) interactions: Names<Interaction>,
     pub(crate) pairs: Vec<Pair>,
     pub(crate) rigid: Vec<RigidBody>,
+    pub(crate) transforms: Vec<Transform>,
     /// Supports that hold before the first step.
     pub(crate) supports: Vec<Condition<Components>>,
     /// Temperatures without stress.

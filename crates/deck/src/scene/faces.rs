@@ -13,6 +13,7 @@ use super::mesh::Raw;
 use super::numbers::Sets;
 use super::rigid::{RigidBodies, RigidFace};
 use super::timeline::Timeline;
+use super::transforms::Transforms;
 use crate::error::{DeckError, Fault, Word};
 use crate::model::{FACES, Model, Names, Side, Target};
 
@@ -46,6 +47,7 @@ pub(super) struct Known<'a> {
     pub(super) bodies: &'a RigidBodies,
     pub(super) raw: &'a Raw,
     pub(super) timeline: &'a Timeline<'a>,
+    pub(super) transforms: &'a Transforms,
 }
 
 fn key(mut nodes: [u32; 3]) -> [u32; 3] {

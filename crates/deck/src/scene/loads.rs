@@ -96,8 +96,8 @@ impl Loads {
         }
         for (&(node, component), track) in &forces.0 {
             if let Some((value, history)) = loads.histories.add(known.timeline, track)? {
-                let mut force = [0.0; 3];
-                force[component] = value;
+                let at = (node, known.raw.points[node as usize]);
+                let force = known.transforms.force(at, component, value, &track.word)?;
                 loads.force(history, track.order, node, force);
             }
         }

@@ -17,6 +17,7 @@ mod supports;
 mod temperatures;
 mod ties;
 mod timeline;
+mod transforms;
 
 use std::path::Path;
 
@@ -52,12 +53,14 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     let bodies = rigid::RigidBodies::new(&sets)?;
     let raw = mesh::Raw::new(path, &sets, &bodies)?;
     let timeline = timeline::Timeline::new(model)?;
+    let transforms = transforms::Transforms::new(model, &sets, &bodies, &raw)?;
     let known = faces::Known {
         model,
         sets: &sets,
         bodies: &bodies,
         raw: &raw,
         timeline: &timeline,
+        transforms: &transforms,
     };
     let mut faces = faces::FaceTable::default();
     let surfaces = faces.surfaces(known)?;

@@ -2,12 +2,11 @@
 
 use std::collections::BTreeMap;
 
-use signorini_contact::{Directions, Support};
+use signorini_contact::Support;
 
 use super::faces::Known;
 use super::history::{Histories, Track};
 use super::rigid::Motion;
-use super::timeline::Timeline;
 use crate::error::{DeckError, Word};
 use crate::model::{COMPONENT, Components, Condition, Given, Ignored, Target};
 
@@ -77,7 +76,7 @@ pub(super) fn supports(known: Known) -> Result<Supports, DeckError> {
     let rigid = rigid.into_iter().map(|(key, held)| (key, held.track)).collect();
     let motions = known.bodies.motions(known.timeline, &rigid)?;
     let ignored = std::mem::take(&mut table.ignored);
-    let (list, names) = table.lower(known.timeline)?;
+    let (list, names) = table.lower(known)?;
     Ok(Supports {
         list,
         names,
@@ -168,10 +167,15 @@ impl Table {
         Ok(())
     }
 
-    fn lower(self, timeline: &Timeline) -> Result<(Vec<Support>, Vec<Owner>), DeckError> {
+    fn lower(
+        self,
+        Known {
+            timeline, transforms, ..
+        }: Known,
+    ) -> Result<(Vec<Support>, Vec<Owner>), DeckError> {
         let mut histories = Histories::default();
-        // by target, first component, history and components: nodes and their displacements
-        type Key = (usize, usize, Option<usize>, [bool; 3]);
+        // by target, axes, first component, history and components: nodes and their displacements
+        type Key = (usize, Option<usize>, usize, Option<usize>, [bool; 3]);
         let mut groups: BTreeMap<Key, Vec<(u32, [f64; 3])>> = BTreeMap::new();
         let mut held = self.held.into_iter().peekable();
         while let Some(((node, component), first)) = held.next() {
@@ -201,28 +205,18 @@ impl Table {
             for ((owner, history), (on, value)) in parts {
                 let moves = value.iter().any(|v| *v != 0.0);
                 let first = on.iter().position(|on| *on).unwrap_or(0);
-                let key = (owner, first, history.filter(|_| moves), on);
+                let key = (owner, transforms.of(node), first, history.filter(|_| moves), on);
                 groups.entry(key).or_default().push((node, value));
             }
         }
         let (mut supports, mut names) = (Vec::new(), Vec::new());
-        for ((owner, _, history, on), nodes) in groups {
-            let directions = match on {
-                [true, true, true] => Directions::All,
-                on => Directions::Components(on),
-            };
-            let numbers: Vec<u32> = nodes.iter().map(|n| n.0).collect();
-            let mut support = Support::partial(numbers, directions);
-            if let Some(history) = history {
-                let history = histories.at(history);
-                let first = nodes[0].1;
-                support = if nodes.iter().all(|n| n.1 == first) {
-                    support.with_motion(first, history)
-                } else {
-                    support.with_motions(nodes.iter().map(|n| n.1).collect(), history)
-                };
+        for ((owner, axes, _, history, on), nodes) in groups {
+            let (nodes, mut values): (Vec<u32>, Vec<[f64; 3]>) = nodes.into_iter().unzip();
+            if values.iter().all(|value| *value == values[0]) {
+                values.truncate(1);
             }
-            supports.push(support);
+            let motion = history.map(|history| (values, histories.at(history)));
+            supports.push(transforms.support(axes, (nodes, on), motion));
             names.push(self.owners[owner].clone());
         }
         Ok((supports, names))

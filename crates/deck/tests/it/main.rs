@@ -8,4 +8,5 @@ mod refusals;
 mod same_bits;
 mod temperatures;
 mod ties;
+mod transforms;
 mod write;

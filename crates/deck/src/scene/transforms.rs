@@ -1,0 +1,124 @@
+//! Axes of nodes: supports and forces along them.
+
+use std::collections::BTreeMap;
+
+use signorini_contact::{Directions, Support};
+use signorini_fem_mesh::History;
+use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, norm, scale, sub};
+
+use super::mesh::Raw;
+use super::numbers::Sets;
+use super::rigid::RigidBodies;
+use crate::error::{DeckError, Word};
+use crate::model::{Axes, Model, Target};
+
+/// Part of the distance from the point of an axis that rounding leaves of one from the axis.
+const ON_AXIS: f64 = 1e-9;
+
+/// The axes of the nodes of the mesh that have their own.
+#[derive(Debug, Default)]
+pub(super) struct Transforms {
+    axes: Vec<Axes>,
+    of_node: BTreeMap<u32, usize>,
+}
+
+impl Transforms {
+    pub(super) fn new(model: &Model, sets: &Sets, bodies: &RigidBodies, raw: &Raw) -> Result<Self, DeckError> {
+        let mut out = Self::default();
+        for (index, transform) in model.transforms.iter().enumerate() {
+            let word = &transform.nset.word;
+            let target = Target::Name(transform.nset.name.clone());
+            for node in sets.nodes.find(&target, word)? {
+                let label = model.nodes[node as usize].label;
+                if bodies.has(node) {
+                    let why = format!("node {label} says how a rigid body moves, which is along x, y, z here");
+                    return Err(word.cannot(why));
+                }
+                let Some(inside) = raw.in_mesh(node) else { continue };
+                if out.of_node.insert(inside, index).is_some() {
+                    let why = format!("node {label} has axes already; give each node one *TRANSFORM");
+                    return Err(word.cannot(why));
+                }
+            }
+            out.axes.push(transform.axes);
+        }
+        Ok(out)
+    }
+
+    /// The position of the axes of a node.
+    pub(super) fn of(&self, node: u32) -> Option<usize> {
+        self.of_node.get(&node).copied()
+    }
+
+    /// A component of a force on a node at a place along x, y, z.
+    pub(super) fn force(
+        &self,
+        (node, place): (u32, Vec3),
+        component: usize,
+        value: f64,
+        word: &Word,
+    ) -> Result<Vec3, DeckError> {
+        let unit = match self.of(node).map(|index| self.axes[index]) {
+            None => [0, 1, 2].map(|c| if c == component { 1.0 } else { 0.0 }),
+            Some(Axes::Rectangular(points)) => rectangular(points)[component],
+            Some(Axes::Cylindrical([a, b])) => {
+                let along = unit(sub(b, a));
+                let arm = sub(place, a);
+                let out = sub(arm, scale(dot(arm, along), along));
+                if component < 2 && norm(out) <= ON_AXIS * norm(arm) {
+                    return Err(word.cannot("a node of it lies on its axis, where nothing is radial or tangential"));
+                }
+                match component {
+                    0 => unit(out),
+                    1 => cross(along, unit(out)),
+                    _ => along,
+                }
+            }
+        };
+        Ok(scale(value, unit))
+    }
+
+    /// A support that holds components of nodes with the same axes, and its displacements.
+    pub(super) fn support(
+        &self,
+        axes: Option<usize>,
+        (nodes, on): (Vec<u32>, [bool; 3]),
+        motion: Option<(Vec<Vec3>, History)>,
+    ) -> Support {
+        let axes = axes.map(|index| self.axes[index]);
+        let frame = match axes {
+            Some(Axes::Rectangular(points)) => Some(rectangular(points)),
+            _ => None,
+        };
+        let directions = match (on, frame) {
+            ([true, true, true], _) => Directions::All,
+            (on, None) => Directions::Components(on),
+            (on, Some(frame)) => Directions::Vectors((0..3).filter(|&c| on[c]).map(|c| frame[c]).collect()),
+        };
+        let mut support = Support::partial(nodes, directions);
+        if let Some((mut values, history)) = motion {
+            if let Some(frame) = frame {
+                let along = |v: Vec3| frame.iter().zip(v).map(|(unit, part)| scale(part, *unit));
+                values.iter_mut().for_each(|v| *v = along(*v).fold([0.0; 3], add));
+            }
+            support = match values[..] {
+                [one] => support.with_motion(one, history),
+                _ => support.with_motions(values, history),
+            };
+        }
+        match axes {
+            Some(Axes::Cylindrical([a, b])) => support.with_axis(a, sub(b, a)),
+            _ => support,
+        }
+    }
+}
+
+fn unit(v: Vec3) -> Vec3 {
+    scale(1.0 / norm(v), v)
+}
+
+/// Unit vectors of the axes.
+fn rectangular([a, b]: [Vec3; 2]) -> [Vec3; 3] {
+    let (first, third) = (unit(a), unit(cross(a, b)));
+    [first, cross(third, first), third]
+}
