@@ -113,6 +113,13 @@ pub(crate) const ALONGSIDE: f64 = 0.5;
 /// What contact forces leave of loads of length one, below which it is rounding.
 pub(crate) const WRENCH_RESIDUAL: f64 = 1e-8;
 
+/// By how much a point that slides along a motion of the cone may miss to open by the coefficient times the slip,
+/// relative: the motion is found to [`LEVERAGE`].
+pub(crate) const SLIDING: f64 = 1e-3;
+
+/// What has to be left of a motion of length one without the opening: less says nothing of where the body slides.
+pub(crate) const SLIDES: f64 = 0.5;
+
 /// Singular values below this part of the largest count as zero where contact forces are found.
 pub(crate) const WRENCH_RANK: f64 = 1e-13;
 

@@ -67,7 +67,7 @@ pub(crate) fn slides(model: &Model, e: &[f64], lambda: &[f64]) -> Result<Option<
     Ok((length > 0.0).then_some(Slide { force: length, ..slide }))
 }
 
-/// A body that gets away, when and how strongly, N.
+/// A body that gets away, when, and by how much the loads exceed what holds it, N.
 struct Escape {
     step: usize,
     force: f64,
@@ -116,9 +116,18 @@ fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Option
         };
         if let Some(found) = found {
             let unit = if tresca { 1.0 } else { length };
-            let force = unit * vector::dot(&found.motion, &b);
             let friction = cone.friction_needed(&b);
-            return Ok(Some(escape(model, step, motions, &found, (force, friction))));
+            let work = |s: &Separation| unit * vector::dot(&s.motion, &b);
+            let escape = |s: &Separation| escape(model, step, motions, s, (work(s), friction));
+            let flat = Separation {
+                motion: cone.sliding(&found.motion),
+                tresca: 0.0,
+            };
+            // loads that lift it, too, are told as they are
+            let slides = friction.is_some() && !tresca && work(&flat) > work(&found);
+            let Escape { force, .. } = escape(&found);
+            let told = if slides { escape(&flat) } else { escape(&found) };
+            return Ok(Some(Escape { force, ..told }));
         }
         approved = Some(b);
     }

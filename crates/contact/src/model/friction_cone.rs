@@ -9,7 +9,8 @@
 //! falls): the residual of `b - z` separates `b` if `b` works more on it than all friction can.
 
 use crate::tolerances::{
-    FRICTION_FACTOR, LEVERAGE, MOST_FRICTION, TRESCA_EXCESS, WRENCH_FACTOR, WRENCH_RANK, WRENCH_RESIDUAL,
+    FRICTION_FACTOR, LEVERAGE, MOST_FRICTION, SLIDES, SLIDING, TRESCA_EXCESS, WRENCH_FACTOR, WRENCH_RANK,
+    WRENCH_RESIDUAL,
 };
 use crate::vec3::{dot, norm};
 use nalgebra::{DMatrix, DVector};
@@ -59,6 +60,16 @@ pub(crate) struct Separation {
     pub(crate) tresca: f64,
 }
 
+/// Where loads are.
+enum Found {
+    /// In the cone.
+    Inside,
+    /// Outside, with a motion that separates them.
+    Apart(Vec<f64>),
+    /// Not found out.
+    Open,
+}
+
 /// The cone, and the bounded set of Tresca friction around it.
 #[derive(Debug)]
 pub(crate) struct WrenchCone {
@@ -92,14 +103,15 @@ impl WrenchCone {
     /// By more than which factor friction would have to be larger for contact to hold the loads `b`, N, that it does
     /// not hold; `None` where no friction could.
     pub(crate) fn friction_needed(&self, b: &[f64]) -> Option<f64> {
-        let holds = |factor: f64| {
+        let cone = |factor: f64| {
             let scaled = self.generators.iter().map(|g| Generators {
                 coefficient: g.coefficient.map(|c| factor * c),
                 tresca: factor * g.tresca,
                 ..g.clone()
             });
-            Self::new(self.dim, scaled.collect()).exceeded(b).is_none()
+            Self::new(self.dim, scaled.collect())
         };
+        let holds = |factor: f64| cone(factor).exceeded(b).is_none();
         let (mut low, mut high) = (1.0_f64, MOST_FRICTION);
         if !holds(high) {
             return None;
@@ -108,7 +120,45 @@ impl WrenchCone {
             let middle = (low * high).sqrt();
             *if holds(middle) { &mut high } else { &mut low } = middle;
         }
-        Some(low)
+        // what was left open is no remedy
+        let tresca = self.generators.iter().any(|g| g.tresca > 0.0);
+        let held = || matches!(cone(2.0 * high).closest(&scaled(b, norm(b)), false), Found::Inside);
+        (tresca || held()).then_some(low)
+    }
+
+    /// A motion along which the loads push too much, of unit length, as Coulomb's friction lets it go: points slide
+    /// without opening. The cone's own motions open the points that slide, by the coefficient times the slip. The
+    /// motion as it is where that leaves little of it.
+    pub(crate) fn sliding(&self, motion: &[f64]) -> Vec<f64> {
+        let slides = |g: &&Generators| {
+            let [opens, slips] = [
+                -dot(&g.normal, motion),
+                g.coefficient.unwrap_or(0.0) * g.friction_work(motion),
+            ];
+            slips > 0.0 && (opens - slips).abs() <= SLIDING * slips
+        };
+        let mut normals: Vec<Vec<f64>> = Vec::new();
+        for g in self.generators.iter().filter(slides) {
+            let mut normal = g.normal.clone();
+            // twice, against rounding
+            for known in normals.iter().chain(&normals) {
+                let along = dot(known, &normal);
+                vector::axpy(-along, known, &mut normal);
+            }
+            let left = norm(&normal);
+            if left > WRENCH_RESIDUAL * norm(&g.normal) {
+                normals.push(scaled(&normal, left));
+            }
+        }
+        let mut flat = motion.to_vec();
+        for normal in &normals {
+            let along = dot(normal, &flat);
+            vector::axpy(-along, normal, &mut flat);
+        }
+        match norm(&flat) {
+            left if left > SLIDES => scaled(&flat, left),
+            _ => motion.to_vec(),
+        }
     }
 
     /// Whether the loads `b`, N, are out of reach of cone and Tresca friction.
@@ -161,6 +211,13 @@ impl WrenchCone {
 
     /// The same; with `unbounded`, Tresca friction may be as large as it likes.
     fn separated(&self, b: &[f64], unbounded: bool) -> Option<Vec<f64>> {
+        match self.closest(b, unbounded) {
+            Found::Apart(motion) => Some(motion),
+            Found::Inside | Found::Open => None,
+        }
+    }
+
+    fn closest(&self, b: &[f64], unbounded: bool) -> Found {
         let mut used: Vec<Vec<f64>> = Vec::new();
         let mut factors: Vec<f64> = Vec::new();
         for _ in 0..ROUNDS {
@@ -170,21 +227,21 @@ impl WrenchCone {
             }
             let length = norm(&r);
             if length <= WRENCH_RESIDUAL {
-                return None;
+                return Found::Inside;
             }
             // no force, or none that helps: the residual separates, unless enormous forces could close it
             let best = self.best(&r, unbounded);
             let enough = length * length * self.largest;
             match best.filter(|(gain, _)| LEVERAGE * gain.max(0.0) > enough) {
                 Some((_, column)) => used.push(column),
-                None => return Some(scaled(&r, length)),
+                None => return Found::Apart(scaled(&r, length)),
             }
             factors.push(0.0);
             if !improve(self.dim, &mut used, &mut factors, b) {
-                return None;
+                return Found::Open;
             }
         }
-        None
+        Found::Open
     }
 
     /// The generator with the largest product with `r`; `None` if there is none.
@@ -261,6 +318,24 @@ fn improve(dim: usize, used: &mut Vec<Vec<f64>>, factors: &mut Vec<f64>, b: &[f6
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A block pushed along the floor slides on it, though the motion of the cone lifts it.
+    #[test]
+    fn a_block_slides_flat() {
+        let cone = two_points(0.3);
+        let push = scaled(&[1.0, 1.0, 0.0], 2.0_f64.sqrt());
+        let found = cone.separates(&push).expect("slides");
+        assert!(found[0].abs() > 0.2, "{found:?}");
+        let flat = cone.sliding(&found);
+        assert!(flat[0].abs() < 1e-12 && flat[2].abs() < 1e-12, "{flat:?}");
+        assert!((flat[1].abs() - 1.0).abs() < 1e-12, "{flat:?}");
+        // what opens for lack of a force that pulls does not slide
+        let lift = cone.separates(&[1.0, 0.0, 0.0]);
+        let back = cone.separates(&[-1.0, 0.0, 0.0]);
+        for up in [lift, back].into_iter().flatten() {
+            assert_eq!(cone.sliding(&up), up);
+        }
+    }
 
     /// Two points at x = -1 and 1 on a floor; motions: up, along the floor, rotation in the plane.
     fn two_points(coefficient: f64) -> WrenchCone {
