@@ -6,6 +6,7 @@
 pub mod blocks;
 pub mod crack;
 pub mod curved;
+pub mod dovetail;
 pub mod meshes;
 pub mod mindlin;
 pub mod orthotropic;
@@ -32,7 +33,7 @@ use signorini_studies::{Failure, aligned, exit, save};
     about = "Published problems with known answers, on meshes that do not match"
 )]
 pub struct CasesOptions {
-    /// Only these: blocks, curved, plate, press-fit, wedge, orthotropic, crack, punch, spheres, mindlin, rigid-sphere.
+    /// Only these: blocks, curved, plate, press-fit, wedge, dovetail, orthotropic, crack, punch, spheres, mindlin, rigid-sphere.
     #[arg(long, value_delimiter = ',')]
     pub case: Vec<String>,
     /// Coarse meshes: seconds in place of minutes, and larger errors.
@@ -138,12 +139,13 @@ fn main() -> ExitCode {
 }
 
 type Case = fn(bool) -> Result<Vec<Finding>, Failure>;
-const CASES: [(&str, Case); 11] = [
+const CASES: [(&str, Case); 12] = [
     ("blocks", blocks::findings),
     ("curved", curved::findings),
     ("plate", plate::findings),
     ("press-fit", press_fit::findings),
     ("wedge", wedge::findings),
+    ("dovetail", dovetail::findings),
     ("orthotropic", orthotropic::findings),
     ("crack", crack::findings),
     ("punch", punch::findings),

@@ -1,8 +1,9 @@
 //! Graded meshes.
 
 use super::Failure;
-use signorini::fem_mesh::mesh::orient_tets;
+use signorini::fem_mesh::mesh::{drop_unused_nodes, merge_nodes, orient_tets};
 use signorini::prelude::*;
+use std::f64::consts::TAU;
 
 /// The sum of the first `count` cells of a geometric series that starts with `first` and has `all` cells in `length`.
 pub fn series(first: f64, all: usize, length: f64) -> impl Fn(f64) -> f64 + Copy {
@@ -84,4 +85,17 @@ pub fn symmetric(scene: Scene, angle: f64, tags: impl Fn(FacetTag) -> FacetTag) 
     scene
         .with_support(Support::components(tags(brick::Y_MIN), [false, true, false]))
         .with_support(Support::partial(tags(brick::Y_MAX), Directions::Vectors(vec![normal])))
+}
+
+/// A whole tube of quadratic elements about z: x of the brick is the radius, y goes round, and both ends are one.
+pub fn ring([inner, outer]: [f64; 2], width: f64, cells: [usize; 3]) -> Result<TetMesh, Failure> {
+    let brick = Brick::new([outer - inner, TAU, width], cells).build()?.raise_order()?;
+    let round = |[x, y, z]: &[f64; 3]| [(inner + x) * y.cos(), (inner + x) * y.sin(), *z];
+    let mut points: Vec<[f64; 3]> = brick.points().iter().map(round).collect();
+    let open = |f: &&Facet| f.tag != brick::Y_MIN && f.tag != brick::Y_MAX;
+    let mut facets: Vec<Facet> = brick.facets().iter().filter(open).copied().collect();
+    let mut tets = brick.quadratic_tets();
+    merge_nodes(&points, &mut tets, &mut facets, 1e-9 * outer);
+    drop_unused_nodes(&mut points, &mut tets, &mut facets);
+    Ok(TetMesh::quadratic(points, tets, facets)?)
 }

@@ -3,8 +3,11 @@
 //! Diameters 20, 40, 60 mm, interference 0.005 mm on the diameter, E 210,000 MPa, coefficient 0.1. After Lame the
 //! pressure is `E d / (b (A + B))` with the radial interference `d`, the radius `b` of the joint,
 //! `A = (c^2 + b^2) / (c^2 - b^2)` and `B = (b^2 + a^2) / (b^2 - a^2)`: 6.15234 MPa. A quarter is meshed.
+//!
+//! Whole, it carries torque up to the coefficient times the pressure times `2 pi b^2 l`.
 
-use super::{Failure, Finding, second, solve};
+use super::meshes::ring;
+use super::{Failure, Finding, RunFacts, second, solve};
 use signorini::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -78,5 +81,49 @@ pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
         5e-3,
         run,
     ));
+    let full = coefficient * pressure * 2.0 * PI * b * b * WIDTH;
+    all.push(torque(if short { 1 } else { 2 }, (young, radial, coefficient), full)?);
     Ok(all)
+}
+
+/// The largest torque on the ring that the shaft holds, between two that are a thousandth of the target apart. The mesh
+/// is of quadratic elements, whose joint is round.
+fn torque(n: usize, (young, radial, coefficient): (f64, f64, f64), full: f64) -> Result<Finding, Failure> {
+    let [a, b, c] = RADII;
+    let shaft = ring([a, b], WIDTH, [n, 12 * n, 1])?;
+    let hub = ring([b, c], WIDTH, [n, 16 * n, 1])?.map_tags(second);
+    let mesh = shaft.append(&hub)?;
+    // pressed first, then turned
+    let turned = |torque: f64| -> Result<RunFacts, Failure> {
+        let later = History::table(vec![(1.0, 0.0), (2.0, 1.0)])?;
+        let scene = Scene::new(mesh.clone(), Materials::uniform(Hooke::isotropic(young, 0.3)?))
+            .with_support(Support::components(brick::X_MIN, [false, true, false]).with_axis([0.0; 3], [0.0, 0.0, 1.0]))
+            .with_support(Support::components(brick::Z_MIN, [false, false, true]))
+            .with_support(Support::components(second(brick::Z_MIN), [false, false, true]))
+            .with_load(Load::moment(second(brick::X_MAX), [0.0, 0.0, torque]).with_history(later))
+            .with_contact(
+                Contact::between(brick::X_MAX, second(brick::X_MIN))
+                    .with_gap(-radial)
+                    .with_friction(Friction::coulomb(coefficient)),
+            )
+            .with_analysis(Analysis::quasistatic(2.0, 2));
+        solve(scene, Settings::default(), |_| ())
+    };
+    let (mut least, mut most, mut facts) = (0.9 * full, 1.1 * full, RunFacts::default());
+    while most - least > 1e-3 * full {
+        let middle = 0.5 * (least + most);
+        match turned(middle) {
+            Ok(run) => (least, facts) = (middle, run),
+            Err(_) => most = middle,
+        }
+    }
+    let held = 0.5 * (least + most);
+    Ok(Finding::new(
+        "shrink fit, turned",
+        "torque of full slip, N mm",
+        held,
+        full,
+        5e-3,
+        facts,
+    ))
 }
