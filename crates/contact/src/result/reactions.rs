@@ -236,7 +236,10 @@ fn loads(model: &Model, problem: &StepProblem, arm: impl Fn(u32) -> [f64; 3]) ->
         let nodes = model.discrete.decomposition.subdomains().iter();
         let nodes = nodes.flat_map(|s| &s.nodes);
         for (&node, force) in nodes.zip(load.force.as_chunks::<3>().0) {
-            sum.add(arm(node), force.map(|f| factor * f));
+            // most loads act on a surface
+            if *force != [0.0; 3] {
+                sum.add(arm(node), force.map(|f| factor * f));
+            }
         }
     }
     sum
