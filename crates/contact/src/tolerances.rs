@@ -113,8 +113,8 @@ pub(crate) const ALONGSIDE: f64 = 0.5;
 /// What contact forces leave of loads of length one, below which it is rounding.
 pub(crate) const WRENCH_RESIDUAL: f64 = 1e-8;
 
-/// By how much a point that slides along a motion of the cone may miss to open by the coefficient times the slip,
-/// relative: the motion is found to [`LEVERAGE`].
+/// By how much a point that stays closed along a motion of the cone may miss to open by the coefficient times the slip,
+/// relative to the motion, which is found to [`LEVERAGE`].
 pub(crate) const SLIDING: f64 = 1e-3;
 
 /// What has to be left of a motion of length one without the opening: less says nothing of where the body slides.

@@ -130,15 +130,13 @@ impl WrenchCone {
     /// without opening. The cone's own motions open the points that slide, by the coefficient times the slip. The
     /// motion as it is where that leaves little of it.
     pub(crate) fn sliding(&self, motion: &[f64]) -> Vec<f64> {
-        let slides = |g: &&Generators| {
-            let [opens, slips] = [
-                -dot(&g.normal, motion),
-                g.coefficient.unwrap_or(0.0) * g.friction_work(motion),
-            ];
-            slips > 0.0 && (opens - slips).abs() <= SLIDING * slips
+        // on the edge of what the cone allows: points that stick or slide, not those that open beyond their slip
+        let closed = |g: &&Generators| {
+            let slips = g.coefficient.unwrap_or(0.0) * g.friction_work(motion);
+            (dot(&g.normal, motion) + slips).abs() <= SLIDING * norm(&g.normal)
         };
         let mut normals: Vec<Vec<f64>> = Vec::new();
-        for g in self.generators.iter().filter(slides) {
+        for g in self.generators.iter().filter(closed) {
             let mut normal = g.normal.clone();
             // twice, against rounding
             for known in normals.iter().chain(&normals) {
