@@ -37,10 +37,6 @@ pub(crate) const ALONG: f64 = 1e-9;
 /// the way along the surface, which the certificate sees.
 pub(crate) const SAME_NORMAL: f64 = 1.0 - 1e-12;
 
-/// Distance of a node from the axis of its support, over that from the point of the axis, up to which it lies on the
-/// axis, and has no radial direction: files have nine digits.
-pub(crate) const ON_AXIS: f64 = 1e-9;
-
 /// Steps of Newton's method from a node to an obstacle along the normal: those of a smooth shape take ten.
 pub(crate) const NEWTON: usize = 50;
 

@@ -88,3 +88,7 @@ pub(crate) const GROWTH: f64 = 0.5;
 /// Difference of times over the time below which a step of a series is the one asked for.
 #[cfg(feature = "vtu")]
 pub(crate) const SAME_TIME: f64 = 1e-9;
+
+/// Distance from an axis, over that from a point of the axis, up to which a place lies on the axis, and has no radial
+/// direction: files have nine digits.
+pub(crate) const ON_AXIS: f64 = 1e-9;

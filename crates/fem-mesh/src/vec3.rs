@@ -34,6 +34,12 @@ pub fn is_finite(a: Vec3) -> bool {
     a.iter().all(|x| x.is_finite())
 }
 
+/// The sum of the components of `v` times these vectors.
+pub fn combine(vectors: &[Vec3; 3], v: Vec3) -> Vec3 {
+    let parts = vectors.iter().zip(v).map(|(vector, part)| scale(part, *vector));
+    parts.fold([0.0; 3], add)
+}
+
 /// Signed volume of a tetrahedron, positive if the nodes 1, 2, 3 turn counter-clockwise seen from
 /// outside, opposite to node 0.
 pub fn tet_volume(p: &[Vec3; 4]) -> f64 {

@@ -2,9 +2,9 @@
 
 use crate::error::ContactError;
 use crate::scene::Scene;
-use crate::tolerances::ON_AXIS;
 use signorini_fem_mesh::History;
-use signorini_fem_mesh::vec3::{add, cross, dot, is_finite, norm, scale, sub};
+use signorini_fem_mesh::internal::cylindrical;
+use signorini_fem_mesh::vec3::{combine, is_finite, norm, scale, sub};
 use signorini_tfeti::internal::{PrescribedDirection, prescribed_directions};
 use signorini_tfeti::{Directions, Motion, NodeSupport};
 use std::collections::BTreeMap;
@@ -80,36 +80,22 @@ fn about_axis(
     let only_axial = given.iter().all(|d| d[..2] == [0.0; 2]);
     let mut frames = Vec::with_capacity(nodes.len());
     for (&node, arm) in nodes.iter().zip(arms) {
-        let out = sub(arm, scale(dot(arm, along), along));
-        let distance = norm(out);
-        let radial = match distance > ON_AXIS * size {
-            true => scale(1.0 / distance, out),
-            false if only_axial => [0.0; 3],
-            false => return Err(ContactError::OnAxis { support: index, node }),
-        };
-        frames.push([radial, cross(along, radial), along]);
+        frames.push(match cylindrical(arm, along, size) {
+            Some(frame) => frame,
+            None if only_axial => [[0.0; 3], [0.0; 3], along],
+            None => return Err(ContactError::OnAxis { support: index, node }),
+        });
     }
-    let turned = |frame: &[[f64; 3]; 3], v: [f64; 3]| {
-        let parts = frame.iter().zip(v).map(|(unit, part)| scale(part, *unit));
-        parts.fold([0.0; 3], add)
-    };
-    let of_node = |(frame, own): (_, &Vec<_>)| own.iter().map(|v| turned(frame, *v)).collect();
     let lists = match &support.directions {
-        Directions::EachNode(lists) => lists.clone(),
-        _ => vec![given; nodes.len()],
+        Directions::EachNode(lists) => lists,
+        _ => &vec![given; nodes.len()],
     };
-    if lists.len() != nodes.len() {
-        // refused as it would be without an axis
-        return Ok((support.directions.clone(), None));
-    }
-    let directions = Directions::EachNode(frames.iter().zip(&lists).map(of_node).collect());
+    // as many lists as were given: another number than that of the nodes is refused with the others
+    let of_node = |(own, frame): (&Vec<_>, _)| own.iter().map(|v| combine(frame, *v)).collect();
+    let directions = lists.iter().zip(frames.iter().cycle()).map(of_node).collect();
     let values = support.motion.as_ref().map(|(values, _)| {
-        let value = |k: usize| values[if values.len() == 1 { 0 } else { k }];
-        frames
-            .iter()
-            .enumerate()
-            .map(|(k, frame)| turned(frame, value(k)))
-            .collect()
+        let value = |(frame, v): (_, &[f64; 3])| combine(frame, *v);
+        frames.iter().zip(values.iter().cycle()).map(value).collect()
     });
-    Ok((directions, values))
+    Ok((Directions::EachNode(directions), values))
 }

@@ -125,9 +125,14 @@ fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Option
             };
             // loads that lift it, too, are told as they are
             let slides = friction.is_some() && !tresca && work(&flat) > work(&found);
-            let Escape { force, .. } = escape(&found);
-            let told = if slides { escape(&flat) } else { escape(&found) };
-            return Ok(Some(Escape { force, ..told }));
+            let whole = escape(&found);
+            return Ok(Some(match slides {
+                true => Escape {
+                    force: whole.force,
+                    ..escape(&flat)
+                },
+                false => whole,
+            }));
         }
         approved = Some(b);
     }

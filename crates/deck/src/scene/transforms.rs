@@ -4,16 +4,14 @@ use std::collections::BTreeMap;
 
 use signorini_contact::{Directions, Support};
 use signorini_fem_mesh::History;
-use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, norm, scale, sub};
+use signorini_fem_mesh::internal::cylindrical;
+use signorini_fem_mesh::vec3::{Vec3, combine, cross, norm, scale, sub};
 
 use super::mesh::Raw;
 use super::numbers::Sets;
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Word};
 use crate::model::{Axes, Model, Target};
-
-/// Part of the distance from the point of an axis that rounding leaves of one from the axis.
-const ON_AXIS: f64 = 1e-9;
 
 /// The axes of the nodes of the mesh that have their own.
 #[derive(Debug, Default)]
@@ -62,16 +60,13 @@ impl Transforms {
             None => [0, 1, 2].map(|c| if c == component { 1.0 } else { 0.0 }),
             Some(Axes::Rectangular(points)) => rectangular(points)[component],
             Some(Axes::Cylindrical([a, b])) => {
-                let along = unit(sub(b, a));
-                let arm = sub(place, a);
-                let out = sub(arm, scale(dot(arm, along), along));
-                if component < 2 && norm(out) <= ON_AXIS * norm(arm) {
-                    return Err(word.cannot("a node of it lies on its axis, where nothing is radial or tangential"));
-                }
-                match component {
-                    0 => unit(out),
-                    1 => cross(along, unit(out)),
-                    _ => along,
+                let (along, arm) = (unit(sub(b, a)), sub(place, a));
+                match cylindrical(arm, along, norm(arm)) {
+                    Some(frame) => frame[component],
+                    None if component == 2 => along,
+                    None => {
+                        return Err(word.cannot("a node of it lies on its axis, where nothing is radial or tangential"));
+                    }
                 }
             }
         };
@@ -98,8 +93,7 @@ impl Transforms {
         let mut support = Support::partial(nodes, directions);
         if let Some((mut values, history)) = motion {
             if let Some(frame) = frame {
-                let along = |v: Vec3| frame.iter().zip(v).map(|(unit, part)| scale(part, *unit));
-                values.iter_mut().for_each(|v| *v = along(*v).fold([0.0; 3], add));
+                values.iter_mut().for_each(|v| *v = combine(&frame, *v));
             }
             support = match values[..] {
                 [one] => support.with_motion(one, history),

@@ -1,14 +1,16 @@
 //! Meshes of tetrahedra with tagged boundary facets, and the surfaces that contact needs of them.
 //!
 //! `tet_mesh` is the mesh, `check` what its tables must pass, `faces` which tetrahedra meet at which face, `quadratic`
-//! mid-nodes, `curved` the geometry of tetrahedra and facets that have them, `edit` meshes made from meshes, `brick` a
-//! box of cells, `surface` nodal normals, frames, areas and means, `error` what can be wrong.
+//! mid-nodes, `curved` the geometry of tetrahedra and facets that have them, `cylindrical` directions about an axis, `edit`
+//! meshes made from meshes, `brick` a box of cells, `surface` nodal normals, frames, areas and means, `error` what can be
+//! wrong.
 //!
-//! Uses: `tables`, `vec3`. In: tables of points, tetrahedra and facets. Out: a mesh that has passed all checks.
+//! Uses: `tables`, `tolerances`, `vec3`. In: tables of points, tetrahedra and facets. Out: a mesh that has passed all checks.
 
 pub mod brick;
 mod check;
 mod curved;
+mod cylindrical;
 mod edit;
 mod error;
 mod faces;
@@ -25,6 +27,8 @@ pub(crate) use check::extent;
 #[doc(hidden)]
 pub use curved::{EDGES, facet_shape};
 pub(crate) use curved::{NODES, curved_facet, shape, tangents};
+#[doc(hidden)]
+pub use cylindrical::cylindrical;
 pub(crate) use faces::{NONE, connected_sets};
 pub(crate) use quadratic::quadratic_tets;
 pub(crate) use tet_mesh::facet_area_vector;
