@@ -128,11 +128,13 @@ fn what_is_no_axis_is_refused() {
     let found = error(end([true, false, false]).with_axis(middle, up));
     assert!(matches!(found, ContactError::OnAxis { support: 0, .. }), "{found}");
     assert_eq!(found.parts().len(), 2, "{found}");
-    let list = Support::partial(brick::Z_MIN, Directions::EachNode(vec![vec![AXIS]; 2]));
-    for support in [list.clone(), list.with_axis([5.0; 3], up)] {
-        let found = error(support);
-        let wanted = "support 0: 2 lists of directions for 9 nodes; give one for each";
-        assert_eq!(found.to_string(), wanted);
+    for count in [1, 2] {
+        let list = Support::partial(brick::Z_MIN, Directions::EachNode(vec![vec![AXIS]; count]));
+        for support in [list.clone(), list.with_axis([5.0; 3], up)] {
+            let found = error(support);
+            let wanted = format!("support 0: {count} lists of directions for 9 nodes; give one for each");
+            assert_eq!(found.to_string(), wanted);
+        }
     }
     // axial alone needs no radius
     let scene = Scene::new(disc.clone(), steel())

@@ -248,7 +248,8 @@ fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<Vec<[f64; 3]>>
             return Err(TfetiError::EmptySupport { support: s, what });
         }
     }
-    if found != 1 && found != nodes {
+    let of_each = matches!(support.directions, Directions::EachNode(_));
+    if of_each && found != nodes {
         return Err(TfetiError::DirectionLists {
             support: s,
             found,
