@@ -76,11 +76,14 @@
 //! | `*CONTACT PAIR` | `INTERACTION`, `TYPE`, `SMALL SLIDING` | the first (dependent) surface touches the second, whether their meshes match or not; sliding is small |
 //! | `*TIE` | `NAME`, `ADJUST`, `POSITION TOLERANCE` | bonded surfaces, whether their meshes match or not; nodes are not moved, which is reported where they would be; nodes beyond the tolerance, which CalculiX leaves free, are refused |
 //! | `*RIGID BODY` | `ELSET`, `REF NODE`, `ROT NODE` | an obstacle, see below |
+//! | `*COUPLING` | `CONSTRAINT NAME`, `REF NODE`, `SURFACE` | a node that stands for a surface, as the card behind it says |
+//! | `*DISTRIBUTING` | `COUPLING=CONTINUUM`, `WEIGHTING METHOD=UNIFORM` | forces and moments of the node are spread over the surface by areas (of flat faces), growing linearly from its centroid; it stays elastic |
+//! | `*KINEMATIC` | | the surface has the displacement of the node, whose components 1 to 6 are held or, 1 to 3, moved |
 //! | `*TRANSFORM` | `NSET`, `TYPE=R`, `C` | axes of nodes, along which their supports and forces are |
 //! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `YSYMM`, `ZSYMM`; rotations held at zero are ignored on solids |
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |
 //! | `*STATIC` | `DIRECT`, `SOLVER` | first increment, period, least and largest increment |
-//! | `*CLOAD` | `OP`, `AMPLITUDE` | forces at nodes |
+//! | `*CLOAD` | `OP`, `AMPLITUDE` | forces at nodes; moments, 4 to 6, at the node of a `*DISTRIBUTING` |
 //! | `*DLOAD` | `OP`, `AMPLITUDE` | `P1` to `P4` on faces; `GRAV`, `BX`, `BY`, `BZ` in elements |
 //! | `*DSLOAD` | `OP`, `AMPLITUDE` | `P` on a surface |
 //! | `*TEMPERATURE` | `OP`, `AMPLITUDE` | at nodes; linear between the corners of a tetrahedron |

@@ -1,14 +1,14 @@
 //! Which keyword is read by whom, where it may stand, and what is said about the others.
 
 use super::step::{self, SOLVER, Step};
-use super::{Ignored, Model, elastic, mesh, property, temperature, transform};
+use super::{Ignored, Model, coupling, elastic, mesh, property, temperature, transform};
 use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
 
 /// What is read, as an error lists it.
 const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, *EXPANSION, \
 *INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *TRANSFORM, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, \
-*TIE, *RIGID BODY, *SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
+*TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
 which are ignored and reported";
 
 /// Requests for output, which ask nothing of the solution.
@@ -17,24 +17,16 @@ CONTACTOUTPUT FACEPRINT SECTIONPRINT ENERGYFILE ENERGYPRINT ENERGYOUTPUT OUTPUT 
 TIMEPOINTS";
 
 /// Keywords of these programs that have no counterpart here, and what to do.
-const REFUSED: [(&str, &str); 14] = [
+const REFUSED: [(&str, &str); 12] = [
     (
         "ASSEMBLY PART INSTANCE",
         "decks with parts and an assembly are not read; write a flat one (in Abaqus/CAE: Edit Attributes, do not use \
         parts and assemblies)",
     ),
-    ("EQUATION MPC", "couplings of nodes are not here"),
+    ("EQUATION MPC", "equations between nodes are not here"),
     (
-        "COUPLING",
-        "couplings of nodes are not here; put the force or motion on the nodes themselves",
-    ),
-    (
-        "KINEMATIC",
-        "couplings of nodes are not here; hold or move the nodes themselves",
-    ),
-    (
-        "DISTRIBUTING",
-        "couplings of nodes are not here; put the force on the nodes themselves",
+        "DISTRIBUTINGCOUPLING KINEMATICCOUPLING",
+        "couplings are read of surfaces; give *COUPLING and behind it *DISTRIBUTING or *KINEMATIC",
     ),
     ("ORIENTATION", "the axes of materials are x, y, z"),
     ("PLASTIC CREEP HYPERELASTIC DAMPING", "materials are linear and elastic"),
@@ -66,12 +58,13 @@ const REFUSED: [(&str, &str); 14] = [
 ];
 
 /// Parameters of keywords that are read, likewise.
-const PARAMETERS: [(&str, &str, &str); 4] = [
+const PARAMETERS: [(&str, &str, &str); 5] = [
     (
         "CONTACTPAIR",
         "ADJUST",
         "nodes are not moved; put them where they belong, and remove it",
     ),
+    ("COUPLING", "ORIENTATION", "components are along x, y, z; remove it"),
     (
         "BOUNDARY",
         "FIXED",
@@ -132,6 +125,9 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         "CONTACTPAIR" => Some(property::pair),
         "TIE" => Some(property::tie),
         "RIGIDBODY" => Some(property::rigid),
+        "COUPLING" => Some(coupling::coupling),
+        "DISTRIBUTING" => Some(|model, card| coupling::law(model, card, false)),
+        "KINEMATIC" => Some(|model, card| coupling::law(model, card, true)),
         "TRANSFORM" => Some(transform::transform),
         _ => None,
     };

@@ -5,6 +5,7 @@
 //! understood end here, with their place; names are looked up by [`crate::scene`], above. May use `lexer` and
 //! `error`.
 
+mod coupling;
 mod elastic;
 mod keywords;
 mod mesh;
@@ -19,10 +20,11 @@ use crate::lexer::Named;
 use signorini_fem_mesh::{History, Hooke};
 use std::borrow::Cow;
 
+pub(crate) use coupling::{Coupling, CouplingLaw};
 pub(crate) use keywords::read;
 pub(crate) use names::Names;
 pub(crate) use step::{
-    COMPONENT, Component, Components, Condition, Conditions, DistributedKind, Given, INCREMENTS, Step, Target,
+    COMPONENT, Components, Condition, Conditions, DistributedKind, FORCE, Given, INCREMENTS, Step, Target,
 };
 pub(crate) use transform::{Axes, Transform};
 
@@ -210,6 +212,7 @@ pub(crate) struct Model {
     pub(crate) interactions: Names<Interaction>,
     pub(crate) pairs: Vec<Pair>,
     pub(crate) rigid: Vec<RigidBody>,
+    pub(crate) couplings: Vec<Coupling>,
     pub(crate) transforms: Vec<Transform>,
     /// Supports that hold before the first step.
     pub(crate) supports: Vec<Condition<Components>>,

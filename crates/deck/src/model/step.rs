@@ -46,17 +46,14 @@ pub(crate) struct Condition<K> {
     pub(crate) given: Given,
 }
 
-/// Components of nodes that are held or moved.
+/// Components of nodes that are held, moved or loaded.
 #[derive(Debug, Clone)]
 pub(crate) struct Components {
-    /// Displacements, then rotations, which nodes of rigid bodies have.
+    /// Those of displacement or force, then of rotation or moment, which nodes of rigid bodies and couplings have.
     pub(crate) on: [bool; 6],
-    /// The word that asks for a rotation by its number.
+    /// The word that asks for one of the latter by its number.
     pub(crate) rotation: Option<Word>,
 }
-
-/// A component, 0 to 2, of a force at nodes.
-pub(crate) type Component = usize;
 
 /// A pressure, on elements or a surface, or a load of the volume.
 #[derive(Debug, Clone)]
@@ -147,7 +144,7 @@ pub(crate) struct Step {
     /// The procedure, and its increments.
     pub(crate) time: Option<(Word, Increments)>,
     pub(crate) boundary: Conditions<Components>,
-    pub(crate) forces: Conditions<Component>,
+    pub(crate) forces: Conditions<Components>,
     pub(crate) distributed: Conditions<DistributedKind>,
     pub(crate) temperatures: Conditions<()>,
 }
@@ -331,23 +328,30 @@ fn boundary_line(line: &Word, amplitude: Option<usize>) -> Result<Condition<Comp
     })
 }
 
+/// What a line of `*CLOAD` is.
+pub(crate) const FORCE: &str = "a node or node set, a component 1, 2 or 3 (4 to 6, moments, have the nodes of *COUPLING), \
+and a force";
+
 /// `*CLOAD`.
 pub(super) fn forces(model: &Model, step: &mut Step, card: &Card) -> Result<(), DeckError> {
     card.allow(&["OP", "AMPLITUDE"])?;
     let amplitude = amplitude(model, card)?;
     step.forces.card(card)?;
     for line in &card.lines {
-        let wanted = "a node or node set, a component 1, 2 or 3, and a force";
+        let wanted = FORCE;
         let fields = line.at_most(3, wanted)?;
         let target = target(line, fields[0])?;
-        let component = match fields.get(1).and_then(|f| label(f)) {
-            Some(number @ 1..=3) => number as usize - 1,
+        let number = match fields.get(1).and_then(|f| label(f)) {
+            Some(number @ 1..=6) => number as usize,
             _ => return Err(line.entry(&fields, 1).expected(wanted)),
         };
         step.forces.lines.push(Condition {
             word: line.part(fields[0]),
             target,
-            kind: component,
+            kind: Components {
+                on: [1, 2, 3, 4, 5, 6].map(|c| c == number),
+                rotation: (number > 3).then(|| line.part(fields[1])),
+            },
             given: Given {
                 value: line.real(&fields, 2, wanted)?,
                 amplitude,

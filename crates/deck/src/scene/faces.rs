@@ -9,6 +9,7 @@ use std::collections::HashMap;
 use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::{Facet, FacetTag, vec3};
 
+use super::couplings::Couplings;
 use super::mesh::Raw;
 use super::numbers::Sets;
 use super::rigid::{RigidBodies, RigidFace};
@@ -47,6 +48,7 @@ pub(super) struct Known<'a> {
     pub(super) bodies: &'a RigidBodies,
     pub(super) raw: &'a Raw,
     pub(super) timeline: &'a Timeline<'a>,
+    pub(super) couplings: &'a Couplings,
     pub(super) transforms: &'a Transforms,
 }
 
@@ -144,17 +146,20 @@ impl FaceTable {
         }
     }
 
+    pub(super) fn of_surface(&self, surface: u32) -> impl Iterator<Item = &Face> {
+        self.list.iter().filter(move |f| f.surfaces.contains(&surface))
+    }
+
     /// The nodes of a surface: their numbers in the deck and places.
     pub(super) fn nodes_of(&self, raw: &Raw, surface: u32) -> Vec<(u32, [f64; 3])> {
-        let on = self.list.iter().filter(|f| f.surfaces.contains(&surface));
-        let nodes = distinct(on.flat_map(|face| face.nodes));
+        let nodes = distinct(self.of_surface(surface).flat_map(|face| face.nodes));
         let place = |n: u32| (raw.node_labels[n as usize], raw.points[n as usize]);
         nodes.into_iter().map(place).collect()
     }
 
     /// The triangles of a surface, the faces of quadratic elements as four each.
     pub(super) fn triangles_of(&self, raw: &Raw, surface: u32) -> Vec<[u32; 3]> {
-        let on = self.list.iter().filter(|f| f.surfaces.contains(&surface));
+        let on = self.of_surface(surface);
         on.flat_map(|face| raw.triangles(face.tet, face.nodes)).collect()
     }
 

@@ -7,11 +7,12 @@ use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{norm, scale, sub};
 use signorini_fem_mesh::{FacetTag, LoadDensity};
 
+use super::couplings::Spread;
 use super::faces::{FaceTable, Known};
 use super::history::{Histories, Track};
 use super::materials::sections;
 use crate::error::{DeckError, Word};
-use crate::model::{Component, Condition, Conditions, DistributedKind, Given, Target};
+use crate::model::{Components, Condition, Conditions, CouplingLaw, DistributedKind, FORCE, Given, Target};
 
 /// Most different pressures that get tags of their own. More become forces at nodes, which are the same for
 /// linear elements.
@@ -22,6 +23,15 @@ const TURNED: f64 = 1e-5;
 
 /// Loads that share a history, by its position, and their place among all.
 type Groups<T> = BTreeMap<usize, (usize, T)>;
+
+/// What a force is on.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Place {
+    /// A node of the mesh.
+    Node(u32),
+    /// A node of the deck, by position, that stands for a surface.
+    Coupling(u32),
+}
 
 /// A load of the volume: elements, what it is, and the component.
 type BodyKey = (Target, bool, usize);
@@ -94,11 +104,24 @@ impl Loads {
                 known.distributed(to, (step, order), line, surfaces, faces)?;
             }
         }
-        for (&(node, component), track) in &forces.0 {
-            if let Some((value, history)) = loads.histories.add(known.timeline, track)? {
-                let at = (node, known.raw.points[node as usize]);
-                let force = known.transforms.force(at, component, value, &track.word)?;
-                loads.force(history, track.order, node, force);
+        let mut spreads: BTreeMap<u32, Spread> = BTreeMap::new();
+        for (&(place, component), track) in &forces.0 {
+            let Some((value, history)) = loads.histories.add(known.timeline, track)? else {
+                continue;
+            };
+            match (place, known.couplings) {
+                (Place::Node(node), _) => {
+                    let at = (node, known.raw.points[node as usize]);
+                    let force = known.transforms.force(at, component, value, &track.word)?;
+                    loads.force(history, track.order, node, force);
+                }
+                (Place::Coupling(node), couplings) => {
+                    if let (false, Some(coupling)) = (spreads.contains_key(&node), couplings.of(node)) {
+                        spreads.insert(node, coupling.spread(known.sets, known.raw, faces)?);
+                    }
+                    let forces = spreads.get(&node).into_iter().flat_map(|s| s.forces(component, value));
+                    forces.for_each(|(node, force)| loads.force(history, track.order, node, force));
+                }
             }
         }
         loads.pressures(known, &pressures, faces)?;
@@ -241,9 +264,9 @@ fn one_gravity<'a>(
 impl Known<'_> {
     fn forces(
         self,
-        tracks: &mut Tracks<(u32, usize)>,
+        tracks: &mut Tracks<(Place, usize)>,
         step: usize,
-        given: &Conditions<Component>,
+        given: &Conditions<Components>,
         words: &mut Vec<Word>,
     ) -> Result<(), DeckError> {
         if given.removes() {
@@ -253,16 +276,42 @@ impl Known<'_> {
             let order = words.len();
             words.push(line.word.clone());
             for node in self.sets.nodes.find(&line.target, &line.word)? {
-                let Some(node) = self.raw.in_mesh(node) else {
-                    return Err(line.word.cannot(format!(
-                        "no elastic element uses node {}, so that a force there acts on nothing; load nodes of the body",
-                        self.model.nodes[node as usize].label
-                    )));
-                };
-                tracks.set((node, line.kind), (step, order, true), line.given, &line.word)?;
+                let place = self.place_of_force(node, line)?;
+                for component in (0..6).filter(|&c| line.kind.on[c]) {
+                    tracks.set((place, component), (step, order, true), line.given, &line.word)?;
+                }
             }
         }
         Ok(())
+    }
+
+    /// What a force at a node of the deck, by position, is on.
+    fn place_of_force(self, node: u32, line: &Condition<Components>) -> Result<Place, DeckError> {
+        let rotation = line.kind.rotation.as_ref();
+        if let Some(coupling) = self.couplings.of(node) {
+            let CouplingLaw::Distributing { moments } = coupling.law else {
+                return Err(line.word.cannot(
+                    "a surface that keeps its shape and moves under a force is not here; spread the force with \
+                    *DISTRIBUTING",
+                ));
+            };
+            return match rotation.filter(|_| (0..3).any(|c| line.kind.on[3 + c] && !moments[c])) {
+                Some(word) => {
+                    Err(word.cannot("the *DISTRIBUTING of this node does not name the component; add it there"))
+                }
+                None => Ok(Place::Coupling(node)),
+            };
+        }
+        let inside = self.raw.in_mesh(node).ok_or_else(|| {
+            let label = self.model.nodes[node as usize].label;
+            line.word.cannot(format!(
+                "no elastic element uses node {label}, so that a force there acts on nothing; load nodes of the body"
+            ))
+        })?;
+        match rotation {
+            Some(word) => Err(word.expected(FORCE)),
+            None => Ok(Place::Node(inside)),
+        }
     }
 
     fn distributed(

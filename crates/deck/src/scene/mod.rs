@@ -5,6 +5,7 @@
 //! solver is refused here, with its place. May use `model`, `lexer`, `error`.
 
 mod contacts;
+mod couplings;
 mod faces;
 mod history;
 mod loads;
@@ -53,13 +54,15 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     let bodies = rigid::RigidBodies::new(&sets)?;
     let raw = mesh::Raw::new(path, &sets, &bodies)?;
     let timeline = timeline::Timeline::new(model)?;
-    let transforms = transforms::Transforms::new(model, &sets, &bodies, &raw)?;
+    let couplings = couplings::Couplings::new(&sets, &bodies, &raw)?;
+    let transforms = transforms::Transforms::new(&sets, &bodies, &couplings, &raw)?;
     let known = faces::Known {
         model,
         sets: &sets,
         bodies: &bodies,
         raw: &raw,
         timeline: &timeline,
+        couplings: &couplings,
         transforms: &transforms,
     };
     let mut faces = faces::FaceTable::default();
@@ -72,7 +75,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     let mesh = raw.mesh(path, model, faces.facets(&tags), regions, |part| parts.name(part))?;
     let surfaces = faces.tags_of(&tags, model);
 
-    let mut supports = supports::supports(known)?;
+    let mut supports = supports::supports(known, &faces)?;
     let contacts = contacts::contacts(known, &faces, &surfaces, &supports.motions, &mut supports.ignored)?;
     let warm = temperatures::temperatures(known, &mut supports.ignored)?;
     let loads = loads.lower(&faces, &tags).into_iter().chain(warm);

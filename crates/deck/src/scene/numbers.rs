@@ -194,6 +194,14 @@ impl<'a> Sets<'a> {
         Ok(nodes)
     }
 
+    /// The position of a target that is one node.
+    pub(super) fn one_node(&self, target: &Target, word: &Word) -> Result<u32, DeckError> {
+        match self.nodes.find(target, word)?[..] {
+            [node] => Ok(node),
+            _ => Err(word.expected("one node")),
+        }
+    }
+
     /// Positions of the elements of a set.
     pub(super) fn elements_of(&self, set: &Named) -> Result<Vec<u32>, DeckError> {
         self.elements.find(&Target::Name(set.name.clone()), &set.word)

@@ -57,10 +57,7 @@ impl RigidBodies {
                     return Err(word.cannot(why));
                 }
             }
-            let node = |(target, word): &(Target, Word)| match sets.nodes.find(target, word)?[..] {
-                [node] => Ok(node),
-                _ => Err(word.expected("one node")),
-            };
+            let node = |(target, word): &(Target, Word)| sets.one_node(target, word);
             list.push(Body {
                 reference: node(&body.reference)?,
                 rotation: body.rotation.as_ref().map(node).transpose()?,

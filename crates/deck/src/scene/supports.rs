@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use signorini_contact::Support;
 
-use super::faces::Known;
+use super::faces::{FaceTable, Known};
 use super::history::{Histories, Track};
 use super::rigid::Motion;
 use crate::error::{DeckError, Word};
@@ -17,6 +17,7 @@ const SINGLE: &str = "nodes";
 type Owner = (String, Word);
 
 /// A held component of a node: the target that it is given on first, and what the steps say.
+#[derive(Clone)]
 struct Held {
     owner: usize,
     track: Track,
@@ -24,7 +25,7 @@ struct Held {
     before: bool,
 }
 
-/// Held components by node of the mesh and component, and by position of nodes of rigid bodies.
+/// Held components by node of the mesh and component, and by position of nodes of rigid bodies and couplings.
 #[derive(Default)]
 struct Table {
     held: BTreeMap<(u32, usize), Held>,
@@ -43,7 +44,7 @@ pub(super) struct Supports {
 }
 
 /// One support for each target and its moving or fixed components.
-pub(super) fn supports(known: Known) -> Result<Supports, DeckError> {
+pub(super) fn supports(known: Known, faces: &FaceTable) -> Result<Supports, DeckError> {
     let mut table = Table::default();
     for line in &known.model.supports {
         table.add(known, None, line)?;
@@ -72,6 +73,7 @@ pub(super) fn supports(known: Known) -> Result<Supports, DeckError> {
             )));
         }
     }
+    table.couple(known, faces)?;
     let rigid = std::mem::take(&mut table.rigid);
     let rigid = rigid.into_iter().map(|(key, held)| (key, held.track)).collect();
     let motions = known.bodies.motions(known.timeline, &rigid)?;
@@ -125,8 +127,13 @@ impl Table {
         let (mut found, mut turned) = (false, None);
         for node in known.sets.nodes.find(&line.target, &line.word)? {
             let (map, key, components) = match known.raw.in_mesh(node) {
-                _ if known.bodies.has(node) => (&mut self.rigid, node, 6),
+                _ if known.bodies.has(node) || known.couplings.moves(node) => (&mut self.rigid, node, 6),
                 Some(inside) => (&mut self.held, inside, 3),
+                None if known.couplings.of(node).is_some() => {
+                    let why =
+                        "a node of *DISTRIBUTING takes loads; hold the surface with *KINEMATIC, or hold its nodes";
+                    return Err(line.word.cannot(why));
+                }
                 None => continue,
             };
             found = true;
@@ -163,6 +170,47 @@ impl Table {
         if !found {
             let why = "no elastic element uses these nodes; hold nodes of the body";
             return Err(line.word.cannot(why));
+        }
+        Ok(())
+    }
+
+    /// Gives the nodes of surfaces the displacements of the nodes that stand for them.
+    fn couple(&mut self, known: Known, faces: &FaceTable) -> Result<(), DeckError> {
+        for coupling in known.couplings.0.iter().filter(|c| known.couplings.moves(c.node)) {
+            let word = &coupling.word;
+            let mut components = Vec::with_capacity(3);
+            for component in 0..6 {
+                let Some(held) = self.rigid.remove(&(coupling.node, component)) else {
+                    return Err(word.cannot(format!(
+                        "component {} (of 6, rotations are 4 to 6) of the node of this surface is free, and a \
+                        surface that keeps its shape and moves freely is not here; hold it with *BOUNDARY",
+                        component + 1
+                    )));
+                };
+                match component {
+                    0..3 => components.push(held),
+                    _ if Histories::default().add(known.timeline, &held.track)?.is_some() => {
+                        return Err(held
+                            .track
+                            .word
+                            .cannot("a surface that turns is not here; move its nodes"));
+                    }
+                    _ => {}
+                }
+            }
+            for node in coupling.nodes(known.raw, faces)?.into_keys() {
+                let label = known.raw.node_labels[node as usize];
+                if known.transforms.of(node).is_some() {
+                    let why = format!("node {label} of this surface has axes of its own; take it out of *TRANSFORM");
+                    return Err(word.cannot(why));
+                }
+                for (component, held) in components.iter().enumerate() {
+                    if self.held.insert((node, component), held.clone()).is_some() {
+                        let why = format!("node {label} of this surface is held by itself, too; keep one of them");
+                        return Err(word.cannot(why));
+                    }
+                }
+            }
         }
         Ok(())
     }

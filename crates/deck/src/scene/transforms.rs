@@ -7,11 +7,12 @@ use signorini_fem_mesh::History;
 use signorini_fem_mesh::internal::cylindrical;
 use signorini_fem_mesh::vec3::{Vec3, combine, cross, norm, scale, sub};
 
+use super::couplings::Couplings;
 use super::mesh::Raw;
 use super::numbers::Sets;
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Word};
-use crate::model::{Axes, Model, Target};
+use crate::model::{Axes, Target};
 
 /// The axes of the nodes of the mesh that have their own.
 #[derive(Debug, Default)]
@@ -21,15 +22,16 @@ pub(super) struct Transforms {
 }
 
 impl Transforms {
-    pub(super) fn new(model: &Model, sets: &Sets, bodies: &RigidBodies, raw: &Raw) -> Result<Self, DeckError> {
+    pub(super) fn new(sets: &Sets, bodies: &RigidBodies, couplings: &Couplings, raw: &Raw) -> Result<Self, DeckError> {
+        let model = sets.model;
         let mut out = Self::default();
         for (index, transform) in model.transforms.iter().enumerate() {
             let word = &transform.nset.word;
             let target = Target::Name(transform.nset.name.clone());
             for node in sets.nodes.find(&target, word)? {
                 let label = model.nodes[node as usize].label;
-                if bodies.has(node) {
-                    let why = format!("node {label} says how a rigid body moves, which is along x, y, z here");
+                if bodies.has(node) || couplings.of(node).is_some() {
+                    let why = format!("node {label} stands for a rigid body or a surface, along x, y, z here");
                     return Err(word.cannot(why));
                 }
                 let Some(inside) = raw.in_mesh(node) else { continue };

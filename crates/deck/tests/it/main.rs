@@ -1,6 +1,7 @@
 //! Decks: what they say, that it is the same as what a program says, and what is refused.
 
 mod broken;
+mod couplings;
 mod meaning;
 mod names;
 mod reading;

@@ -1,0 +1,145 @@
+//! Nodes that stand for surfaces.
+
+use signorini_contact::Scene;
+use signorini_fem_mesh::vec3::{add, area_vector, cross, dot, norm, scale, sub};
+use signorini_fem_mesh::{Brick, FacetTag, LoadDensity};
+
+use crate::refusals::behind;
+use crate::write::{STEEL, cube, mesh, read};
+
+const NODE: &str = "*NODE\n900, 3., 0.25, 2.\n";
+const HELD: &str = "*BOUNDARY\nN5, 1, 3\n";
+
+fn coupled(law: &str) -> String {
+    format!("{NODE}*COUPLING, CONSTRAINT NAME=C, REF NODE=900, SURFACE=S6\n{law}\n")
+}
+
+fn step(lines: &str) -> String {
+    format!("*STEP\n*STATIC\n{lines}*END STEP\n")
+}
+
+fn scene(deck: &str) -> Scene {
+    read(deck).expect("deck").scene().expect("scene")
+}
+
+/// Forces at nodes have the force and, about the node, the moment that is given there; each is its share of the area
+/// times a field that grows linearly.
+#[test]
+fn loads_are_spread() {
+    let linear = Brick::new([1.0; 3], [3, 2, 2]).build().expect("a brick");
+    for brick in [linear.raise_order().expect("quadratic"), linear] {
+        let loads = step("*CLOAD\n900, 1, 6.\n900, 3, -2.\n900, 4, 5.\n900, 6, 7.\n");
+        let law = coupled("*DISTRIBUTING, COUPLING=CONTINUUM, WEIGHTING METHOD=UNIFORM\n1, 3\n4, 6");
+        let scene = scene(&format!("{}{STEEL}{law}{HELD}{loads}", mesh(&brick)));
+        let [load] = scene.loads() else {
+            panic!("{:?}", scene.loads());
+        };
+        let Some(LoadDensity::NodalForces(forces)) = load.density() else {
+            panic!("{load:?}");
+        };
+        let (mut force, mut moment) = ([0.0; 3], [0.0; 3]);
+        for &(node, f) in forces {
+            let x = brick.points()[node as usize];
+            assert_eq!(x[2], 1.0);
+            force = add(force, f);
+            moment = add(moment, cross(sub(x, [3.0, 0.25, 2.0]), f));
+        }
+        for (found, given) in [(force, [6.0, 0.0, -2.0]), (moment, [5.0, 0.0, 7.0])] {
+            assert!(
+                (0..3).all(|c| (found[c] - given[c]).abs() < 1e-13 * 20.0),
+                "{found:?} {given:?}"
+            );
+        }
+        if brick.order() == 1 {
+            let share = |node: u32| {
+                let on = brick.facets().iter().enumerate();
+                let on = on.filter(|(_, f)| f.tag == FacetTag(6) && f.nodes.contains(&node));
+                on.map(|(f, _)| norm(area_vector(&brick.facet_points(f)))).sum::<f64>() / 3.0
+            };
+            let field = |&(node, f): &(u32, [f64; 3])| (brick.points()[node as usize], scale(1.0 / share(node), f));
+            let field: Vec<_> = forces.iter().map(field).collect();
+            // as displacements it would strain nothing
+            for (x, f) in &field {
+                let (y, g) = field[0];
+                assert!(dot(sub(*x, y), sub(*f, g)).abs() < 1e-10, "{field:?}");
+            }
+        }
+    }
+}
+
+/// A surface that has the displacement of a node is a support of its nodes.
+#[test]
+fn displacements_are_those_of_the_node() {
+    let moves = "900, 3, 3, -0.1\n900, 1, 2\n900, 4, 6\n";
+    let coupled = scene(&cube(&format!(
+        "{}{HELD}{}",
+        coupled("*KINEMATIC\n1, 3"),
+        step(&format!("*BOUNDARY\n{moves}"))
+    )));
+    let direct = scene(&cube(&format!(
+        "{HELD}{}",
+        step("*BOUNDARY\nN6, 3, 3, -0.1\nN6, 1, 2\n")
+    )));
+    assert_eq!(coupled.supports().len(), direct.supports().len());
+    for (a, b) in coupled.supports().iter().zip(direct.supports()) {
+        let moves = a.motion().map(|m| (m.0, m.1.value(1.0)));
+        assert_eq!(moves, b.motion().map(|m| (m.0, m.1.value(1.0))));
+        assert_eq!((a.place(), a.directions()), (b.place(), b.directions()));
+    }
+}
+
+#[test]
+fn what_is_refused() {
+    let refused = |law: &str, rest: &str, line: &str, word: &str, part: &str| {
+        behind(&format!("{}{rest}", coupled(law)), line, word, part);
+    };
+    let card = "*COUPLING, CONSTRAINT NAME=C, REF NODE=900, SURFACE=S6";
+    let idle = step("");
+    refused("**", &format!("{HELD}{idle}"), card, "*COUPLING", "put *DISTRIBUTING");
+    behind("*KINEMATIC\n", "*KINEMATIC", "*KINEMATIC", "put *COUPLING before");
+    let other = "*DISTRIBUTING, WEIGHTING METHOD=LINEAR";
+    refused(other, &idle, other, "WEIGHTING METHOD=LINEAR", "by area");
+    refused("*KINEMATIC\n1, 2", &idle, "1, 2", "1, 2", "give 1 to 3");
+    refused("*DISTRIBUTING\n4, 7", &idle, "4, 7", "4, 7", "1 to 6");
+    let free = format!("{HELD}*BOUNDARY\n900, 1, 3\n{idle}");
+    refused("*KINEMATIC\n1, 3", &free, card, "SURFACE=S6", "component 4");
+    let turned = step("*BOUNDARY\n900, 1, 5\n900, 6, 6, 0.1\n");
+    refused(
+        "*KINEMATIC",
+        &format!("{HELD}{turned}"),
+        "900, 6, 6, 0.1",
+        "900",
+        "turns",
+    );
+    let twice = format!("{HELD}*BOUNDARY\n900, 1, 6\n27, 1\n{idle}");
+    refused("*KINEMATIC", &twice, card, "SURFACE=S6", "keep one");
+    let pushed = format!("{HELD}*BOUNDARY\n900, 1, 6\n{}", step("*CLOAD\n900, 1, 1.\n"));
+    refused("*KINEMATIC", &pushed, "900, 1, 1.", "900", "spread the force");
+    let held = format!("{HELD}*BOUNDARY\n900, 1, 6\n{idle}");
+    refused("*DISTRIBUTING", &held, "900, 1, 6", "900", "takes loads");
+    let moment = format!("{HELD}{}", step("*CLOAD\n900, 5, 1.\n"));
+    refused("*DISTRIBUTING\n4, 4", &moment, "900, 5, 1.", "5", "does not name");
+    let axes = format!("*NSET, NSET=R\n900\n*TRANSFORM, NSET=R\n0., 1., 0., -1., 0., 0.\n{HELD}{idle}");
+    refused("*DISTRIBUTING", &axes, "*TRANSFORM, NSET=R", "NSET=R", "along x, y, z");
+    let own = "*COUPLING, REF NODE=27, SURFACE=S6";
+    behind(
+        &format!("{own}\n*DISTRIBUTING\n{HELD}{idle}"),
+        own,
+        "REF NODE=27",
+        "a node of its own",
+    );
+    let unknown = "*COUPLING, REF NODE=900, SURFACE=NIX";
+    behind(
+        &format!("{NODE}{unknown}\n*DISTRIBUTING\n{HELD}{idle}"),
+        unknown,
+        "SURFACE=NIX",
+        "there are: S1",
+    );
+    let oriented = "*COUPLING, REF NODE=900, SURFACE=S6, ORIENTATION=O";
+    behind(
+        &format!("{NODE}{oriented}\n"),
+        oriented,
+        "ORIENTATION=O",
+        "along x, y, z",
+    );
+}
