@@ -1,6 +1,6 @@
 //! Nodes that stand for surfaces.
 
-use signorini_contact::Scene;
+use signorini_contact::{Scene, Settings, Simulation};
 use signorini_fem_mesh::vec3::{add, area_vector, cross, dot, norm, scale, sub};
 use signorini_fem_mesh::{Brick, FacetTag, LoadDensity};
 
@@ -142,4 +142,33 @@ fn what_is_refused() {
         "ORIENTATION=O",
         "along x, y, z",
     );
+}
+
+/// Displacements of the end of a bar that is pushed, bent and turned at a node beside it, as CalculiX 2.20 prints them.
+#[test]
+fn a_bar_is_bent_as_by_calculix() {
+    let bar = Brick::new([4.0, 1.0, 1.0], [8, 2, 2]).build().expect("a bar");
+    let bar = bar.raise_order().expect("quadratic");
+    let law = coupled("*DISTRIBUTING\n1, 6")
+        .replace("S6", "S2")
+        .replace("3., 0.25, 2.", "5., 0.7, 0.2");
+    let loads = step("*CLOAD\n900, 2, 10.\n900, 4, 500.\n900, 6, 30.\n*NODE PRINT, NSET=N2\nU\n");
+    let deck = format!("{}{STEEL}{law}*BOUNDARY\nN1, 1, 3\n{loads}", mesh(&bar));
+    let mut simulation = Simulation::new(scene(&deck), Settings::default()).expect("simulation");
+    let result = simulation.step().expect("solved");
+    let displacement = result.displacement();
+    let printed = [
+        ([4.0, 0.0, 0.0], [6.716358e-3, 1.156115e-1, -8.505917e-2]),
+        ([4.0, 1.0, 0.0], [-6.716358e-3, 1.156115e-1, 8.505917e-2]),
+        ([4.0, 0.0, 1.0], [6.716358e-3, -5.483547e-2, -8.538779e-2]),
+        ([4.0, 0.5, 0.5], [0.0, 3.039348e-2, 0.0]),
+    ];
+    for (place, expected) in printed {
+        let node = bar.points().iter().position(|x| *x == place).expect("a node");
+        let found = displacement[node];
+        assert!(
+            (0..3).all(|c| (found[c] - expected[c]).abs() < 1e-7),
+            "{place:?} {found:?} {expected:?}"
+        );
+    }
 }
