@@ -269,6 +269,10 @@ pub(crate) const LEAST_SHARE: f64 = 0.25;
 /// Displacement over the longest side of the box around the body from which on it is not small.
 pub(crate) const LARGE_DISPLACEMENT: f64 = 0.1;
 
+/// Rotation of a body, radians, from which on it is not small: forces keep directions that turn by it, and lengths err by
+/// half its square. A shaft of 60 cells around rolls so far until the next nodes touch.
+pub(crate) const LARGE_TURN: f64 = 0.05;
+
 /// Strain from which on it is not small: what is left out is its square, 0.25 %, and more where bodies turn.
 pub(crate) const LARGE_STRAIN: f64 = 0.05;
 

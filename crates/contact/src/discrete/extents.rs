@@ -57,6 +57,16 @@ impl Extents {
         })
     }
 
+    /// How many bodies there are.
+    pub(crate) fn bodies(&self) -> usize {
+        self.extents.len()
+    }
+
+    /// The body of a node.
+    pub(crate) fn body(&self, node: usize) -> usize {
+        self.body[node] as usize
+    }
+
     /// Longest side of the box around the body of a node, m.
     pub(crate) fn at(&self, node: u32) -> f64 {
         self.extents[self.body[node as usize] as usize]

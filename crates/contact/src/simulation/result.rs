@@ -86,8 +86,8 @@ impl StepResult {
         &self.recovered.certificate
     }
 
-    /// Warnings about this result, each kind at its worst place: large displacements, strains and slips. Computed on
-    /// demand; a [run](crate::Simulation::run) does so at every step.
+    /// Warnings about this result, each kind at its worst place: large displacements, rotations, strains and slips.
+    /// Computed on demand; a [run](crate::Simulation::run) does so at every step.
     pub fn warnings(&self) -> Vec<Warning> {
         self.warnings_but(&[])
     }

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 const YOUNG: f64 = 1e3;
 
 /// A ring about the z axis from a brick of radius, angle and height, closed where its ends meet.
-fn ring(radii: [f64; 2], cells: [usize; 3], phase: f64, order: usize) -> TetMesh {
+pub(crate) fn ring(radii: [f64; 2], cells: [usize; 3], phase: f64, order: usize) -> TetMesh {
     let mesh = block([1.0; 3], cells);
     let mesh = match order {
         2 => mesh.raise_order().expect("order 2"),
