@@ -137,6 +137,9 @@ pub struct StepFailure {
     pub condition: &'static str,
     /// Which body slides away, where that is how it ended.
     pub slide: Option<Slide>,
+    /// Length over thickness of the longest subdomain in contact, if it is so long that it keeps the solver from the
+    /// end.
+    pub slender: Option<f64>,
 }
 
 impl fmt::Display for StepFailure {
@@ -148,6 +151,7 @@ impl fmt::Display for StepFailure {
             certificate,
             condition,
             slide,
+            slender,
         } = self;
         write!(
             f,
@@ -157,6 +161,12 @@ impl fmt::Display for StepFailure {
             write!(
                 f,
                 "body {body} (with node {node}) slides away along {slide}, for want of {force:.3e} N; "
+            )?;
+        }
+        if let Some(slender) = slender {
+            write!(
+                f,
+                "a subdomain in contact is {slender:.0} times as long as thick: cut finer (Scene::with_subdomains), or "
             )?;
         }
         f.write_str(status.remedy())
