@@ -135,8 +135,11 @@ pub struct StepFailure {
     pub certificate: f64,
     /// The condition of the certificate that is violated so.
     pub condition: &'static str,
-    /// Which body slides away, where that is how it ended.
+    /// Which body slides away, where that is how it ended, or may at a limit of iterations.
     pub slide: Option<Slide>,
+    /// Length over thickness of the longest subdomain in contact, if it is so long that it keeps the solver from the
+    /// end.
+    pub slender: Option<f64>,
 }
 
 impl fmt::Display for StepFailure {
@@ -148,15 +151,26 @@ impl fmt::Display for StepFailure {
             certificate,
             condition,
             slide,
+            slender,
         } = self;
         write!(
             f,
             "step {step}, at {time} s, did not converge ({status}, certificate {certificate:.1e}, {condition}); "
         )?;
         if let Some(slide @ Slide { body, node, force, .. }) = slide {
+            let [away, remedy] = match *status == StepStatus::NotHeld {
+                true => ["slides away", ""],
+                false => ["may slide away", "press it more, or hold it by a support; else "],
+            };
             write!(
                 f,
-                "body {body} (with node {node}) slides away along {slide}, for want of {force:.3e} N; "
+                "body {body} (with node {node}) {away} along {slide}, for want of {force:.3e} N; {remedy}"
+            )?;
+        }
+        if let Some(slender) = slender {
+            write!(
+                f,
+                "a subdomain in contact is {slender:.0} times as long as thick: cut finer (Scene::with_subdomains), or "
             )?;
         }
         f.write_str(status.remedy())

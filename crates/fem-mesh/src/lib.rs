@@ -114,7 +114,7 @@ pub use mesh::{Facet, FacetTag, MeshError, Surface, SurfaceError, SurfaceFrame, 
 pub mod internal {
     pub use crate::element::shape_gradients;
     pub use crate::loads::interpolate;
-    pub use crate::mesh::{EDGES, cylindrical, facet_shape, tag_list};
+    pub use crate::mesh::{EDGES, cylindrical, facet_normals, facet_shape, tag_list};
     pub use crate::quadrature::triangle;
     pub use crate::tables::{DisjointSets, Lists, distinct};
 }

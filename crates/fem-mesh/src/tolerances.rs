@@ -63,6 +63,8 @@ pub(crate) const TABLES: usize = 16;
 
 // Means on surfaces
 
+/// Sine of the angles between the normals of a facet below which it is plane: files have nine digits.
+pub(crate) const PLANE_FACET: f64 = 1e-9;
 /// Weight of a node in a mean that counts as none.
 pub(crate) const NO_WEIGHT: f64 = 1e-13;
 

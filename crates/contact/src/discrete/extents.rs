@@ -2,7 +2,9 @@
 
 use rstar::{AABB, Envelope};
 use signorini_fem_mesh::internal::DisjointSets;
+use signorini_fem_mesh::vec3::{area_vector, norm, tet_volume};
 use signorini_fem_mesh::{Decomposition, TetMesh};
+use std::collections::BTreeSet;
 
 /// The size of each body of a mesh.
 #[derive(Debug)]
@@ -48,6 +50,29 @@ impl Extents {
         }
     }
 
+    /// The length of the longest subdomain with one of some nodes over its thickness: the longest side of the box around
+    /// it, and its hydraulic diameter, four times volume over surface.
+    pub(crate) fn slenderness(mesh: &TetMesh, decomposition: &Decomposition, nodes: impl Iterator<Item = u32>) -> f64 {
+        let parts = decomposition.parts();
+        let mut sizes = vec![[0.0; 2]; decomposition.subdomains().len()];
+        for (tet, &part) in parts.iter().enumerate() {
+            let (corners, [volume, surface]) = (mesh.tet_points(tet), &mut sizes[part as usize]);
+            *volume += tet_volume(&corners);
+            for (face, other) in mesh.neighbours(tet).into_iter().enumerate() {
+                if other.is_none_or(|other| parts[other] != part) {
+                    *surface += norm(area_vector(&[1, 2, 3].map(|k| corners[(face + k) % 4])));
+                }
+            }
+        }
+        let copies = nodes.flat_map(|node| decomposition.copies(node as usize));
+        let touched: BTreeSet<u32> = copies.map(|copy| copy.subdomain).collect();
+        let slenderness = touched.into_iter().map(|part| {
+            let ([volume, surface], part) = (sizes[part as usize], &decomposition.subdomains()[part as usize]);
+            longest(&around(mesh, &part.nodes)) * surface / (4.0 * volume)
+        });
+        slenderness.fold(0.0, f64::max)
+    }
+
     /// Longest side of the box around a subdomain of a node, m: no more than that of its body.
     pub(crate) fn of_part(mesh: &TetMesh, decomposition: &Decomposition, node: u32) -> f64 {
         let copy = decomposition.copies(node as usize).first();
@@ -55,6 +80,16 @@ impl Extents {
             let subdomain = &decomposition.subdomains()[copy.subdomain as usize];
             longest(&around(mesh, &subdomain.nodes))
         })
+    }
+
+    /// How many bodies there are.
+    pub(crate) fn bodies(&self) -> usize {
+        self.extents.len()
+    }
+
+    /// The body of a node.
+    pub(crate) fn body(&self, node: usize) -> usize {
+        self.body[node] as usize
     }
 
     /// Longest side of the box around the body of a node, m.
@@ -67,6 +102,18 @@ impl Extents {
 mod tests {
     use super::*;
     use signorini_fem_mesh::Brick;
+
+    /// Length a, width and thickness t: four times volume over surface is a t / (a + t / 2).
+    #[test]
+    fn parts_are_as_long_as_they_are_cut() {
+        let thin = Brick::new([0.5, 12.0, 0.5], [1, 24, 1]).build().expect("brick");
+        for cuts in [1, 3, 12] {
+            let cut = Decomposition::boxes(&thin, [1, cuts, 1]).expect("boxes");
+            let found = Extents::slenderness(&thin, &cut, [0].into_iter());
+            let long = 12.0 / cuts as f64;
+            assert!((found - (long + 0.25) / 0.5).abs() < 1e-9, "{cuts}: {found}");
+        }
+    }
 
     /// However bodies are cut, and wherever a cut runs.
     #[test]

@@ -3,6 +3,7 @@
 use super::search::{covers, in_order};
 use crate::tolerances::{COVERED, NO_WEIGHT};
 use rayon::prelude::*;
+use signorini_fem_mesh::vec3::{add, scale};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use std::collections::BTreeMap;
 
@@ -18,7 +19,8 @@ pub(crate) struct MortarNode {
     pub(crate) way: f64,
     /// Integral of the dual shape function of the node over what is covered: `D_jj`, m².
     pub(crate) area: f64,
-    /// Normal of the covered facets, out of the first side, and tangents.
+    /// Normal of the covered facets, out of the first side, and tangents: of curved ones the mean that displacements of its
+    /// side have.
     pub(crate) frame: SurfaceFrame,
 }
 
@@ -39,6 +41,10 @@ pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface, t
             }
         }
     }
+    let curved = triangles.par_iter().zip(&covers);
+    let curved: Vec<_> = curved
+        .map(|(triangle, cover)| cover.as_ref().and_then(|_| triangle.normals(mesh)))
+        .collect();
     let is_tip = |node: u32| other.local(node).is_some();
     let node = |(local, facets): (usize, &Vec<(u32, u8)>)| {
         let own = surface.nodes()[local];
@@ -60,7 +66,15 @@ pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface, t
             };
             area += share(&cover.areas);
             way += share(&cover.ways);
-            (0..3).for_each(|c| normal[c] += cover.area * direction[c]);
+            match &curved[facet as usize] {
+                None => normal = add(normal, scale(cover.area, *direction)),
+                // the mean that displacements have; three times, as plane facets count whole
+                Some(normals) => {
+                    for ((_, weight), n) in cover.own.iter().zip(normals) {
+                        normal = add(normal, scale(3.0 * share(weight), *n));
+                    }
+                }
+            }
             for (node, weight) in &cover.weights {
                 *weights.entry(*node).or_insert(0.0) += share(weight);
             }

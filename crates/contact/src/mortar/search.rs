@@ -5,7 +5,7 @@ use crate::tolerances::{BENT, FACING};
 use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
-use signorini_fem_mesh::internal::shape_gradients;
+use signorini_fem_mesh::internal::{facet_normals, shape_gradients};
 use signorini_fem_mesh::vec3::{add, area_vector, centroid, dot, norm, scale, sub};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 
@@ -34,6 +34,11 @@ impl Triangle {
     fn quadratic(&self) -> Option<[u32; 6]> {
         let ([a, b, c], [ab, bc, ca]) = (self.nodes, self.mids?);
         Some([a, b, c, ab, bc, ca])
+    }
+
+    /// Its normals at all nodes in a mesh of order 2; `None` if it is plane.
+    pub(super) fn normals(&self, mesh: &TetMesh) -> Option<[[f64; 3]; 6]> {
+        facet_normals(&self.quadratic()?.map(|n| mesh.points()[n as usize]))
     }
 
     /// Itself in its own plane.

@@ -14,11 +14,12 @@ signorini_fem_mesh::errors! {
     /// [has names](crate::Scene::with_names), warnings about its [parts](Self::parts) are `Named` and contain the
     /// [plain](Self::plain) one.
     ///
-    /// The thresholds are a tenth of the body for displacements, 5 % for strains, an edge of a facet for slips, 0.1 for
-    /// the turn of normals, the body for gaps, a tenth of an overlap for the distance of facets from their curve, 3 for
-    /// coefficients, 0.45 for Poisson's ratios of linear tetrahedra and 10 % for the error of the mesh. A body is as long
-    /// as the longest side of the box around it. Strain is measured per tetrahedron by the Frobenius norm; at clamped
-    /// edges the strain of linear theory grows without bound as the mesh is refined.
+    /// The thresholds are a tenth of the body for displacements, 0.05 for its rotation, 5 % for strains, an edge of a
+    /// facet for slips, 0.1 for the turn of normals, the body for gaps, a tenth of an overlap for the distance of facets
+    /// from their curve, 3 for coefficients, 0.45 for Poisson's ratios of linear tetrahedra and 10 % for the error of the
+    /// mesh. A body is as long as the longest side of the box around it; its rotation is that which fits the displacements
+    /// of its nodes best. Strain is measured per tetrahedron by the Frobenius norm; at clamped edges the strain of linear
+    /// theory grows without bound as the mesh is refined.
     ///
     /// Fields: `step` from 0; `node`, `tet`, `contact` and `region` are numbers in mesh and scene; `place` and lengths
     /// in m (of a tetrahedron its centroid), `turn` in degrees, other figures relative. `extent` is the length of the
@@ -30,6 +31,10 @@ signorini_fem_mesh::errors! {
             "step {step}: the displacement of node {node} at {} is {displacement:.3e}, the body is {extent:.3e} long; \
             displacements count as small here, so from a tenth of the body on shapes and forces are wrong: look at the \
             units of loads, material and gaps, and at the supports", at(place);
+        LargeRotation { step: usize, node: u32, place: [f64; 3], turn: f64 } =
+            "step {step}: the body of node {node} at {} turns by {turn:.1} degrees; rotations count as small here, so that \
+            normals, places of contact and lengths are those of the start: support the body against it, or reduce the \
+            loads or motions that turn it", at(place);
         LargeStrain { step: usize, tet: usize, place: [f64; 3], strain: f64 } =
             "step {step}: the strain of tetrahedron {tet} at {} is {:.1} %; strains count as small here, up to 5 %: \
             look at the units of loads and material; where it is a corner or a clamped edge alone, its neighbourhood is \
@@ -79,7 +84,9 @@ impl Warning {
     /// The parts of the scene that it speaks of.
     pub fn parts(&self) -> Vec<Part> {
         match self.plain() {
-            Self::LargeDisplacement { step, node, .. } => vec![Part::Step(*step), Part::Node(*node)],
+            Self::LargeDisplacement { step, node, .. } | Self::LargeRotation { step, node, .. } => {
+                vec![Part::Step(*step), Part::Node(*node)]
+            }
             Self::LargeStrain { step, tet, .. } | Self::CoarseMesh { step, tet, .. } => {
                 vec![Part::Step(*step), Part::Tet(*tet)]
             }

@@ -9,8 +9,9 @@ use crate::model::Model;
 use crate::report::Warning;
 use crate::scene::ContactNormal;
 use crate::step::StepProblem;
-use crate::tolerances::{COARSE_MESH, LARGE_DISPLACEMENT, LARGE_STRAIN, LONG_SLIP, REST, RIGID, TURN};
+use crate::tolerances::{COARSE_MESH, LARGE_DISPLACEMENT, LARGE_STRAIN, LARGE_TURN, LONG_SLIP, REST, RIGID, TURN};
 use crate::vec3::norm;
+use nalgebra::{Matrix3, Vector3};
 use signorini_fem_mesh::recovery::DiscretisationError;
 use signorini_fem_mesh::vec3::centroid;
 use signorini_fem_mesh::{Element, TetMesh, fields};
@@ -23,6 +24,8 @@ pub(crate) struct Lengths {
     thinnest: f64,
     /// Longest edge at each node of each contact surface, m.
     edges: Vec<Vec<f64>>,
+    /// Centre of the nodes of each body, m, and the inverse of their moments of inertia about it.
+    inertia: Vec<(Vector3<f64>, Matrix3<f64>)>,
 }
 
 impl Lengths {
@@ -45,12 +48,32 @@ impl Lengths {
             }
             longest
         });
+        let extents = Extents::new(mesh, &model.discrete.decomposition);
         Self {
-            extents: Extents::new(mesh, &model.discrete.decomposition),
+            inertia: inertia(mesh, &extents),
+            extents,
             thinnest: 1.0 / steepest,
             edges: edges.collect(),
         }
     }
+}
+
+/// Centre and inverse inertia of the nodes of each body, all of one weight.
+fn inertia(mesh: &TetMesh, extents: &Extents) -> Vec<(Vector3<f64>, Matrix3<f64>)> {
+    let mut sums = vec![(0.0, Vector3::zeros()); extents.bodies()];
+    let places = || (mesh.points().iter().enumerate()).map(|(node, x)| (extents.body(node), Vector3::from(*x)));
+    for (body, x) in places() {
+        sums[body].0 += 1.0;
+        sums[body].1 += x;
+    }
+    let mut out: Vec<_> = sums.into_iter().map(|(n, sum)| (sum / n, Matrix3::zeros())).collect();
+    for (body, x) in places() {
+        let across = (x - out[body].0).cross_matrix();
+        out[body].1 -= across * across;
+    }
+    out.iter_mut()
+        .for_each(|(_, inertia)| *inertia = inertia.try_inverse().unwrap_or_else(Matrix3::zeros));
+    out
 }
 
 /// What the result of a step is warned of, each kind at its worst place, without those that are `known`. A pass over
@@ -70,6 +93,9 @@ pub(crate) fn warnings(
         .any(|w| matches!(w.plain(), Warning::LargeDisplacement { .. }))
     {
         out.extend(large_displacement(mesh, lengths, &u, step));
+    }
+    if !known.iter().any(|w| matches!(w.plain(), Warning::LargeRotation { .. })) {
+        out.extend(large_rotation(mesh, lengths, &u, step));
     }
     if !known.iter().any(|w| matches!(w.plain(), Warning::LargeStrain { .. })) {
         out.extend(large_strain(mesh, lengths, &u, step));
@@ -99,6 +125,30 @@ fn large_displacement(mesh: &TetMesh, lengths: &Lengths, u: &[f64], step: usize)
         place: mesh.points()[node],
         displacement: norm(&u[3 * node..3 * node + 3]),
         extent: lengths.extents.at(node as u32),
+    })
+}
+
+/// The rotation of a body is that which fits the displacements of its nodes best.
+fn large_rotation(mesh: &TetMesh, lengths: &Lengths, u: &[f64], step: usize) -> Option<Warning> {
+    let mut moments = vec![Vector3::zeros(); lengths.inertia.len()];
+    let nodes = || (mesh.points().iter().zip(u.chunks_exact(3))).enumerate();
+    for (node, (x, u)) in nodes() {
+        let body = lengths.extents.body(node);
+        moments[body] += (Vector3::from(*x) - lengths.inertia[body].0).cross(&Vector3::from_column_slice(u));
+    }
+    let turns = moments.iter().zip(&lengths.inertia);
+    let turns = turns.map(|(moment, (_, inverse))| (inverse * moment).norm());
+    let (body, turn) = worst(turns.enumerate())?;
+    if turn <= LARGE_TURN {
+        return None;
+    }
+    let moved = nodes().filter(|(node, _)| lengths.extents.body(*node) == body);
+    let (node, _) = worst(moved.map(|(node, (_, u))| (node, norm(u))))?;
+    Some(Warning::LargeRotation {
+        step,
+        node: node as u32,
+        place: mesh.points()[node],
+        turn: turn.to_degrees(),
     })
 }
 

@@ -1,5 +1,6 @@
 //! The result of a step: displacement, contact forces and states, and fields that are computed when asked for.
 
+use crate::discrete::Extents;
 use crate::error::ContactError;
 use crate::estimate::{Caches, Solved};
 use crate::model::Model;
@@ -10,8 +11,9 @@ use crate::result::{
     nodal_reactions, points_at_nodes, reactions_about, tied_forces, warnings,
 };
 use crate::scene::{LoadKind, Scene};
-use crate::status::StepFailure;
+use crate::status::{StepFailure, StepStatus};
 use crate::step::StepProblem;
+use crate::tolerances::SLENDER;
 use signorini_fem_mesh::recovery::{DiscretisationError, StrainRecovery};
 use signorini_fem_mesh::{Decomposition, Materials, Surface, fields};
 use std::borrow::Cow;
@@ -69,7 +71,20 @@ impl StepResult {
             certificate: self.recovered.certificate.largest(),
             condition: self.recovered.certificate.worst().0,
             slide: self.report.slide,
+            slender: self.slender(),
         })
+    }
+
+    /// That of [`StepFailure::slender`].
+    fn slender(&self) -> Option<f64> {
+        let ended = matches!(
+            self.report.status,
+            StepStatus::IterationLimit | StepStatus::Stagnated | StepStatus::NotHeld
+        );
+        let (mesh, discrete) = (&self.model.scene.mesh, &self.model.discrete);
+        let nodes = discrete.points.iter().flat_map(|p| p.sides.nodes()).map(|n| n.0);
+        let found = ended.then(|| Extents::slenderness(mesh, &discrete.decomposition, nodes));
+        found.filter(|slender| *slender > SLENDER)
     }
 
     /// An error unless this step converged, and the earlier ones on whose displacement it depends.
@@ -86,8 +101,8 @@ impl StepResult {
         &self.recovered.certificate
     }
 
-    /// Warnings about this result, each kind at its worst place: large displacements, strains and slips. Computed on
-    /// demand; a [run](crate::Simulation::run) does so at every step.
+    /// Warnings about this result, each kind at its worst place: large displacements, rotations, strains and slips.
+    /// Computed on demand; a [run](crate::Simulation::run) does so at every step.
     pub fn warnings(&self) -> Vec<Warning> {
         self.warnings_but(&[])
     }

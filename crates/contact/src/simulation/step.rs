@@ -103,7 +103,9 @@ impl Simulation {
             (report, recovered) = (report.resumed(next), again);
         }
         let (model, problem) = (&self.model, &self.problem);
-        if report.status == StepStatus::NotHeld {
+        let certificate = &recovered.certificate;
+        let unbalanced = certificate.equilibrium.relative() >= certificate.largest();
+        if report.status == StepStatus::NotHeld || report.status == StepStatus::IterationLimit && unbalanced {
             report.slide = slides(model, &problem.rhs, &problem.multipliers(&self.iterate.lambda))?;
         }
         let before: Vec<f64> = (0..model.tangential_rows()).map(|k| state.traces(k).0).collect();

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 const YOUNG: f64 = 1e3;
 
 /// A ring about the z axis from a brick of radius, angle and height, closed where its ends meet.
-fn ring(radii: [f64; 2], cells: [usize; 3], phase: f64, order: usize) -> TetMesh {
+pub(crate) fn ring(radii: [f64; 2], cells: [usize; 3], phase: f64, order: usize) -> TetMesh {
     let mesh = block([1.0; 3], cells);
     let mesh = match order {
         2 => mesh.raise_order().expect("order 2"),
@@ -333,4 +333,72 @@ fn overlaps_of_facets_are_no_interference() {
         assert_eq!(plan([12, 20], order, false, 0.4, false), []);
     }
     assert_eq!(plan([12, 20], 2, true, 0.02, false), []);
+}
+
+/// A shoe on a shaft, with mid-nodes on the circle.
+fn shoe([inside, outside]: [usize; 2]) -> TetMesh {
+    let shoe = block([1.0; 3], [1, outside, 2]).raise_order().expect("order 2");
+    let place = |[x, y, z]: [f64; 3]| {
+        let (radius, angle) = (10.0 + 3.0 * x, 0.1 + 1.2 * y);
+        [radius * angle.cos(), radius * angle.sin(), 8.0 * z]
+    };
+    let shoe = shoe.map_points(place).expect("shoe");
+    with_second(&ring([4.0, 10.0], [1, inside, 2], 0.0, 2), &shoe)
+}
+
+/// What slides without friction has no moment about the axis that it slides about, wherever it is pressed. With the
+/// normals of whole facets 1.2 to 2.3 % of force times radius were left, for friction a false torque of a tenth.
+#[test]
+fn normal_forces_of_quadratic_sides_have_no_moment_about_their_axis() {
+    for (cells, most) in [([24, 4], 1e-4), ([18, 6], 1e-4), ([12, 3], 5e-4), ([24, 8], 1e-4)] {
+        for angle in [0.1_f64, 1.3] {
+            let way = [-0.05 * angle.cos(), -0.05 * angle.sin(), 0.0];
+            let pushed = Support::fixed(second(brick::X_MAX)).with_motion(way, History::constant(1.0));
+            let scene = Scene::new(shoe(cells), uniform(YOUNG, 0.3))
+                .with_support(Support::fixed(brick::X_MIN))
+                .with_support(pushed)
+                .with_contact(Contact::between(second(brick::X_MIN), brick::X_MAX).with_gap(0.0));
+            let mut simulation = Simulation::new(scene, tight()).expect("set-up");
+            let result = simulation.step().expect("step");
+            let (moment, size) = (
+                result.reactions().contacts[0].moment[2],
+                10.0 * result.summary().normal_force,
+            );
+            let products = result.report().counters.products;
+            let what = format!("{cells:?}, {angle}: {:.1e}, {products} products", moment / size);
+            assert!(result.report().status.converged() && products < 80, "{what}");
+            assert!(moment.abs() < most * size, "{what}");
+        }
+    }
+}
+
+/// A sleeve holds a torque that its traction of 0.19637 gives. From 0.16 % above on it is not held; nearer by, what is
+/// missing is less than what longer solves may find, and their limit was all that was told.
+#[test]
+fn what_may_slide_is_told_at_the_limit() {
+    let turned = |traction: f64| {
+        let around = move |x: [f64; 3], _: [f64; 3]| [-x[1], x[0], 0.0].map(|c| traction / 14.0 * c);
+        let fit = Contact::between(brick::X_MAX, second(brick::X_MIN)).with_friction(Friction::coulomb(0.3));
+        let scene = Scene::new(shaft([12, 12], 2), uniform(YOUNG, 0.3))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_support(Support::components(second(brick::Z_MIN), [false, false, true]))
+            .with_load(Load::new(LoadDensity::traction_field(second(brick::X_MAX), around)))
+            .with_contact(fit.with_gap(-0.05));
+        let settings = Settings::default().with_max_fallback_products(3000);
+        let mut simulation = Simulation::new(scene, settings).expect("set-up");
+        let result = simulation.step().expect("step");
+        (result.failure(), result.reactions().loads.moment[2])
+    };
+    let (held, torque) = turned(0.196);
+    assert!(held.is_none(), "{held:?}");
+    let failure = turned(0.1966).0.expect("beyond friction");
+    let slide = failure.slide.expect("a body");
+    // 0.12 % of the torque at the radius of the contact
+    assert!(failure.status == StepStatus::IterationLimit, "{failure}");
+    assert!((1e-4..1e-2).contains(&(10.0 * slide.force / torque)), "{failure}");
+    assert!(slide.body == 1 && slide.rotation[2].abs() > 0.99, "{failure}");
+    assert!(
+        failure.to_string().contains("may slide away along its rotation"),
+        "{failure}"
+    );
 }

@@ -1,6 +1,7 @@
 //! What is allowed but hardly meant is said once, with figure, place and remedy, and nothing of it changes a result.
 
 use crate::common::*;
+use crate::curved_sides::ring;
 use signorini_fem_mesh::Eigenstrain;
 use std::mem::discriminant;
 
@@ -185,6 +186,59 @@ fn bodies_are_measured_by_themselves() {
         panic!("{warnings:?}");
     };
     assert!(mesh.points()[node as usize][2] >= 5.0 && extent == 0.5 && (displacement - 0.06).abs() < 1e-6);
+}
+
+/// A shaft in a vee that turns past its torque until the next nodes touch: 32 cells around, so half of one is 5.6 degrees.
+#[test]
+fn bodies_that_turn_far_are_named() {
+    let shaft = |torque: f64| {
+        let scene = Scene::new(ring([2.0, 10.0], [2, 32, 1], 0.0, 1), steel())
+            .with_support(Support::components(brick::Z_MIN, [false, false, true]))
+            .with_load(Load::force(brick::Z_MIN, [0.0, -5e5, 0.0]))
+            .with_load(Load::force(brick::Z_MAX, [0.0, -5e5, 0.0]))
+            .with_load(Load::moment(brick::Z_MAX, [0.0, 0.0, torque]));
+        let vee = [-1.0, 1.0].into_iter().fold(scene, |scene, side: f64| {
+            let out = [-side, 1.0, 0.0].map(|c| c * 0.5f64.sqrt());
+            let wall = Contact::half_space(brick::X_MAX, out.map(|c| -10.0 * c), out);
+            scene.with_contact(wall.with_friction(Friction::coulomb(0.3)))
+        });
+        told(vee).0
+    };
+    // friction holds sqrt(2) mu / (1 + mu^2) of weight times radius: 3.89e6
+    let turned = |w: &Warning| matches!(w, Warning::LargeRotation { .. });
+    let report = shaft(3.8e6);
+    assert!(report.converged() && !report.warnings().iter().any(turned));
+    let report = shaft(5e6);
+    let warning = only(report.warnings(), turned);
+    let Warning::LargeRotation { step: 0, turn, .. } = warning else {
+        panic!("{warning}");
+    };
+    assert!(report.converged() && (turn - 5.625).abs() < 0.1, "{warning}");
+    assert!(warning.to_string().contains("support the body"), "{warning}");
+
+    // an exact rotation about any axis of one of two bodies
+    let mesh = with_second(
+        &block([10.0, 1.0, 1.0], [5, 1, 1]),
+        &lifted(&block([1.0; 3], [2; 3]), 5.0),
+    );
+    for (angle, warned) in [(0.049, false), (0.051, true)] {
+        let axis = [2.0 / 7.0, -3.0 / 7.0, 6.0 / 7.0].map(|c| c * angle);
+        let held = mesh.nodes_on(second(brick::X_MIN));
+        let from = |&n: &u32| [0, 1, 2].map(|c| mesh.points()[n as usize][c] - [0.5, 0.5, 5.5][c]);
+        let motions = held.iter().map(|n| cross(axis, from(n))).collect();
+        let scene = Scene::new(mesh.clone(), steel())
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_support(Support::fixed(held).with_motions(motions, History::constant(1.0)));
+        let (report, _) = told(scene);
+        match report.warnings() {
+            [] => assert!(!warned),
+            [Warning::LargeRotation { node, turn, .. }] => {
+                assert!(warned && mesh.points()[*node as usize][2] >= 5.0);
+                assert!((turn.to_radians() - angle).abs() < 1e-6, "{turn}");
+            }
+            other => panic!("{other:?}"),
+        }
+    }
 }
 
 /// An obstacle is drawn by 0.8 m under a block whose facets have edges of 0.5 and 0.71 m, at once or in four steps. Where

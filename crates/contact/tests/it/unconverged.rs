@@ -120,6 +120,37 @@ fn scenes_without_memory_never_set_it() {
     assert_eq!(frame.report().unconverged_history, None);
 }
 
+/// A strap on a drum, 50 times as long as thick. Whole it met every limit, in 6 parts it takes 374 products.
+#[test]
+fn long_subdomains_are_told_to_be_cut() {
+    let strap = |parts: Option<usize>| {
+        let angle = 0.5 * std::f64::consts::PI;
+        let strap = block([0.03, angle, 0.1], [1, 30, 1]).raise_order().expect("order 2");
+        let strap = strap
+            .map_points(|[x, y, z]| [(1.0 + x) * y.cos(), (1.0 + x) * y.sin(), z])
+            .expect("strap");
+        let drum = Obstacle::cylinder([0.0; 3], [0.0, 0.0, 1.0], 1.0);
+        let scene = Scene::new(strap, uniform(2.1e11, 0.3))
+            .with_support(Support::components(brick::Z_MIN, [false, false, true]))
+            .with_support(Support::components(brick::Y_MIN, [false, true, false]))
+            .with_load(Load::force(brick::Y_MAX, [-1e4, 0.0, 0.0]))
+            .with_contact(Contact::obstacle(brick::X_MIN, drum).with_friction(Friction::coulomb(0.3)));
+        let scene = match parts {
+            Some(parts) => scene.with_subdomains(parts),
+            None => scene,
+        };
+        let settings = Settings::default().with_max_fallback_products(1000);
+        let mut simulation = Simulation::new(scene, settings).expect("set-up");
+        let result = simulation.step().expect("step");
+        (result.failure(), result.report().counters.products)
+    };
+    let failure = strap(None).0.expect("a limit");
+    assert!(failure.slender.is_some_and(|slender| slender > 20.0), "{failure}");
+    assert!(failure.to_string().contains("with_subdomains"), "{failure}");
+    let (failure, products) = strap(Some(6));
+    assert!(failure.is_none() && products < 500, "{failure:?}, {products}");
+}
+
 #[test]
 fn runs_that_converge_are_converged() {
     for method in methods() {

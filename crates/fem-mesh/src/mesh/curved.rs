@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use crate::quadrature;
 use crate::tables::distinct;
-use crate::tolerances::{CURVED, MID_OFF};
+use crate::tolerances::{CURVED, MID_OFF, PLANE_FACET};
 use crate::vec3::{Vec3, add, cross, norm, scale, sub, tet_volume};
 
 use super::error::MeshError;
@@ -67,6 +67,24 @@ pub(crate) fn curved_facet(points: &[Vec3; 6], l: &[f64; 3]) -> (Vec3, Vec3) {
     let along = derivatives(points, &FACET_EDGES, l);
     let [u, v] = [1, 2].map(|i| sub(along[i], along[0]));
     (quadrature::at(points, &facet_shape(l)), scale(0.5, cross(u, v)))
+}
+
+/// Unit normals of a facet at its corners and mid-nodes; `None` if it is plane.
+pub fn facet_normals(points: &[Vec3; 6]) -> Option<[Vec3; 6]> {
+    let middle = |a: usize, b: usize| std::array::from_fn(|i| if i == a || i == b { 0.5 } else { 0.0 });
+    let corner = |a: usize| std::array::from_fn(|i| f64::from(u8::from(i == a)));
+    let normals: [Vec3; 6] = std::array::from_fn(|k| {
+        let l = if k < 3 {
+            corner(k)
+        } else {
+            middle(FACET_EDGES[k - 3][0], FACET_EDGES[k - 3][1])
+        };
+        let normal = curved_facet(points, &l).1;
+        scale(1.0 / norm(normal), normal)
+    });
+    // not of a facet without a normal at a node
+    let turned = normals[1..].iter().any(|n| norm(cross(*n, normals[0])) > PLANE_FACET);
+    (turned && normals.iter().flatten().all(|c| c.is_finite())).then_some(normals)
 }
 
 pub(super) fn volume(points: &[Vec3; 10]) -> f64 {

@@ -25,7 +25,7 @@ pub use tet_mesh::{BoundaryFacet, Facet, FacetTag, TetMesh};
 
 pub(crate) use check::extent;
 #[doc(hidden)]
-pub use curved::{EDGES, facet_shape};
+pub use curved::{EDGES, facet_normals, facet_shape};
 pub(crate) use curved::{NODES, curved_facet, shape, tangents};
 #[doc(hidden)]
 pub use cylindrical::cylindrical;

@@ -5,7 +5,7 @@ use crate::tables::distinct;
 use crate::tolerances::{NEARLY_PARALLEL, NO_NORMAL, NO_WEIGHT};
 use crate::vec3::{self, Vec3, add, cross, dot, norm, scale, sub};
 
-use super::curved::{curved_facet, facet_shape};
+use super::curved::{curved_facet, facet_normals, facet_shape};
 use super::tet_mesh::{FacetTag, TetMesh, facet_area_vector, tag_list};
 
 /// An orthonormal frame on a surface: the outward normal nu and two tangents T1, T2.
@@ -87,9 +87,9 @@ errors! {
 /// A part of the boundary with what contact needs at its nodes, the corners of its triangles.
 ///
 /// The area of a node is a third of the triangles around it; its normal is the mean of theirs,
-/// weighted by area. In a mesh of order 2 both are integrals with the linear hat function of the node, which are the
-/// same where edges are straight; mid-nodes have none, but a share in the means of the nodes around
-/// ([`Surface::mean`]).
+/// weighted by area. In a mesh of order 2 the area is the integral of the linear hat function of the node, the same where
+/// edges are straight, and the normal on curved facets the mean that displacements have ([`Surface::mean`]), in which
+/// mid-nodes have a share: that where the force of the node acts, at a rim, too.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     facets: Vec<u32>,
@@ -105,8 +105,9 @@ pub struct Surface {
 #[derive(Debug, Clone, PartialEq)]
 struct FacetIntegrals {
     nodes: [u32; 6],
-    /// Of the hat function of each corner times the normal, and times one.
+    /// Of the weight of each corner times the normal, in plane facets of its hat function.
     normals: [Vec3; 3],
+    /// Of the hat function of each corner.
     areas: [f64; 3],
     /// Of the weight of each corner ([`Surface::mean`]) times the shape function of each node.
     products: [[f64; 6]; 3],
@@ -135,8 +136,13 @@ impl FacetIntegrals {
         // the dual functions are the rows of diag(areas) mass^-1 times the hat functions
         let [a, b, c] = mass;
         let inverse = [cross(b, c), cross(c, a), cross(a, b)].map(|v| scale(1.0 / dot(a, cross(b, c)), v));
+        let (plane, [u, v, w]) = (facet_normals(&points).is_none(), out.normals);
         for i in 0..3 {
             let dual = inverse.map(|row| out.areas[i] * row[i]);
+            if !plane {
+                let sum = add(scale(dual[0], u), add(scale(dual[1], v), scale(dual[2], w)));
+                out.normals[i] = scale(0.5, add(out.normals[i], sum));
+            }
             let product = |k: usize| (0..3).map(|j| dual[j] * hats[j][k]).sum::<f64>();
             out.products[i] = std::array::from_fn(|k| 0.5 * (hats[i][k] + product(k)));
         }
@@ -260,8 +266,8 @@ impl Surface {
         if mean.is_empty() { vec![(own, 1.0)] } else { mean }
     }
 
-    /// Area of the hat function of a corner of a triangle, a third of a straight one's, and the normal integrated with
-    /// it.
+    /// Area of the hat function of a corner of a triangle, a third of a straight one's, and the integral of the normal with
+    /// it, on curved facets with the weight of [`Surface::mean`].
     pub fn corner_area(&self, mesh: &TetMesh, triangle: usize, corner: usize) -> (f64, [f64; 3]) {
         match self.integrals.get(triangle) {
             Some(facet) => (facet.areas[corner], facet.normals[corner]),
