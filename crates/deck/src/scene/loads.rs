@@ -7,10 +7,10 @@ use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{norm, scale, sub};
 use signorini_fem_mesh::{FacetTag, LoadDensity};
 
-use super::couplings::Spread;
 use super::faces::{FaceTable, Known};
 use super::history::{Histories, Track};
 use super::materials::sections;
+use super::spread::Spread;
 use crate::error::{DeckError, Word};
 use crate::model::{Components, Condition, Conditions, CouplingLaw, DistributedKind, FORCE, Given, Target};
 
@@ -117,7 +117,7 @@ impl Loads {
                 }
                 (Place::Coupling(node), couplings) => {
                     if let (false, Some(coupling)) = (spreads.contains_key(&node), couplings.of(node)) {
-                        spreads.insert(node, coupling.spread(known.sets, known.raw, faces)?);
+                        spreads.insert(node, Spread::new(coupling, known, faces)?);
                     }
                     let forces = spreads.get(&node).into_iter().flat_map(|s| s.forces(component, value));
                     forces.for_each(|(node, force)| loads.force(history, track.order, node, force));

@@ -14,6 +14,7 @@ mod mesh;
 mod numbers;
 mod parts;
 mod rigid;
+mod spread;
 mod supports;
 mod temperatures;
 mod ties;

@@ -7,6 +7,7 @@ use signorini_contact::Support;
 use super::faces::{FaceTable, Known};
 use super::history::{Histories, Track};
 use super::rigid::Motion;
+use super::spread::coupled_nodes;
 use crate::error::{DeckError, Word};
 use crate::model::{COMPONENT, Components, Condition, Given, Ignored, Target};
 
@@ -198,7 +199,7 @@ impl Table {
                     _ => {}
                 }
             }
-            for node in coupling.nodes(known.raw, faces)?.into_keys() {
+            for node in coupled_nodes(coupling, known, faces)?.into_keys() {
                 let label = known.raw.node_labels[node as usize];
                 if known.transforms.of(node).is_some() {
                     let why = format!("node {label} of this surface has axes of its own; take it out of *TRANSFORM");

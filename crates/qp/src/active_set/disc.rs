@@ -30,11 +30,22 @@ pub(crate) enum Disc {
 
 /// Free along the circle, without curvature; free everywhere inside of it. With radius 0 along the circle through `x`.
 pub(crate) fn along_circle(x: [f64; 2], radius: f64) -> Disc {
-    let length = x[0].hypot(x[1]);
-    if length <= 0.0 || length < radius * (1.0 - MAY_SLIDE) {
-        return Disc::Free;
+    outward(x, radius).map_or(Disc::Free, |n| slides(n, 0.0, 1.0, 0.0))
+}
+
+/// Sliding with this slip; free inside of the circle.
+pub(crate) fn with_slip(x: [f64; 2], slip: f64, radius: f64, scale: f64) -> Disc {
+    if radius <= 0.0 {
+        return Disc::Fixed;
     }
-    slides([x[0] / length, x[1] / length], 0.0, 1.0, 0.0)
+    outward(x, radius).map_or(Disc::Free, |n| slides(n, slip, radius, scale))
+}
+
+/// The outward normal at a point that is not inside.
+fn outward(x: [f64; 2], radius: f64) -> Option<[f64; 2]> {
+    let length = x[0].hypot(x[1]);
+    let inside = length <= 0.0 || length < radius * (1.0 - MAY_SLIDE);
+    (!inside).then(|| [x[0] / length, x[1] / length])
 }
 
 /// Sliding with outward normal `n`.
@@ -54,16 +65,11 @@ pub(crate) fn disc_state(x: [f64; 2], g: [f64; 2], radius: f64, scale: f64) -> D
     if radius <= 0.0 {
         return Disc::Fixed;
     }
-    let length = x[0].hypot(x[1]);
-    if length < radius * (1.0 - MAY_SLIDE) {
-        return Disc::Free;
+    let pushed = |n: &[f64; 2]| g[0] * n[0] + g[1] * n[1] < 0.0;
+    match outward(x, radius).filter(pushed) {
+        Some(n) => slides(n, -(g[0] * n[0] + g[1] * n[1]), radius, scale),
+        None => Disc::Free,
     }
-    let n = [x[0] / length, x[1] / length];
-    let outward = g[0] * n[0] + g[1] * n[1];
-    if outward >= 0.0 {
-        return Disc::Free;
-    }
-    slides(n, -outward, radius, scale)
 }
 
 /// Whether a point on its circle goes so far inwards that it comes to the other side, as far as its own scale tells. A

@@ -139,6 +139,13 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         self.work.active.foresee(self.set, self.x, &map);
     }
 
+    /// The same, and how far discs slip.
+    pub(crate) fn foresee_slips(&mut self) {
+        self.foresee();
+        let map = natural_map(self.problem, &self.work.residual, self.step);
+        self.work.active.foresee_slips(self.set, self.x, &map);
+    }
+
     /// The same where the point has moved since the residual was computed.
     pub(crate) fn foresee_moved(&mut self) {
         let map = natural_map(self.problem, &self.work.residual, self.step);

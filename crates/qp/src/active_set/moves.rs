@@ -19,10 +19,12 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
     pub(crate) fn move_on(&mut self, length: f64, place: &Place) -> Result<(), QpError> {
         let constrained = self.at.constrained();
         self.at.mark();
-        let (joint, unsure) = (self.joint_step(length), self.is_unsure());
+        let (joint, unsure, slipping) = (self.joint_step(length), self.is_unsure(), self.is_slipping());
         let at = &mut self.at;
         at.work.before.copy_from_slice(&at.x[..constrained]);
-        if self.repairs_suffice && unsure {
+        if slipping {
+            at.foresee_slips();
+        } else if self.repairs_suffice && unsure {
             at.foresee();
         }
         self.moved.followed = (self.safeguard.is_none() || place.solved) && self.has_settled();
@@ -30,7 +32,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             self.settle()?;
         } else {
             self.settle_loose(false, self.moved.followed)?;
-            if unsure {
+            if unsure && !slipping {
                 self.at.foresee_moved();
             }
         }

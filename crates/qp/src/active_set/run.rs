@@ -7,7 +7,7 @@ use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, Symmetri
 use crate::report::Status;
 use crate::tolerances::{
     BEHIND_PATH, FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NATURAL_STEP, NEGLIGIBLE, ON_PATH, PASSING_PART, PATIENCE,
-    PROGRESS, ROUNDED, RUNAWAY, SHRUNK, SMALL_PART, UNBALANCED,
+    PROGRESS, ROUNDED, RUNAWAY, SHRUNK, SLIPPING, SLIPPING_SETS, SMALL_PART, UNBALANCED,
 };
 use crate::vector;
 
@@ -97,6 +97,8 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) first_error: f64,
     pub(crate) least_error: f64,
     pub(crate) path: Path,
+    /// Once predictions ran in circles on bounds that had settled.
+    slipping: bool,
     /// Once predictions ran in circles.
     pub(crate) safeguard: Option<DescentSafeguard>,
 }
@@ -148,6 +150,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             first_error: f64::INFINITY,
             least_error: f64::INFINITY,
             path: Path::default(),
+            slipping: false,
             safeguard: None,
             at: Iterate {
                 problem,
@@ -358,6 +361,22 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         waited && self.safeguard.is_none()
     }
 
+    /// Whether discs are foreseen from the solved set with their slips (a semismooth Newton step): a move cuts off what
+    /// is beyond many circles at once, and what goes with them seems to turn round.
+    pub(crate) fn is_slipping(&self) -> bool {
+        self.slipping && self.safeguard.is_none() && self.has_settled()
+    }
+
+    /// Notices that predictions of bodies which constraints alone hold run in circles though their bounds have settled.
+    pub(crate) fn note_slipping(&mut self) {
+        let circles = self.progress.waited >= SLIPPING_SETS && self.safeguard.is_none() && self.has_settled();
+        if !self.repairs_suffice && !self.slipping && circles {
+            self.slipping = true;
+            self.progress.best = self.progress.last;
+            self.progress.waited = 0;
+        }
+    }
+
     /// From now on the problem on a set is solved better, and moves have to descend.
     pub(crate) fn start_safeguard(&mut self) {
         self.safeguard = Some(DescentSafeguard::new(self.at.x.len()));
@@ -389,7 +408,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
     /// Conjugate gradients on the active set. Returns the length of the last step, zero if another one is not worth
     /// while.
     pub(crate) fn solve_on_set(&mut self, place: &Place) -> Result<f64, QpError> {
-        let (settled, near_path) = (self.has_settled(), self.is_near_path());
+        let (settled, near_path, slipping) = (self.has_settled(), self.is_near_path(), self.is_slipping());
         let at = &mut self.at;
         if let Some(safeguard) = &mut self.safeguard {
             safeguard.enter(at.x, at.ax, &at.work.residual);
@@ -405,6 +424,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             true => self.forcing.min(BEHIND_PATH),
             false => self.forcing,
         };
+        let forcing = if slipping { forcing.min(SLIPPING) } else { forcing };
         let goal = Goal {
             forcing: (at.work.coupling).forcing(forcing, self.moved.jump, self.first_error),
             // of an error in other blocks than before the last move tells nothing

@@ -81,6 +81,7 @@ pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrecon
             continue;
         }
         run.note_progress(&place);
+        run.note_slipping();
         if run.wants_path(&place) {
             run.begin_path();
             continue;
