@@ -2,7 +2,7 @@
 //! predicts the next choice.
 //!
 //! From above: `solver` (the loop), `start`, `moves` and `run` (what happens between one active set and the next), `descent`
-//! (safeguard against cycles of predictions), `path` and `compliance` (springs that lead to another set), `cg` and
+//! (safeguard against cycles of predictions), `path` and `compliance` (springs that lead to another set), `trial` (slips, tried where a run takes long), `cg` and
 //! `weights` (the linear problem), `iterate` (the point), `balance` (modes that constraints alone stop), `coupling` (radii
 //! that depend on the solution), `natural_map`, `blocks` and `disc` (states); `problem`, `settings`, `view`.
 //!
@@ -25,6 +25,7 @@ mod run;
 mod settings;
 mod solver;
 mod start;
+mod trial;
 mod view;
 mod weights;
 mod workspace;

@@ -7,7 +7,7 @@ use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, Symmetri
 use crate::report::Status;
 use crate::tolerances::{
     BEHIND_PATH, FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NATURAL_STEP, NEGLIGIBLE, ON_PATH, PASSING_PART, PATIENCE,
-    PROGRESS, ROUNDED, RUNAWAY, SHRUNK, SLIPPING, SLIPPING_SETS, SMALL_PART, UNBALANCED,
+    PROGRESS, ROUNDED, RUNAWAY, SHRUNK, SLIPPING, SMALL_PART, TRIAL, UNBALANCED,
 };
 use crate::vector;
 
@@ -77,7 +77,7 @@ impl Progress {
 pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) at: Iterate<'s, A, C, M>,
     pub(crate) settings: &'s ActiveSetSettings,
-    hook: &'s mut ActiveSetHook<'h>,
+    pub(crate) hook: &'s mut ActiveSetHook<'h>,
     /// Kind and length of each segment.
     shape: Vec<(Discriminant<Segment>, usize)>,
     /// Whether unconstrained components alone stop every mode of the equality.
@@ -97,8 +97,11 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) first_error: f64,
     pub(crate) least_error: f64,
     pub(crate) path: Path,
-    /// Once predictions ran in circles on bounds that had settled.
-    slipping: bool,
+    /// Products at which the next [trial](super::trial) begins, and the work of those before.
+    pub(crate) next_trial: usize,
+    pub(crate) tried: ActiveSetReport,
+    /// Whether this is a trial of another run.
+    pub(crate) is_trial: bool,
     /// Once predictions ran in circles.
     pub(crate) safeguard: Option<DescentSafeguard>,
 }
@@ -150,7 +153,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             first_error: f64::INFINITY,
             least_error: f64::INFINITY,
             path: Path::default(),
-            slipping: false,
+            next_trial: TRIAL,
+            tried: ActiveSetReport::new(),
+            is_trial: false,
             safeguard: None,
             at: Iterate {
                 problem,
@@ -361,22 +366,6 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         waited && self.safeguard.is_none()
     }
 
-    /// Whether discs are foreseen from the solved set with their slips (a semismooth Newton step): a move cuts off what
-    /// is beyond many circles at once, and what goes with them seems to turn round.
-    pub(crate) fn is_slipping(&self) -> bool {
-        self.slipping && self.safeguard.is_none() && self.has_settled()
-    }
-
-    /// Notices that predictions of bodies which constraints alone hold run in circles though their bounds have settled.
-    pub(crate) fn note_slipping(&mut self) {
-        let circles = self.progress.waited >= SLIPPING_SETS && self.safeguard.is_none() && self.has_settled();
-        if !self.repairs_suffice && !self.slipping && circles {
-            self.slipping = true;
-            self.progress.best = self.progress.last;
-            self.progress.waited = 0;
-        }
-    }
-
     /// From now on the problem on a set is solved better, and moves have to descend.
     pub(crate) fn start_safeguard(&mut self) {
         self.safeguard = Some(DescentSafeguard::new(self.at.x.len()));
@@ -477,6 +466,7 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
             self.at.catch_up();
         }
         self.at.report.status = status;
+        self.at.report.add(&self.tried);
         self.at.report
     }
 }

@@ -72,6 +72,16 @@ impl ActiveSetReport {
         }
     }
 
+    /// Adds the work of another run.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.active_sets += other.active_sets;
+        self.cg_steps += other.cg_steps;
+        self.corrections += other.corrections;
+        self.preconditionings += other.preconditionings;
+        self.factorisations += other.factorisations;
+        self.hook_calls += other.hook_calls;
+    }
+
     /// All operator products.
     #[must_use]
     pub fn products(&self) -> usize {

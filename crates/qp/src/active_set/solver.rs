@@ -9,7 +9,7 @@
 //! next step of conjugate gradients, of the length of the last one. A set of which much has just changed is not solved:
 //! this step leads over it, and over the first one where the product of the start is known before the set has moved it.
 //! Where predictions run in circles, or away from a start that told nothing, a path
-//! of compliant constraints leads to another set ([`path`](super::path)).
+//! of compliant constraints leads to another set ([`path`](super::path)), and slips are tried ([`trial`](super::trial)).
 //!
 //! The error is the length of the preconditioned residual. After `PATIENCE` sets without progress they are solved
 //! more accurately, every move has to lower the cost, and the set follows the solution only where the problem with
@@ -56,11 +56,30 @@ pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrecon
     settings.validate()?;
     check(problem, projector, set, (x, ax), work)?;
     let mut run = Run::new(problem, projector, set, (x, ax), settings, work, hook);
+    let status = solve(&mut run, ax_known)?;
+    Ok(run.finish(status))
+}
+
+/// From the start to a solution, or to where the run gives up.
+pub(super) fn solve<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
+    run: &mut Run<'_, '_, A, C, M>,
+    ax_known: bool,
+) -> Result<Status, QpError> {
     run.start(ax_known)?;
-    let status = loop {
+    go_on(run)
+}
+
+/// From one active set to the next, likewise.
+pub(super) fn go_on<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
+    run: &mut Run<'_, '_, A, C, M>,
+) -> Result<Status, QpError> {
+    loop {
+        if run.wants_trial() && run.try_slips()? {
+            return Ok(Status::Converged);
+        }
         // 1. the active set that the natural map predicts, and how far its solution is
         let Some(place) = run.enter()? else {
-            break Status::Stagnated;
+            return Ok(Status::Stagnated);
         };
         if run.refreshes(&place) || run.releases(&place) {
             continue;
@@ -70,7 +89,7 @@ pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrecon
         }
         if run.is_solved(&place) {
             if run.is_balanced(&place) && run.set_agrees(&place)? {
-                break Status::Converged;
+                return Ok(Status::Converged);
             }
             continue;
         }
@@ -81,7 +100,9 @@ pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrecon
             continue;
         }
         run.note_progress(&place);
-        run.note_slipping();
+        if run.is_trial && run.in_circles() {
+            return Ok(Status::Stagnated);
+        }
         if run.wants_path(&place) {
             run.begin_path();
             continue;
@@ -94,14 +115,13 @@ pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrecon
             }
         }
         if let Some(status) = run.gives_up() {
-            break status;
+            return Ok(status);
         }
         // 2. conjugate gradients on it
         let length = run.solve_on_set(&place)?;
         // 3. the natural map moves x to the next active set, and the set follows the solution
         run.move_on(length, &place)?;
-    };
-    Ok(run.finish(status))
+    }
 }
 
 fn check<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
