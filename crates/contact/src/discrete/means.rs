@@ -6,7 +6,7 @@
 
 use super::creases::around;
 use super::partners::{Partner, Partners};
-use super::side::Sides;
+use super::side::{Sides, mean_place};
 use crate::error::ContactError;
 use crate::scene::Contact;
 use signorini_fem_mesh::vec3::sub;
@@ -53,6 +53,15 @@ impl<'a> Means<'a> {
         })
     }
 
+    /// Where the force of a node acts that is one point, m: in the mean of its side.
+    pub(super) fn place(&self, local: usize) -> [f64; 3] {
+        mean_place(self.mesh, &self.side(local, &self.around[local]))
+    }
+
+    fn side(&self, local: usize, triangles: &[u32]) -> Side {
+        Side::new(self.surface.mean(local, triangles.iter().map(|&t| t as usize)))
+    }
+
     /// Sides and gap of the point of a node on the triangles of its side, all around it if there are none.
     pub(super) fn point(
         &self,
@@ -65,9 +74,9 @@ impl<'a> Means<'a> {
         } else {
             triangles
         };
-        let own = self.surface.mean(local, triangles.iter().map(|&t| t as usize));
+        let own = self.side(local, triangles);
         let other = |&(node, weight): &(u32, f64)| Some((*self.partners.get(&node)?, weight));
-        let partner: Option<Vec<(u32, f64)>> = own.iter().map(other).collect();
+        let partner: Option<Vec<(u32, f64)>> = own.nodes().iter().map(other).collect();
         let place = |node: u32| self.mesh.points()[node as usize];
         let measured = |node: u32| {
             self.partners.get(&node).map_or(0.0, |&to| {
@@ -75,9 +84,9 @@ impl<'a> Means<'a> {
                 if gap.abs() <= self.rounding { 0.0 } else { gap }
             })
         };
-        let gap = mean_gap(self.mesh, (index, contact), &own, &frame.normal, measured)?;
+        let gap = mean_gap(self.mesh, (index, contact), own.nodes(), &frame.normal, measured)?;
         let sides = Sides {
-            own: Side::new(own),
+            own,
             partner: partner.map(Side::new),
             swapped: false,
         };

@@ -4,7 +4,7 @@ use crate::error::ContactError;
 use crate::scene::{Contact, ContactNormal};
 use crate::tolerances::{ALONG, AXIS, FACING, GRADIENT, SAME_NORMAL};
 use signorini_fem_mesh::vec3::{cross, dot, norm, scale, sub};
-use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
+use signorini_fem_mesh::{Surface, SurfaceFrame};
 
 /// Whether directions are not all one.
 pub(super) fn differ(mut normals: impl Iterator<Item = [f64; 3]>) -> bool {
@@ -70,18 +70,18 @@ fn check_side(
 }
 
 /// The frame at each node of a contact with the normals of its obstacle, none where the body does not face it; empty for
-/// all others.
+/// all others. `place` is where the force of a node acts.
 pub(super) fn shape_frames(
-    mesh: &TetMesh,
     index: usize,
     contact: &Contact,
     surface: &Surface,
+    place: impl Fn(usize) -> [f64; 3],
 ) -> Result<Vec<Option<SurfaceFrame>>, ContactError> {
     let (Some(shape), ContactNormal::Obstacle) = (&contact.shape, contact.normal) else {
         return Ok(Vec::new());
     };
-    let frame = |(&node, own): (&u32, &SurfaceFrame)| {
-        let position = mesh.points()[node as usize];
+    let frame = |(local, (&node, own)): (usize, (&u32, &SurfaceFrame))| {
+        let position = place(local);
         let (distance, gradient) = shape.distance_against(position, own.normal);
         if !distance.is_finite() {
             let (contact, value) = (index, distance);
@@ -103,11 +103,8 @@ pub(super) fn shape_frames(
         Ok((frame.normal_part(own.normal) > FACING).then_some(frame))
     };
     let nodes = surface.nodes().iter().zip(surface.frames());
-    let frames: Vec<Option<SurfaceFrame>> = nodes.map(frame).collect::<Result<_, _>>()?;
-    let first = surface.nodes().first().map_or([0.0; 3], |&node| {
-        let gradient = shape.distance(mesh.points()[node as usize]).1;
-        gradient.map(|c| -c)
-    });
+    let frames: Vec<Option<SurfaceFrame>> = nodes.enumerate().map(frame).collect::<Result<_, _>>()?;
+    let first = (surface.nodes().first()).map_or([0.0; 3], |_| shape.distance(place(0)).1.map(|c| -c));
     check_side(index, surface, first, |local| frames[local])?;
     Ok(frames)
 }

@@ -12,7 +12,7 @@ use super::creases::{SurfaceSide, creases};
 use super::means::{Means, mean_gap};
 use super::normals::{along_axis, differ, shape_frames};
 use super::partners::{Paired, Partners, check_overlap};
-use super::side::{Sides, turned};
+use super::side::{Sides, mean_place, turned};
 use crate::error::ContactError;
 use crate::mortar::MortarNode;
 use crate::scene::{Pose, Scene};
@@ -85,13 +85,17 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
     let mut out: Vec<ContactPoint> = Vec::new();
     for (index, (contact, paired)) in scene.contacts.iter().zip(paired).enumerate() {
         let (surface, fixed, partners) = (&paired.surface, paired.fixed, &paired.partners);
-        let shaped = shape_frames(&scene.mesh, index, contact, surface)?;
+        let means = Means::new(&scene.mesh, (index, contact), surface, partners, rounding);
+        let place = |local: usize| match &means {
+            Some(means) => means.place(local),
+            None => scene.mesh.points()[surface.nodes()[local] as usize],
+        };
+        let shaped = shape_frames(index, contact, surface, place)?;
         let sides = match (partners, fixed) {
             (Partners::Obstacle, None) if shaped.is_empty() => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
         };
         let curved = is_curved(partners);
-        let means = Means::new(&scene.mesh, (index, contact), surface, partners, rounding);
         for (local, &node) in surface.nodes().iter().enumerate() {
             let shape = shaped.get(local).copied();
             if shape == Some(None) {
@@ -158,16 +162,6 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
         }
     }
     Ok(out)
-}
-
-fn mean_place(mesh: &TetMesh, side: &Side) -> [f64; 3] {
-    let place = |node: u32| mesh.points()[node as usize];
-    match side.nodes() {
-        [(node, _)] => place(*node),
-        nodes => nodes.iter().fold([0.0; 3], |sum, &(node, weight)| {
-            vec3::add(sum, vec3::scale(weight, place(node)))
-        }),
-    }
 }
 
 /// Whether meshes do not match and normals differ.

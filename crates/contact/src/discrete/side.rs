@@ -2,6 +2,7 @@
 
 use crate::tolerances::SHORT_LEVER;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
+use signorini_fem_mesh::{TetMesh, vec3};
 use signorini_tfeti::Side;
 
 /// Both sides of a contact point: short lists of nodes with weights, where meshes match of one node each.
@@ -78,6 +79,17 @@ fn on_nodes(side: &Side, sign: f64, force: [f64; 3]) -> impl Iterator<Item = (u3
 /// The transpose of a matrix times a vector.
 fn times(turn: &[[f64; 3]; 3], v: &[f64; 3]) -> [f64; 3] {
     [0, 1, 2].map(|c| (0..3).map(|r| turn[r][c] * v[r]).sum())
+}
+
+/// The mean of the places of a side, m.
+pub(super) fn mean_place(mesh: &TetMesh, side: &Side) -> [f64; 3] {
+    let place = |node: u32| mesh.points()[node as usize];
+    match side.nodes() {
+        [(node, _)] => place(*node),
+        nodes => nodes.iter().fold([0.0; 3], |sum, &(node, weight)| {
+            vec3::add(sum, vec3::scale(weight, place(node)))
+        }),
+    }
 }
 
 /// A side that turns about its mean: what displacements of its nodes add at the end of the way `-lever` from there, m.

@@ -89,7 +89,7 @@ fn check_shape(
     for (pose, &time) in poses.iter().zip(scene.analysis.times()) {
         let met = own
             .iter()
-            .map(|point| (point.node(), turned(scene, point, pose, &point.position)));
+            .map(|point| (point.node(), turned(scene, point, pose, &point.centre)));
         let brought = beside.iter().map(|&(node, normal)| {
             let place = &scene.mesh.points()[node as usize];
             (node, turned_to(scene, (index, node, normal), pose, place))

@@ -1,4 +1,5 @@
-//! Whether supports and contact can hold the body against its loads, judged before anything is solved.
+//! Whether supports and contact can hold the body against its loads, judged before anything is solved; and whether
+//! friction can with given normal forces.
 //!
 //! Equilibrium of the rigid motions that supports leave free is necessary: contact forces must exist with `G lambda =
 //! e`, `lambda_nu <= 0` and friction in its cone. On these motions, six a free body at most, that is a small problem:
@@ -12,7 +13,7 @@ use super::model::Model;
 use crate::error::ContactError;
 use crate::scene::Friction;
 use crate::status::Slide;
-use crate::tolerances::{ALONGSIDE, FREE_WORK, ROUNDING};
+use crate::tolerances::{ALONGSIDE, FREE_WORK, NEAR_BALANCE, ROUNDING};
 use signorini_qp::vector;
 use signorini_tfeti::{BodyMotion, FreeMotion, RowWeights};
 
@@ -25,9 +26,7 @@ pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
     // each body is judged alone, by its own loads, with those that it may touch
     let mut worst: Option<Escape> = None;
     for body in 0..model.bodies.count() {
-        let group = |b: &BodyMotion| model.bodies.of_body(b.body) == body;
-        let own = |m: &&FreeMotion| m.bodies.iter().any(group);
-        let motions: Vec<&FreeMotion> = motions.iter().filter(own).collect();
+        let motions = of_body(model, body, &motions);
         if motions.is_empty() {
             continue;
         }
@@ -65,6 +64,56 @@ pub(crate) fn slides(model: &Model, e: &[f64], lambda: &[f64]) -> Result<Option<
     }
     let (slide, _, length) = describe(model, &motions, &work);
     Ok((length > 0.0).then_some(Slide { force: length, ..slide }))
+}
+
+/// Whether friction could balance the loads `e` with the normal forces among multipliers, within the slip bounds of the
+/// points, in units of force of their bodies. Where it could, it is other forces that are not found yet.
+pub(crate) fn friction_could_hold(
+    model: &Model,
+    e: &[f64],
+    lambda: &[f64],
+    bound: impl Fn(usize, &ConstrainedPoint) -> f64,
+) -> Result<bool, ContactError> {
+    let coarse = model.tfeti.coarse();
+    let mut normal = lambda.to_vec();
+    normal[model.tangential_start()..model.tfeti.gluing().ranges().contact().end].fill(0.0);
+    let mut pressed = vec![0.0; e.len()];
+    coarse.apply(&normal, &mut pressed, &mut coarse.scratch());
+    let all = motions_without_contact(model)?;
+    for body in 0..model.bodies.count() {
+        let motions = of_body(model, body, &all);
+        let mut rest = vec![0.0; motions.len()];
+        let mut size = 0.0_f64;
+        for (rest, motion) in rest.iter_mut().zip(&motions) {
+            let [load, pressed] = [e, &pressed].map(|forces| vector::dot(&motion.amplitudes, forces));
+            *rest = load - pressed;
+            size = size.max(load.abs()).max(pressed.abs());
+        }
+        // pressure alone is in balance with the loads
+        if vector::norm(&rest) <= NEAR_BALANCE * size {
+            continue;
+        }
+        let columns = columns(model, &motions);
+        let own = model.points.iter().enumerate();
+        let own = own.filter(|(_, point)| model.bodies.of_row(point.row) == body);
+        let friction = own.map(|(k, point)| Generators {
+            normal: vec![0.0; motions.len()],
+            tangents: tangents(&columns, point),
+            coefficient: Some(0.0),
+            tresca: bound(k, point),
+        });
+        let mut cone = WrenchCone::new(motions.len(), friction.collect());
+        if cone.exceeded(&rest).is_some() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
+}
+
+/// Those of some motions that move a body.
+fn of_body<'a>(model: &Model, body: usize, motions: &'a [FreeMotion]) -> Vec<&'a FreeMotion> {
+    let group = |b: &BodyMotion| model.bodies.of_body(b.body) == body;
+    motions.iter().filter(|m| m.bodies.iter().any(group)).collect()
 }
 
 /// A body that gets away, when, and by how much the loads exceed what holds it, N.
@@ -171,26 +220,35 @@ fn escape(
     Escape { step, force, error }
 }
 
-/// What a force at each contact point does on the motions: newtons to work.
-fn generators(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Vec<Generators>, ContactError> {
+/// What multipliers of one do on the motions, by motion and row.
+fn columns(model: &Model, motions: &[&FreeMotion]) -> Vec<Vec<f64>> {
     let coarse = model.tfeti.coarse();
     let mut scratch = coarse.scratch();
-    let columns: Vec<Vec<f64>> = motions
-        .iter()
-        .map(|motion| {
-            let mut out = vec![0.0; coarse.dim()];
-            coarse.apply_transpose(&motion.amplitudes, &mut out, &mut scratch);
-            out
-        })
-        .collect();
-    let along = |row: usize, factor: f64| -> Vec<f64> { columns.iter().map(|c| factor * c[row]).collect() };
+    let column = |motion: &&FreeMotion| {
+        let mut out = vec![0.0; coarse.dim()];
+        coarse.apply_transpose(&motion.amplitudes, &mut out, &mut scratch);
+        out
+    };
+    motions.iter().map(column).collect()
+}
+
+/// Those of a row, times a factor.
+fn along(columns: &[Vec<f64>], row: usize, factor: f64) -> Vec<f64> {
+    columns.iter().map(|c| factor * c[row]).collect()
+}
+
+/// What friction forces of 1 N at a point do on the motions.
+fn tangents(columns: &[Vec<f64>], point: &ConstrainedPoint) -> Vec<Vec<f64>> {
+    let rows = point.isotropic();
+    rows.map(|(_, row, scale)| along(columns, row, 1.0 / scale)).collect()
+}
+
+/// What a force at each contact point does on the motions: newtons to work.
+fn generators(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Vec<Generators>, ContactError> {
+    let columns = columns(model, motions);
     let mut out = Vec::new();
     let own = |point: &&ConstrainedPoint| model.bodies.of_row(point.row) == body;
     for point in model.points.iter().filter(own) {
-        let tangents = point
-            .isotropic()
-            .map(|(_, row, scale)| along(row, 1.0 / scale))
-            .collect();
         let (coefficient, tresca) = match model.law(point) {
             Friction::None => (Some(0.0), 0.0),
             Friction::Tresca(bound) => {
@@ -200,8 +258,8 @@ fn generators(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Vec
             Friction::Coulomb(law) => (law.largest(point.position()), 0.0),
         };
         out.push(Generators {
-            normal: along(point.row, -1.0 / point.scale),
-            tangents,
+            normal: along(&columns, point.row, -1.0 / point.scale),
+            tangents: tangents(&columns, point),
             coefficient,
             tresca,
         });

@@ -15,6 +15,7 @@ use nalgebra::{Matrix3, Vector3};
 use signorini_fem_mesh::recovery::DiscretisationError;
 use signorini_fem_mesh::vec3::centroid;
 use signorini_fem_mesh::{Element, TetMesh, fields};
+use signorini_qp::vector;
 
 /// Lengths of a mesh that results are compared with.
 #[derive(Debug)]
@@ -213,7 +214,11 @@ fn turned_normal(model: &Model, recovered: &Recovered, u: &[f64], step: usize) -
     let pairs = model.points.iter().zip(&recovered.points);
     let touching = pairs.filter(|(p, state)| is_shaped(model, p.surface()) && state.state != ContactState::Open);
     let turns = touching.map(|(p, _)| {
-        let turn = turned(scene, &p.contact, &pose(p.surface()), &displaced(p.node()));
+        let mut place = [0.0; 3];
+        for &(node, weight) in p.contact.sides.own.nodes() {
+            vector::axpy(weight, &displaced(node), &mut place);
+        }
+        let turn = turned(scene, &p.contact, &pose(p.surface()), &place);
         ((p.surface(), p.node()), turn)
     });
     let shaped = (0..scene.contacts.len()).filter(|&contact| is_shaped(model, contact));

@@ -40,7 +40,7 @@ pub struct Obstacle {
 
 impl Obstacle {
     /// Any shape: its signed distance (m, positive outside) and the gradient of that. Both are evaluated at nodes of
-    /// the body, where the gradient must have length 1 to within a thousandth.
+    /// the body, with quadratic elements also beside them, where the gradient must have length 1 to within a thousandth.
     pub fn from_distance(
         distance: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static,
         gradient: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static,

@@ -4,7 +4,7 @@
 use super::coarse::OrthonormalRows;
 use super::iterate::{Iterate, Task, is_coulomb, step_status};
 use crate::error::ContactError;
-use crate::model::{DISCS, INTERVALS, Model};
+use crate::model::{DISCS, INTERVALS, Model, friction_could_hold};
 use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::{InnerAccuracy, Method, Settings, paper_smalse};
@@ -73,8 +73,8 @@ impl SmalseSolver {
     }
 
     /// The same for bodies that friction does not seem to hold: ends as [`StepStatus::NotHeld`] when products no longer
-    /// bring the forces nearer to balance. Slip bounds follow normal forces the sooner the fewer products there are
-    /// between two looks.
+    /// bring the forces nearer to balance, and friction within the slip bounds of the normal forces could not either.
+    /// Slip bounds follow normal forces the sooner the fewer products there are between two looks.
     pub(crate) fn solve_while_balancing(
         &mut self,
         limit: usize,
@@ -97,8 +97,13 @@ impl SmalseSolver {
             if now <= NEAR_BALANCE * size {
                 // held: what is left needs longer solves
                 share *= 2;
-            } else if left == 0 || now > BALANCED * before[0] {
-                all.status = StepStatus::NotHeld;
+            } else if now > BALANCED * before[0] {
+                let (problem, lambda) = (task.problem, &iterate.lambda);
+                let bound = |k, point: &_| problem.slip_bound(k, point, lambda);
+                match friction_could_hold(task.model, &problem.rhs, lambda, bound)? {
+                    true => share *= 2,
+                    false => all.status = StepStatus::NotHeld,
+                }
             }
             if left == 0 || all.status == StepStatus::NotHeld {
                 return Ok(all);

@@ -337,13 +337,16 @@ fn overlaps_of_facets_are_no_interference() {
 
 /// A shoe on a shaft, with mid-nodes on the circle.
 fn shoe([inside, outside]: [usize; 2]) -> TetMesh {
-    let shoe = block([1.0; 3], [1, outside, 2]).raise_order().expect("order 2");
+    with_second(&ring([4.0, 10.0], [1, inside, 2], 0.0, 2), &single_shoe(outside))
+}
+
+fn single_shoe(cells: usize) -> TetMesh {
+    let shoe = block([1.0; 3], [1, cells, 2]).raise_order().expect("order 2");
     let place = |[x, y, z]: [f64; 3]| {
         let (radius, angle) = (10.0 + 3.0 * x, 0.1 + 1.2 * y);
         [radius * angle.cos(), radius * angle.sin(), 8.0 * z]
     };
-    let shoe = shoe.map_points(place).expect("shoe");
-    with_second(&ring([4.0, 10.0], [1, inside, 2], 0.0, 2), &shoe)
+    shoe.map_points(place).expect("shoe")
 }
 
 /// What slides without friction has no moment about the axis that it slides about, wherever it is pressed. With the
@@ -368,6 +371,42 @@ fn normal_forces_of_quadratic_sides_have_no_moment_about_their_axis() {
             let what = format!("{cells:?}, {angle}: {:.1e}, {products} products", moment / size);
             assert!(result.report().status.converged() && products < 80, "{what}");
             assert!(moment.abs() < most * size, "{what}");
+        }
+    }
+}
+
+/// The same on rigid obstacles, which turn in place. With their normals at corners 0.12 to 0.80 % were left by shoes,
+/// 0.15 to 0.73 % by caps.
+#[test]
+fn normal_forces_of_round_obstacles_have_no_moment_about_their_centre() {
+    let drum = Obstacle::cylinder([0.0; 3], [0.0, 0.0, 1.0], 10.0);
+    let ball = Obstacle::sphere([0.0; 3], 10.0);
+    let shoes = [3, 4, 6, 8].map(|cells| (format!("shoe {cells}"), single_shoe(cells), drum.clone(), 2..3));
+    let caps = [3, 4, 6].map(|cells| {
+        let cap = shell([10.0, 13.0], [1, cells, cells + 1], 2);
+        (format!("cap {cells}"), cap, ball.clone(), 0..3)
+    });
+    let turns = |contact: Contact| contact.with_rotation([0.0; 3], [0.0, 0.0, 1.0], History::constant(1.0));
+    for (what, mesh, obstacle, axes) in shoes.into_iter().chain(caps) {
+        for angle in [0.1_f64, 1.3] {
+            let way = match axes.len() {
+                1 => [-0.05 * angle.cos(), -0.05 * angle.sin(), 0.0],
+                _ => [0.02 * angle.cos(), 0.02 * angle.sin(), -0.05],
+            };
+            let pushed = Support::fixed(brick::X_MAX).with_motion(way, History::constant(1.0));
+            let scene = Scene::new(mesh.clone(), uniform(YOUNG, 0.3))
+                .with_support(pushed)
+                .with_contact(turns(Contact::obstacle(brick::X_MIN, obstacle.clone())));
+            let mut simulation = Simulation::new(scene, tight()).expect("normals that do not turn");
+            let result = simulation.step().expect("step");
+            let turned = |w: &Warning| matches!(w, Warning::TurnedNormal { .. });
+            assert!(!result.warnings().iter().any(turned), "{what}");
+            let moment = result.reactions().contacts[0].moment;
+            let moment = norm(&moment[axes.clone()]) / (10.0 * result.summary().normal_force);
+            let products = result.report().counters.products;
+            let what = format!("{what}, {angle}: {moment:.1e}, {products} products");
+            assert!(result.report().status.converged() && products < 80, "{what}");
+            assert!(moment < 1e-12, "{what}");
         }
     }
 }

@@ -357,8 +357,7 @@ impl<'a> ApartJudge<'a> {
                 let mut carried =
                     (rock.motion.as_ref()).map_or([0.0; 3], |(v, course)| scale(course.value(report.time), *v));
                 let places = &self.base.mechanics.points;
-                let mean = (point.nodes()).fold([0.0; 3], |s, (n, w)| add(s, scale(w, places[n as usize])));
-                let (shifted, place) = (carried, sub(mean, carried));
+                let (shifted, place) = (carried, sub(self.mean(point), carried));
                 if let Some((centre, axis, course)) = &rock.turn {
                     let (arm, angle) = (sub(place, *centre), course.value(report.time));
                     carried = add(carried, scale(angle, cross(*axis, arm)));
@@ -394,6 +393,12 @@ impl<'a> ApartJudge<'a> {
         }
     }
 
+    /// Where the force of a point acts that one body has.
+    fn mean(&self, point: &ConstrainedPoint) -> Vec3 {
+        let places = &self.base.mechanics.points;
+        (point.nodes()).fold([0.0; 3], |s, (n, w)| add(s, scale(w, places[n as usize])))
+    }
+
     fn compliance(&self, point: &ConstrainedPoint) -> [f64; 2] {
         match (self.rock(point), self.scene.pairs.get(point.surface())) {
             (Some(rock), _) => rock.compliance,
@@ -415,7 +420,7 @@ impl<'a> ApartJudge<'a> {
         let normal = point.frame().normal;
         let least = if self.scene.bumps > 0.0 { 0.7 } else { SAME };
         let expected = match self.rock(point) {
-            Some(rock) => scale(-1.0, rock.shape.distance(point.position()).1),
+            Some(rock) => scale(-1.0, rock.shape.distance(self.mean(point)).1),
             None => {
                 let own = |s: &&crate::mechanics::Side| {
                     s.nodes.contains(&point.node()) && dot(unit(s.vector), normal) > least
