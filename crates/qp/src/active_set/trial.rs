@@ -51,7 +51,11 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             self.hook,
         );
         trial.is_trial = true;
-        let status = solve(&mut trial, false)?;
+        let status = match solve(&mut trial, false) {
+            // it ran away, or its sets do not hold every mode
+            Err(QpError::CoarseDeficient { .. } | QpError::NotFinite { .. }) => Status::Stagnated,
+            outcome => outcome?,
+        };
         self.tried.add(&trial.finish(status));
         let solved = status == Status::Converged;
         if solved {
