@@ -18,7 +18,7 @@ settings! {
         forcing, with_forcing: f64 = 0.4, in "(0, 1)";
         /// Most active sets; five times as many once descent is enforced.
         max_active_sets, with_max_active_sets: usize = 100, in "[1, inf)";
-        /// Most operator products.
+        /// Most operator products, besides those of trials, at most two thirds as many.
         max_products, with_max_products: usize = 10_000, in "[1, inf)";
     }
 }

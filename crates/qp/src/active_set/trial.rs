@@ -56,17 +56,19 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             Err(QpError::CoarseDeficient { .. } | QpError::NotFinite { .. }) => Status::Stagnated,
             outcome => outcome?,
         };
-        self.tried.add(&trial.finish(status));
-        let solved = status == Status::Converged;
+        let report = trial.finish(status);
+        self.tried.add(&report);
+        let (at, solved) = (&mut self.at, status == Status::Converged);
         if solved {
-            *self.at.set = set;
-            self.at.x.copy_from_slice(&x);
-            self.at.ax.copy_from_slice(&ax);
-            *self.at.work = work;
+            *at.set = set;
+            at.x.copy_from_slice(&x);
+            at.ax.copy_from_slice(&ax);
+            *at.work = work;
+            at.report.error = report.error;
+            at.report.constrained_error = report.constrained_error;
         } else {
             // the next set is foreseen with the weights of the last one
-            let work = &*self.at.work;
-            self.at.projector.set_weights_and_lines(&work.w, &work.lines)?;
+            at.projector.set_weights_and_lines(&at.work.w, &at.work.lines)?;
         }
         Ok(solved)
     }
