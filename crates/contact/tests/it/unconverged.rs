@@ -151,20 +151,14 @@ fn strap(thickness: f64, (cells, order): (usize, u8), parts: Option<usize>, most
     simulation.step().expect("step")
 }
 
-/// A strap 50 times as long as thick. Whole it met every limit, in 6 parts it takes less than 500 products.
+/// A strap 50 times as long as thick. Whole it met every limit, after 29,622 products.
 #[test]
-fn long_subdomains_are_told_to_be_cut() {
-    let whole = strap(0.03, (30, 2), None, 1000);
-    let failure = whole.failure().expect("a limit");
-    assert!(failure.slender.is_some_and(|slender| slender > 20.0), "{failure}");
-    assert!(failure.to_string().contains("with_subdomains"), "{failure}");
-    let cut = strap(0.03, (30, 2), Some(6), 1000);
-    let products = cut.report().counters.products;
-    assert!(
-        cut.failure().is_none() && products < 500,
-        "{:?}, {products}",
-        cut.failure()
-    );
+fn a_long_subdomain_is_solved() {
+    for (parts, most) in [(None, 2500), (Some(6), 500)] {
+        let result = strap(0.03, (30, 2), parts, 1000);
+        let products = result.report().counters.products;
+        assert!(result.failure().is_none() && products < most, "{parts:?}: {products}");
+    }
 }
 
 /// On a strap three times as thin the fall-back lost its way: balance to 1e-4 of the loads, then to 3e-3, was called a
@@ -176,6 +170,7 @@ fn what_friction_could_hold_is_not_told_to_slide_away() {
     let failure = whole.failure().expect("a limit");
     assert_eq!(failure.status, StepStatus::IterationLimit, "{failure}");
     assert!(failure.slide.is_none(), "{failure}");
+    assert!(failure.slender.is_some_and(|slender| slender > 20.0), "{failure}");
     assert!(failure.to_string().contains("with_subdomains"), "{failure}");
     assert!(strap(0.01, (60, 1), Some(6), 2000).failure().is_none());
 }
