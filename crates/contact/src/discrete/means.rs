@@ -55,7 +55,9 @@ impl<'a> Means<'a> {
 
     /// Where the force of a node acts that is one point, m: in the mean of its side.
     pub(super) fn place(&self, local: usize) -> [f64; 3] {
-        mean_place(self.mesh, &self.side(local, &self.around[local]))
+        mean_place(&self.side(local, &self.around[local]), |node| {
+            self.mesh.points()[node as usize]
+        })
     }
 
     fn side(&self, local: usize, triangles: &[u32]) -> Side {

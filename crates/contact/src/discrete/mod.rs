@@ -25,5 +25,6 @@ pub(crate) use creases::area_vector;
 pub(crate) use extents::Extents;
 pub(crate) use points::ContactPoint;
 pub(crate) use scene::DiscreteScene;
+pub(crate) use side::mean_place;
 pub(crate) use supports::Supports;
 pub(crate) use turn::{beside, turned, turned_to};

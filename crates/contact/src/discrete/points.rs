@@ -148,7 +148,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                 };
                 let frame = along_axis(index, contact, node, frame)?;
                 out.push(ContactPoint {
-                    centre: mean_place(&scene.mesh, &sides.own),
+                    centre: mean_place(&sides.own, place_of(&scene.mesh)),
                     surface: index,
                     sides,
                     position,
@@ -164,6 +164,10 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
     Ok(out)
 }
 
+fn place_of(mesh: &TetMesh) -> impl Fn(u32) -> [f64; 3] {
+    |node| mesh.points()[node as usize]
+}
+
 /// Whether meshes do not match and normals differ.
 fn is_curved(partners: &Partners) -> bool {
     let Partners::Mortar(nodes) = partners else {
@@ -176,7 +180,10 @@ fn is_curved(partners: &Partners) -> bool {
 /// the way between them.
 fn turn(mesh: &TetMesh, sides: &mut Sides, rounding: f64) {
     sides.partner = sides.partner.take().map(|partner| {
-        let way = vec3::sub(mean_place(mesh, &partner), mean_place(mesh, &sides.own));
+        let way = vec3::sub(
+            mean_place(&partner, place_of(mesh)),
+            mean_place(&sides.own, place_of(mesh)),
+        );
         let weights: f64 = partner.nodes().iter().map(|(_, weight)| weight.abs()).sum();
         match vec3::norm(way) > weights * rounding {
             true => turned(partner, way, |node| mesh.points()[node as usize]),
@@ -267,7 +274,7 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
             let shared = x.tags.iter().any(|t| y.tags.contains(t));
             if point.sides.own != other.sides.own {
                 point.sides.own = both(point, other);
-                point.centre = mean_place(&scene.mesh, &point.sides.own);
+                point.centre = mean_place(&point.sides.own, place_of(&scene.mesh));
             }
             point.area = if shared && point.surface != other.surface {
                 point.area.max(other.area)

@@ -2,7 +2,7 @@
 
 use crate::tolerances::SHORT_LEVER;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
-use signorini_fem_mesh::{TetMesh, vec3};
+use signorini_fem_mesh::vec3;
 use signorini_tfeti::Side;
 
 /// Both sides of a contact point: short lists of nodes with weights, where meshes match of one node each.
@@ -82,8 +82,7 @@ fn times(turn: &[[f64; 3]; 3], v: &[f64; 3]) -> [f64; 3] {
 }
 
 /// The mean of the places of a side, m.
-pub(super) fn mean_place(mesh: &TetMesh, side: &Side) -> [f64; 3] {
-    let place = |node: u32| mesh.points()[node as usize];
+pub(crate) fn mean_place(side: &Side, place: impl Fn(u32) -> [f64; 3]) -> [f64; 3] {
     match side.nodes() {
         [(node, _)] => place(*node),
         nodes => nodes.iter().fold([0.0; 3], |sum, &(node, weight)| {

@@ -4,7 +4,7 @@
 
 use super::points::ContactState;
 use super::recovered::Recovered;
-use crate::discrete::{Extents, beside, turned, turned_to};
+use crate::discrete::{Extents, beside, mean_place, turned, turned_to};
 use crate::model::Model;
 use crate::report::Warning;
 use crate::scene::ContactNormal;
@@ -15,7 +15,6 @@ use nalgebra::{Matrix3, Vector3};
 use signorini_fem_mesh::recovery::DiscretisationError;
 use signorini_fem_mesh::vec3::centroid;
 use signorini_fem_mesh::{Element, TetMesh, fields};
-use signorini_qp::vector;
 
 /// Lengths of a mesh that results are compared with.
 #[derive(Debug)]
@@ -214,10 +213,7 @@ fn turned_normal(model: &Model, recovered: &Recovered, u: &[f64], step: usize) -
     let pairs = model.points.iter().zip(&recovered.points);
     let touching = pairs.filter(|(p, state)| is_shaped(model, p.surface()) && state.state != ContactState::Open);
     let turns = touching.map(|(p, _)| {
-        let mut place = [0.0; 3];
-        for &(node, weight) in p.contact.sides.own.nodes() {
-            vector::axpy(weight, &displaced(node), &mut place);
-        }
+        let place = mean_place(&p.contact.sides.own, displaced);
         let turn = turned(scene, &p.contact, &pose(p.surface()), &place);
         ((p.surface(), p.node()), turn)
     });

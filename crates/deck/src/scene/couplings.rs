@@ -52,13 +52,13 @@ impl Couplings {
         Ok(Self(list))
     }
 
-    /// The coupling of a node of the deck, by position.
-    pub(super) fn of(&self, node: u32) -> Option<&Coupling> {
-        self.0.iter().find(|coupling| coupling.node == node)
+    /// The coupling of a node of the deck, by position, and its own.
+    pub(super) fn of(&self, node: u32) -> Option<(usize, &Coupling)> {
+        self.0.iter().enumerate().find(|(_, coupling)| coupling.node == node)
     }
 
     /// Whether a surface has the displacement of a node.
     pub(super) fn moves(&self, node: u32) -> bool {
-        self.of(node).is_some_and(|c| c.law == CouplingLaw::Kinematic)
+        self.of(node).is_some_and(|(_, c)| c.law == CouplingLaw::Kinematic)
     }
 }

@@ -1,6 +1,7 @@
 //! `*CLOAD`, `*DLOAD` and `*DSLOAD` of all steps as loads.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 
 use signorini_contact::Load;
 use signorini_fem_mesh::internal::distinct;
@@ -29,8 +30,8 @@ type Groups<T> = BTreeMap<usize, (usize, T)>;
 enum Place {
     /// A node of the mesh.
     Node(u32),
-    /// A node of the deck, by position, that stands for a surface.
-    Coupling(u32),
+    /// The surface of a coupling, by its position.
+    Coupling(usize),
 }
 
 /// A load of the volume: elements, what it is, and the component.
@@ -104,23 +105,25 @@ impl Loads {
                 known.distributed(to, (step, order), line, surfaces, faces)?;
             }
         }
-        let mut spreads: BTreeMap<u32, Spread> = BTreeMap::new();
+        let mut spreads = BTreeMap::new();
         for (&(place, component), track) in &forces.0 {
             let Some((value, history)) = loads.histories.add(known.timeline, track)? else {
                 continue;
             };
-            match (place, known.couplings) {
-                (Place::Node(node), _) => {
+            match place {
+                Place::Node(node) => {
                     let at = (node, known.raw.points[node as usize]);
                     let force = known.transforms.force(at, component, value, &track.word)?;
                     loads.force(history, track.order, node, force);
                 }
-                (Place::Coupling(node), couplings) => {
-                    if let (false, Some(coupling)) = (spreads.contains_key(&node), couplings.of(node)) {
-                        spreads.insert(node, Spread::new(coupling, known, faces)?);
+                Place::Coupling(index) => {
+                    let spread = match spreads.entry(index) {
+                        Entry::Occupied(made) => made.into_mut(),
+                        Entry::Vacant(place) => place.insert(Spread::new(&known.couplings.0[index], known, faces)?),
+                    };
+                    for (node, force) in spread.forces(component, value) {
+                        loads.force(history, track.order, node, force);
                     }
-                    let forces = spreads.get(&node).into_iter().flat_map(|s| s.forces(component, value));
-                    forces.for_each(|(node, force)| loads.force(history, track.order, node, force));
                 }
             }
         }
@@ -288,7 +291,7 @@ impl Known<'_> {
     /// What a force at a node of the deck, by position, is on.
     fn place_of_force(self, node: u32, line: &Condition<Components>) -> Result<Place, DeckError> {
         let rotation = line.kind.rotation.as_ref();
-        if let Some(coupling) = self.couplings.of(node) {
+        if let Some((index, coupling)) = self.couplings.of(node) {
             let CouplingLaw::Distributing { moments } = coupling.law else {
                 return Err(line.word.cannot(
                     "a surface that keeps its shape and moves under a force is not here; spread the force with \
@@ -299,7 +302,7 @@ impl Known<'_> {
                 Some(word) => {
                     Err(word.cannot("the *DISTRIBUTING of this node does not name the component; add it there"))
                 }
-                None => Ok(Place::Coupling(node)),
+                None => Ok(Place::Coupling(index)),
             };
         }
         let inside = self.raw.in_mesh(node).ok_or_else(|| {
