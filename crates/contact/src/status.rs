@@ -135,7 +135,7 @@ pub struct StepFailure {
     pub certificate: f64,
     /// The condition of the certificate that is violated so.
     pub condition: &'static str,
-    /// Which body slides away, where that is how it ended, or may at a limit of iterations.
+    /// Which body slides away, where that is how it ended, or may where no balance was found.
     pub slide: Option<Slide>,
     /// Length over thickness of the longest subdomain in contact, if it is so long that it keeps the solver from the
     /// end.

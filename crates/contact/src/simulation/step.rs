@@ -105,7 +105,12 @@ impl Simulation {
         let (model, problem) = (&self.model, &self.problem);
         let certificate = &recovered.certificate;
         let unbalanced = certificate.equilibrium.relative() >= certificate.largest();
-        if report.status == StepStatus::NotHeld || report.status == StepStatus::IterationLimit && unbalanced {
+        let slides_perhaps = match report.status {
+            StepStatus::NotHeld => true,
+            StepStatus::IterationLimit | StepStatus::Stagnated => unbalanced,
+            _ => false,
+        };
+        if slides_perhaps {
             report.slide = slides(model, &problem.rhs, &problem.multipliers(&self.iterate.lambda))?;
         }
         let before: Vec<f64> = (0..model.tangential_rows()).map(|k| state.traces(k).0).collect();

@@ -22,6 +22,9 @@ const MAX_TIGHTENINGS: usize = 3;
 /// Most evaluations of the Coulomb map in a step.
 const MAX_EVALUATIONS: usize = 200;
 
+/// Looks at which forces were no nearer to balance, while friction could hold the bodies, before a step is given up.
+const MAX_STALLS: usize = 3;
+
 pub(crate) struct SmalseSolver {
     rows: OrthonormalRows,
     norm: f64,
@@ -72,9 +75,10 @@ impl SmalseSolver {
         report
     }
 
-    /// The same for bodies that friction does not seem to hold: ends as [`StepStatus::NotHeld`] when products no longer
-    /// bring the forces nearer to balance, and friction within the slip bounds of the normal forces could not either.
-    /// Slip bounds follow normal forces the sooner the fewer products there are between two looks.
+    /// The same for bodies that friction does not seem to hold: when products no longer bring the forces nearer to
+    /// balance, it ends as [`StepStatus::NotHeld`] where friction within the slip bounds of the normal forces could not
+    /// either, and where it could, after some such looks, as [`StepStatus::Stagnated`]. Slip bounds follow normal forces
+    /// the sooner the fewer products there are between two looks.
     pub(crate) fn solve_while_balancing(
         &mut self,
         limit: usize,
@@ -82,7 +86,7 @@ impl SmalseSolver {
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
         let (mut all, mut left, mut share) = (StepReport::new(), limit, BALANCING);
-        let mut before = [f64::INFINITY; 2];
+        let (mut before, mut stalls) = ([f64::INFINITY; 2], 0);
         loop {
             let part = self.solve_within(left.min(share), task, iterate)?;
             left = left.saturating_sub(part.counters.products);
@@ -100,12 +104,14 @@ impl SmalseSolver {
             } else if now > BALANCED * before[0] {
                 let (problem, lambda) = (task.problem, &iterate.lambda);
                 let bound = |k, point: &_| problem.slip_bound(k, point, lambda);
-                match friction_could_hold(task.model, &problem.rhs, lambda, bound)? {
-                    true => share *= 2,
-                    false => all.status = StepStatus::NotHeld,
+                (share, stalls) = (2 * share, stalls + 1);
+                if !friction_could_hold(task.model, &problem.rhs, lambda, bound)? {
+                    all.status = StepStatus::NotHeld;
+                } else if stalls == MAX_STALLS {
+                    all.status = StepStatus::Stagnated;
                 }
             }
-            if left == 0 || all.status == StepStatus::NotHeld {
+            if left == 0 || all.status.is_lost() {
                 return Ok(all);
             }
             before = [before[1], now];
