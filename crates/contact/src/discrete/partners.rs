@@ -92,7 +92,7 @@ impl Paired {
         }
         let facet = |s: &Surface| s.total_area() / s.triangles().len() as f64;
         let [own, others] = [facet(&paired.surface), facet(&other.surface)];
-        let seen = |from: &Surface, to: &Surface| mortar_nodes(mesh, from, to, contact.tied);
+        let seen = |from: &Surface, to: &Surface| mortar_nodes(mesh, from, to, contact.tied, contact.crease);
         let there = || seen(&paired.surface, &other.surface);
         let back = || seen(&other.surface, &paired.surface);
         let is_curved = |s: &Surface| differ(s.frames().iter().map(|f| f.normal));

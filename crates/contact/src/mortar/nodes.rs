@@ -1,9 +1,9 @@
 //! The other side of each node of a surface.
 
 use super::search::{covers, in_order};
-use crate::tolerances::{COVERED, NO_WEIGHT};
+use crate::tolerances::{COVERED, NO_WEIGHT, SAME_NORMAL};
 use rayon::prelude::*;
-use signorini_fem_mesh::vec3::{add, scale};
+use signorini_fem_mesh::vec3::{add, dot, norm, scale};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use std::collections::BTreeMap;
 
@@ -30,7 +30,16 @@ pub(crate) struct MortarNode {
 /// Where sides that are `tied` are apart, as facets of curved sides are, displacements of the other side go on to the
 /// first one as in the tetrahedra behind it: linear ones, rotations among them, are the same on both sides, and what
 /// passes from one to the other has no moment.
-pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface, tied: bool) -> Vec<Option<MortarNode>> {
+///
+/// A node of a curved side whose facets meet at less than `crease` degrees has the normal of all of them, covered or
+/// not: where the other side ends it is as in the middle.
+pub(crate) fn mortar_nodes(
+    mesh: &TetMesh,
+    surface: &Surface,
+    other: &Surface,
+    tied: bool,
+    crease: f64,
+) -> Vec<Option<MortarNode>> {
     let triangles = in_order(mesh, surface);
     let covers = covers(mesh, &triangles, other, tied);
     let mut around: Vec<Vec<(u32, u8)>> = vec![Vec::new(); surface.nodes().len()];
@@ -45,6 +54,9 @@ pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface, t
     let curved: Vec<_> = curved
         .map(|(triangle, cover)| cover.as_ref().and_then(|_| triangle.normals(mesh)))
         .collect();
+    // tied sides need no normal, and means of displacements have their own
+    let bends = !tied && mesh.order() == 1;
+    let crease = crease.to_radians().cos();
     let is_tip = |node: u32| other.local(node).is_some();
     let node = |(local, facets): (usize, &Vec<(u32, u8)>)| {
         let own = surface.nodes()[local];
@@ -120,8 +132,20 @@ pub(crate) fn mortar_nodes(mesh: &TetMesh, surface: &Surface, other: &Surface, t
             partner,
             way: way / area,
             area,
-            frame: SurfaceFrame::from_normal(normal)?,
+            frame: match bends && is_bent(facets.iter().map(|f| triangles[f.0 as usize].vector(mesh)), crease) {
+                true => surface.frames()[local],
+                false => SurfaceFrame::from_normal(normal)?,
+            },
         })
     };
     around.par_iter().enumerate().map(node).collect()
+}
+
+/// Whether facets, as vectors, are not in one plane and no two of them meet at a crease, which is given by its cosine.
+fn is_bent(facets: impl Iterator<Item = [f64; 3]>, crease: f64) -> bool {
+    let vectors: Vec<[f64; 3]> = facets.collect();
+    let pairs = vectors.iter().flat_map(|v| vectors.iter().map(move |w| (v, w)));
+    let least = pairs.map(|(v, w)| dot(*v, *w) / (norm(*v) * norm(*w)));
+    let least = least.fold(1.0, f64::min);
+    least > crease && least < SAME_NORMAL
 }

@@ -30,6 +30,11 @@ impl Triangle {
         self.nodes.map(|n| mesh.points()[n as usize])
     }
 
+    /// Outward, of the length of its area between its corners.
+    pub(super) fn vector(&self, mesh: &TetMesh) -> [f64; 3] {
+        area_vector(&self.corners(mesh))
+    }
+
     /// All nodes in a mesh of order 2.
     fn quadratic(&self) -> Option<[u32; 6]> {
         let ([a, b, c], [ab, bc, ca]) = (self.nodes, self.mids?);
