@@ -53,6 +53,8 @@ signorini_fem_mesh::errors! {
         Coefficient { contact: usize, what: &'static str, value: f64 } =
             "friction of contact {contact}: the {what} is {value}; it must be finite and not negative (a decay rate \
             positive)";
+        ContactValue { contact: usize, name: &'static str, value: f64, range: &'static str } =
+            "contact {contact}: {name} = {value} is outside its range {range}";
         Compliance { contact: usize, value: f64 } =
             "contact {contact}: its compliance is {value}; it must be finite and not negative, a length over a stress, \
             0 for the exact law";

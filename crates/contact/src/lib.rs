@@ -70,7 +70,7 @@
 //!
 //! Work runs on the current [`rayon`] pool; results are bit-identical for any number of threads.
 
-// the file of a room that has its name holds its main type
+// the file that has the name of its folder holds its main type
 #![allow(clippy::module_inception)]
 
 mod discrete;

@@ -55,6 +55,7 @@ impl ContactError {
     pub fn parts(&self) -> Vec<Part> {
         let mut parts = match self {
             Self::Coefficient { contact, .. }
+            | Self::ContactValue { contact, .. }
             | Self::Compliance { contact, .. }
             | Self::EmptyTable { contact }
             | Self::TableRate { contact, .. }

@@ -6,7 +6,8 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 #[non_exhaustive]
 pub enum StepStatus {
-    /// The solver reached the tolerance, and the certificate is at most thirty times that (usually a tenth).
+    /// The certificate is at most the tolerance (usually a tenth), however the solver ended; or the solver reached the
+    /// tolerance, and smaller ones did not bring the certificate below it, but to at most thirty times it.
     Converged,
     /// A limit of iterations or products was reached first; the result is the last iterate.
     IterationLimit,
@@ -164,7 +165,7 @@ impl fmt::Display for StepFailure {
             };
             write!(
                 f,
-                "body {body} (with node {node}) {away} along {slide}, for want of {force:.3e} N; {remedy}"
+                "body {body} (with node {node}) {away} along {slide}, because {force:.3e} N are missing; {remedy}"
             )?;
         }
         if let Some(slender) = slender {

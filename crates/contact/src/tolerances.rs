@@ -1,7 +1,7 @@
 //! The numerical judgements of the crate, in one table: what each is relative to, and why. Numbers of rounds and
 //! weights of a cost stand where they are used.
 
-// ---- all rooms ----
+// ---- all folders ----
 
 /// What was computed twice, or from data of this size, differs by rounding only: directions, positions, lengths of
 /// loads, forces of subdomains in balance, sums of a difference formula. Relative to the larger one; of positions, to
@@ -46,6 +46,10 @@ pub(crate) const RAY: f64 = 1e-13;
 /// Distance from an edge of the surface of an obstacle, over the edge of its facet, up to which a place is on it: files
 /// have nine digits.
 pub(crate) const RIM: f64 = 1e-9;
+
+/// Distance left on the way to an obstacle, over the shortest one, below which it is rounding where it falls no further:
+/// that of coordinates, whatever the gap.
+pub(crate) const RAY_END: f64 = 0.01;
 
 /// Part of the way along a normal that must lead towards an obstacle to reach it.
 pub(crate) const STEEP: f64 = 0.05;
@@ -103,7 +107,8 @@ pub(crate) const DEPTH: f64 = 1e-9;
 /// Work on a free motion below this part of the size of the loads is rounding.
 pub(crate) const FREE_WORK: f64 = 1e-9;
 
-/// Length of the motion of a body, over the largest, from which on it is told to move along.
+/// Length of the motion of a body, over that of the body that slides away, from which on a report names it as moving
+/// with that body.
 pub(crate) const ALONGSIDE: f64 = 0.5;
 
 /// What contact forces leave of loads of length one, below which it is rounding.
@@ -113,7 +118,8 @@ pub(crate) const WRENCH_RESIDUAL: f64 = 1e-8;
 /// relative to the motion, which is found to [`LEVERAGE`].
 pub(crate) const SLIDING: f64 = 1e-3;
 
-/// What has to be left of a motion of length one without the opening: less says nothing of where the body slides.
+/// Least length that is left of a motion of length one when its opening part is taken out; a shorter rest does not tell
+/// where the body slides.
 pub(crate) const SLIDES: f64 = 0.5;
 
 /// Singular values below this part of the largest count as zero where contact forces are found.
@@ -128,7 +134,7 @@ pub(crate) const LEVERAGE: f64 = 1e5;
 /// Part by which loads must exceed Tresca friction to count.
 pub(crate) const TRESCA_EXCESS: f64 = 1e-6;
 
-/// Friction so many times as large is none that a remedy could name.
+/// Largest factor on friction that a remedy names.
 pub(crate) const MOST_FRICTION: f64 = 1e3;
 
 /// Accuracy of the factor of friction that is named, relative.
@@ -203,10 +209,9 @@ pub(crate) const ORDERS: [f64; 2] = [0.5, 2.5];
 /// thirtieth of that error and less in compact bodies. The certificate tells where it is not, as in thin ones.
 pub(crate) const LINEAR_SLACK: f64 = 15.0;
 
-/// Products of a step that are no effort in any case: with the inverse of a formed F it takes as many where contact is
-/// hard.
+/// Products of a step that never count as effort: with the inverse of a formed F a step with hard contact takes as many.
 pub(crate) const EASY: usize = 200;
-/// Products beyond those that are not worth forming F, however small it is.
+/// Products beyond those for which forming F does not pay, however small it is.
 pub(crate) const LITTLE: usize = 600;
 /// Products of a step with that inverse after which it does not help: a set takes two or three.
 pub(crate) const EXPLICIT_PRODUCTS: usize = 1000;

@@ -61,6 +61,8 @@ errors! {
         Setting { name: &'static str, value: f64, range: &'static str } =
             "setting {name} = {value} is outside its range {range}";
         Input { what: &'static str, entry: usize } = "{what} contains NaN or infinity at entry {entry}";
+        Scale { entry: usize, value: f64 } =
+            "the scale of component {entry} is {value}; that of a constrained component must be positive";
         NotFinite { quantity: &'static str, products: usize } =
             "{quantity} became NaN or infinite after {products} products; check the operator and the scale of the \
             data";

@@ -17,7 +17,7 @@
 //! | [`kkt::check`] | set, equality | independent check, shares no code with the solvers | 2, for the call |
 //!
 //! Solvers take the start in `x` and return the result there. They report counts by cause, and keep all vectors in a
-//! workspace that is created once, so iterations allocate nothing. A tolerance that is not reached is a [`Status`] in an
+//! workspace that is created once: iterations of conjugate gradients allocate nothing. A tolerance that is not reached is a [`Status`] in an
 //! `Ok` report; errors are invalid input or a breakdown ([`QpError`]). [`successive_approximations`] solves problems
 //! whose set depends on the solution.
 //!
@@ -78,8 +78,8 @@
 //! # Settings
 //!
 //! Each setter of [`ActiveSetSettings`], [`KprgpSettings`] and [`SmalseSettings`] documents meaning, scale, range,
-//! default and the symbol in the paper. All are dimensionless except [`SmalseSettings`]' `least`: a change of units does
-//! not change the iteration.
+//! default and the symbol in the paper. All are dimensionless except [`SmalseSettings`]' `least` and the floors of
+//! [`ActiveSetSettings`], which have the unit of `x`: a change of units does not change the iteration.
 //!
 //! # Determinism
 //!

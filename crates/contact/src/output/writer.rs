@@ -165,7 +165,8 @@ impl ResultWriter {
                 _ => Table::open(path, &self.probes, result)?,
             });
         }
-        if self.every > 0 {
+        // a static scene may be at time 0 itself
+        if self.every > 0 && result.time() > 0.0 {
             self.picture(&mut files, result, Moment::Rest)?;
         }
         Ok(files)

@@ -69,7 +69,10 @@ impl Effects {
         let friction = kinds.max_by_key(|k| *k as u8).unwrap_or(FrictionKind::None);
         let measured = |surface: usize| points.iter().any(|p| p.surface == surface && p.gap != 0.0);
         let has_gap = |surface: usize| match contacts[surface].gap {
-            Gap::None => false,
+            // turned where it has moved to, an obstacle opens more than its way
+            Gap::None | Gap::Constant(0.0) => {
+                contacts[surface].motion.is_some() && contacts[surface].rotation.is_some()
+            }
             Gap::Measured => measured(surface),
             _ => true,
         };

@@ -57,8 +57,8 @@ signorini_fem_mesh::errors! {
             the gap (with_gap, 0 for sides that touch), or take smaller facets, or mid-nodes on the curve",
             at(place);
         LargeCoefficient { contact: usize, node: u32, place: [f64; 3], coefficient: f64 } =
-            "friction of contact {contact}: the coefficient at node {node}, {}, is {coefficient}; no pair of materials \
-            has so much: {coefficient} in per cent is {}", at(place), 0.01 * coefficient;
+            "friction of contact {contact}: the coefficient at node {node}, {}, is {coefficient}; hardly any pair of \
+            materials has so much: {coefficient} in per cent is {}", at(place), 0.01 * coefficient;
         NothingActs { held: bool } =
             "no load acts, no support or obstacle moves and no sides overlap, so that all results are zero{}: look for \
             loads, or supports that move, that are missing",

@@ -141,7 +141,9 @@ impl Contact {
     /// Contact with the half-space below a plane: gap and normal follow from the plane.
     ///
     /// `point` lies on the plane, `outward` points out of the obstacle (up for a floor). A later
-    /// [`with_gap`](Self::with_gap) takes the place of the distance to the plane; move `point` instead.
+    /// [`with_gap`](Self::with_gap) takes the place of the distance to the plane; move `point` instead. The gap is the
+    /// distance across the plane: for another direction of contact use
+    /// [`Contact::obstacle`](Self::obstacle) with [`Obstacle::half_space`], which measures along it.
     pub fn half_space(tag: FacetTag, point: [f64; 3], outward: [f64; 3]) -> Self {
         let length = norm(&outward);
         // what has no direction stays as it is, and is refused with the scene
@@ -157,9 +159,9 @@ impl Contact {
         self
     }
 
-    /// A constant gap in m.
+    /// A constant gap in m; 0 for surfaces that touch, whatever their coordinates.
     pub fn with_gap(mut self, gap: f64) -> Self {
-        self.gap = if gap == 0.0 { Gap::None } else { Gap::Constant(gap) };
+        self.gap = Gap::Constant(gap);
         self
     }
 

@@ -2,7 +2,7 @@
 
 use super::facets::Facets;
 use crate::error::ContactError;
-use crate::tolerances::{NEWTON, RAY, STEEP};
+use crate::tolerances::{NEWTON, RAY, RAY_END, STEEP};
 use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
 use std::sync::Arc;
@@ -132,13 +132,17 @@ impl Obstacle {
     /// direction does not lead there.
     pub(super) fn along(&self, place: [f64; 3], direction: [f64; 3]) -> f64 {
         let (start, _) = self.distance(place);
-        let mut way = 0.0;
+        let (mut way, mut least) = (0.0, f64::INFINITY);
         for _ in 0..NEWTON {
             let (distance, gradient) = self.distance(add(place, scale(way, direction)));
             let slope = -dot(gradient, direction);
             if slope.is_nan() || slope < STEEP {
                 return start;
             }
+            if distance.abs() >= least && least <= RAY_END * start.abs() {
+                return way;
+            }
+            least = least.min(distance.abs());
             way += distance / slope;
             if distance.abs() <= RAY * (start.abs() + way.abs()) {
                 return way;
@@ -159,4 +163,45 @@ impl Obstacle {
 fn from_core(arm: [f64; 3], radius: f64) -> (f64, [f64; 3]) {
     let length = norm(arm);
     (length - radius, arm.map(|c| c / length))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Far from the origin the rounding of coordinates is more than that of a small gap.
+    #[test]
+    fn small_gaps_are_measured_along_the_direction_anywhere() {
+        let (centre, radius) = ([60.0, 40.0, 100.0], 10.0);
+        let ball = Obstacle::sphere(centre, radius);
+        let unit = [0.48, 0.64, -0.6];
+        let plane = Obstacle::half_space([10.0, 20.0, 30.0], [-0.6, 0.0, 0.8]);
+        for gap in [1e-2, 1e-4, 1e-6, -1e-6, -1e-4] {
+            for k in 0..200 {
+                let angle = 0.01 * f64::from(k);
+                let out = [0.6 * angle.cos(), 0.6 * angle.sin(), 0.8];
+                let place = add(centre, scale(radius + gap, out));
+                // the root of a square, without cancellation
+                let (arm, direction) = (sub(place, centre), scale(-1.0, out));
+                let direction = scale(
+                    1.0 / norm(add(direction, scale(0.3, unit))),
+                    add(direction, scale(0.3, unit)),
+                );
+                let (b, c) = (dot(arm, direction), gap * (2.0 * radius + gap));
+                let exact = c / (-b + (b * b - c).sqrt());
+                let way = ball.along(place, direction);
+                assert!(
+                    (way - exact).abs() <= 1e-12 * norm(place),
+                    "ball, {gap}, {k}: {way:e} {exact:e}"
+                );
+                // down, at an angle whose cosine is 0.8
+                let place = [10.0 + angle, 20.0 - angle, 30.0 + 0.75 * angle + 1.25 * gap];
+                let way = plane.along(place, [0.0, 0.0, -1.0]);
+                assert!(
+                    (way - 1.25 * gap).abs() <= 1e-12 * norm(place),
+                    "plane, {gap}, {k}: {way:e}"
+                );
+            }
+        }
+    }
 }

@@ -20,8 +20,8 @@ const MOST: usize = 1000;
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Partition {
-    /// Parts of several hundred tetrahedra each, by [`even_parts`]; materials are not mixed. A body with less than 1400
-    /// tetrahedra, or 240 of order 2, is one part.
+    /// Parts of several hundred tetrahedra each, by [`even_parts`]; materials are not mixed. A mesh with less than 1400
+    /// tetrahedra, or 240 of order 2, has one part a body, whatever its materials.
     Automatic,
     /// As [`Partition::Automatic`], with this number of parts.
     Subdomains(usize),

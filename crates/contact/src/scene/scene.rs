@@ -28,7 +28,8 @@ pub struct Scene {
 }
 
 impl Scene {
-    /// A free body without loads: static, with an automatic partition into subdomains.
+    /// A free body without loads but the eigenstrains of its materials, which are the first ones: static, with an
+    /// automatic partition into subdomains.
     pub fn new(mesh: TetMesh, mut materials: Materials) -> Self {
         let constant = |(factor, strain)| Load::eigenstrain(strain).with_history(History::constant(factor));
         let loads = materials.take_eigenstrains().into_iter().map(constant).collect();
@@ -148,7 +149,12 @@ impl Scene {
         &self.supports
     }
 
-    /// The loads, in the order in which they were added.
+    /// The elastic foundations, in the order in which they were added.
+    pub fn springs(&self) -> &[Spring] {
+        &self.springs
+    }
+
+    /// The loads, those of the materials' eigenstrains first, then in the order in which they were added.
     pub fn loads(&self) -> &[Load] {
         &self.loads
     }

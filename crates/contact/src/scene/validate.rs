@@ -103,7 +103,7 @@ impl Scene {
                 return Err(ContactError::ObstacleNormal { contact: index, normal });
             }
         }
-        let gap = !matches!(contact.gap, Gap::None) || contact.gap_history.is_some();
+        let gap = !matches!(contact.gap, Gap::None | Gap::Constant(0.0)) || contact.gap_history.is_some();
         let loose = contact.friction.is_some() || gap || contact.compliance != [0.0; 2];
         let turned = contact.normal != ContactNormal::Body || contact.rotation.is_some();
         if contact.tied && (loose || turned) {
@@ -112,7 +112,15 @@ impl Scene {
         if (contact.moves() && !contact.tied || contact.shape.as_ref().is_some()) && !contact.partner.is_empty() {
             return Err(ContactError::MovedPartner { contact: index });
         }
-        let check = ContactError::check;
+        let check = |good: bool, name, value, range| {
+            let error = ContactError::ContactValue {
+                contact: index,
+                name,
+                value,
+                range,
+            };
+            good.then_some(()).ok_or(error)
+        };
         if let Some((displacement, _)) = &contact.motion {
             let name = "displacement of the obstacle";
             let mut values = displacement.iter();

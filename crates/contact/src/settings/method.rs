@@ -9,7 +9,8 @@ use signorini_qp::{ActiveSetSettings, QpError, SmalseSettings};
 pub enum Method {
     /// The default: active sets predicted by the natural map, projected preconditioned conjugate gradients on
     /// each, slip bounds updated once the contact set has settled. Falls back to
-    /// [`SuccessiveApproximations`](Self::SuccessiveApproximations) if the prediction makes no progress.
+    /// [`SuccessiveApproximations`](Self::SuccessiveApproximations) if the prediction makes no progress. The tolerance
+    /// and the floors are those of the [`Settings`](crate::Settings), as in all methods.
     ActiveSet(ActiveSetSettings),
     /// The paper's method (3.17): Tresca problems by SMALSE and KPRGP, repeated with new slip bounds.
     SuccessiveApproximations {

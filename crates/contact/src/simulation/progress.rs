@@ -87,7 +87,7 @@ impl<W: Write> Observer for Progress<W> {
                 self.out,
                 "{number} of {} steps, t = {} s, {products} products",
                 self.steps,
-                result.time()
+                result.time() as f32
             )?;
             if let Some(failure) = result.failure() {
                 write!(self.out, ", {}", failure.status)?;

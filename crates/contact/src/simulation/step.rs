@@ -7,7 +7,7 @@ use crate::error::ContactError;
 use crate::model::{Model, slides};
 use crate::report::StepReport;
 use crate::result::{ContactState, PointState, Recovered, Sizes, summarise};
-use crate::scene::Friction;
+use crate::scene::{Friction, Increment};
 use crate::settings::Method;
 use crate::solve::{Attempt, Iterate, Task};
 use crate::state::{Kept, Peak, State};
@@ -23,10 +23,14 @@ impl Simulation {
     /// # Errors
     /// [`ContactError::Finished`] after the last step; a breakdown of a solver. The state is then unchanged.
     pub fn step(&mut self) -> Result<Arc<StepResult>, ContactError> {
+        let analysis = &self.model.scene.analysis;
+        let steps = analysis.steps();
+        let whole = analysis.increment(self.state.step());
+        let whole = whole.ok_or(ContactError::Finished { steps })?;
         if let Some(last) = self.result.take().and_then(Arc::into_inner) {
             self.spare = last.recovered;
         }
-        let result = on_pool(|| self.take_step()).map_err(|error| self.model.scene.names.tell(error))?;
+        let result = on_pool(|| self.take_step(whole)).map_err(|error| self.model.scene.names.tell(error))?;
         let result = Arc::new(result);
         self.total += result.report.counters;
         self.result = Some(result.clone());
@@ -34,11 +38,7 @@ impl Simulation {
     }
 
     /// Takes the next step, in increments where it fails and the settings allow it.
-    fn take_step(&mut self) -> Result<StepResult, ContactError> {
-        let analysis = &self.model.scene.analysis;
-        let steps = analysis.steps();
-        let whole = analysis.increment(self.state.step());
-        let whole = whole.ok_or(ContactError::Finished { steps })?;
+    fn take_step(&mut self, whole: Increment) -> Result<StepResult, ContactError> {
         // not taken out: laws of the user may panic
         let mut state = self.state.clone();
         let last = (state.step() > 0).then_some(state.halved);

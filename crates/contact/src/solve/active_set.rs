@@ -2,8 +2,8 @@
 //! forces.
 //!
 //! Where the active-set method makes no progress, the paper's method solves the step: from the last iterate where a
-//! limit was reached, from the start of the step where the active-set method stagnated. It is proved to solve every
-//! Tresca problem.
+//! limit was reached, from the start of the step where the active-set method stagnated. Its steps lower a cost, and with
+//! [`Expansion::FixedStep`](signorini_qp::Expansion) it is proved to solve every Tresca problem.
 
 use super::coarse::not_determined;
 use super::iterate::{Attempt, Iterate, Task, is_coulomb, step_status};
@@ -335,7 +335,7 @@ impl ActiveSetSolver {
         if self.work.shortest_step().is_finite() {
             iterate.shortest_step = self.work.shortest_step();
         }
-        report.counters.slip_bound_updates = updates;
+        report.counters.slip_bound_updates += updates;
         written.map(|()| status)
     }
 

@@ -103,8 +103,11 @@ struct Contradiction<'a> {
 
 impl Contradiction<'_> {
     fn settle(&self, stiffness: f64, limit: f64, lambda: &mut [f64]) -> bool {
-        let rows = &self.exchange.rows;
+        let (Exchange { rows, points, .. }, Task { model, problem, .. }) = (self.exchange, self.task);
         let mut any = false;
+        // slips are in units of their body
+        let unit = points.first().and_then(|place| problem.units.get(place.point));
+        let rounding = model.discrete.rounding / unit.copied().unwrap_or(1.0);
         // each step ends at a bound
         for _ in 0..2 * rows.len() {
             let mut found = self.way(lambda, true);
@@ -113,7 +116,7 @@ impl Contradiction<'_> {
                 found = self.way(lambda, false);
             }
             let (d, length) = found;
-            let small = d.norm() <= self.task.model.discrete.rounding || d.norm() * stiffness <= limit;
+            let small = d.norm() <= rounding || d.norm() * stiffness <= limit;
             if small || !length.is_finite() {
                 break;
             }

@@ -320,7 +320,7 @@ fn the_angle_of_a_crease_is_checked_and_can_be_chosen() {
         let scene = cornered(&[contact(bad)], 2);
         assert!(matches!(
             Simulation::new(scene, at(1e-9)),
-            Err(ContactError::Setting { name: "crease", .. })
+            Err(ContactError::ContactValue { name: "crease", .. })
         ));
     }
     let rows = |degrees| {

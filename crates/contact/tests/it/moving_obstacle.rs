@@ -166,7 +166,7 @@ fn obstacles_that_move_are_checked() {
         Some(ContactError::SupportInObstacle { time, .. }) if (time - 0.75).abs() < 1e-12
     ));
     let bad = refused(up.clone().with_motion([f64::NAN, 0.0, 0.0], ramp()), x());
-    assert!(matches!(bad, Some(ContactError::Setting { .. })));
+    assert!(matches!(bad, Some(ContactError::ContactValue { .. })));
     let wild = History::function(|t| 1.0 / (t - 0.5));
     let bad = refused(up.with_motion([0.0, 0.0, -0.1], wild), x());
     assert!(matches!(bad, Some(ContactError::HistoryValue { what: "contact", .. })));
@@ -211,5 +211,35 @@ fn what_is_squeezed_in_proportion_is_solved_before_it_starts() {
         assert_eq!(results[3].summary.slip < results[3].summary.active, coefficient == 0.3);
         let products: Vec<usize> = results.iter().map(|r| r.report.counters.products).collect();
         assert_eq!(products[1..], [2; 3], "{products:?}");
+    }
+}
+
+/// A floor without a gap, drawn along and tilted: where it touches the body has its height.
+#[test]
+fn a_floor_that_is_drawn_and_tilts_is_where_it_stands() {
+    let (way, angle, pivot) = (0.1, 0.05, 1.2);
+    let floor = floor(Friction::None)
+        .with_motion([way, 0.0, 0.0], ramp())
+        .with_rotation(
+            [pivot, 0.0, 0.0],
+            [0.0, 1.0, 0.0],
+            History::ramp(1.0, angle).expect("ramp"),
+        );
+    let scene = Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), uniform(1e6, 0.3))
+        .with_contact(floor)
+        .with_support(Support::components(brick::Z_MAX, [true, true, false]))
+        .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -1e5]))
+        .with_analysis(Analysis::quasistatic(1.0, 2));
+    let mesh = scene.mesh().clone();
+    let (_, results) = run(scene, at(1e-9));
+    for result in &results {
+        let (shift, turn) = (way * result.time, angle * result.time);
+        let closed = || result.points.iter().filter(|p| p.state != ContactState::Open);
+        assert_eq!(closed().count(), 15);
+        for node in closed().map(|p| p.node as usize) {
+            let height = turn * (pivot + shift - mesh.points()[node][0]);
+            let up = result.displacement[3 * node + 2];
+            assert!((up - height).abs() <= 1e-9, "{up} {height}");
+        }
     }
 }

@@ -289,7 +289,7 @@ fn ellipses_without_an_axis_are_refused() {
     for ratio in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         let error = of([1.0, 0.0, 0.0], ratio);
         assert!(
-            matches!(error, ContactError::Setting { name, .. } if name.contains("ratio")),
+            matches!(error, ContactError::ContactValue { name, .. } if name.contains("ratio")),
             "{error}"
         );
     }

@@ -433,7 +433,7 @@ fn obstacles_that_are_none_are_refused_with_their_place() {
         Obstacle::half_space([0.0; 3], [0.0; 3]),
     ] {
         let error = of(shape);
-        assert!(matches!(error, ContactError::Setting { .. }), "{error}");
+        assert!(matches!(error, ContactError::ContactValue { .. }), "{error}");
     }
     let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [2.0, 0.0, 0.0]];
     for (triangles, facet) in [(vec![], 0), (vec![[0, 1, 2], [0, 1, 3]], 1), (vec![[0, 1, 9]], 0)] {
@@ -454,5 +454,5 @@ fn obstacles_that_are_none_are_refused_with_their_place() {
     assert!(matches!(error, ContactError::MovedField { contact: 0, .. }), "{error}");
     solve(held(tilt(0.002), 1), at(1e-8));
     let error = refused(&held(floor.with_rotation([0.0; 3], [0.0; 3], ramp()), 1));
-    assert!(matches!(error, ContactError::Setting { .. }), "{error}");
+    assert!(matches!(error, ContactError::ContactValue { .. }), "{error}");
 }

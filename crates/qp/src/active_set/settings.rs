@@ -5,7 +5,7 @@ use crate::report::Status;
 use crate::settings::settings;
 
 settings! {
-    /// Settings of [`active_set`](crate::active_set()). All are dimensionless.
+    /// Settings of [`active_set`](crate::active_set()). All but the floors are dimensionless.
     #[derive(Debug, Clone, PartialEq)]
     ActiveSetSettings or QpError {
         /// Estimated error of `x` relative to its norm, and of its constrained part relative to its own.
@@ -16,7 +16,7 @@ settings! {
         contact_error_floor, with_contact_error_floor: f64 = 0.0, in "[0, inf)";
         /// Decrease of the error on one active set before the set is looked at again.
         forcing, with_forcing: f64 = 0.4, in "(0, 1)";
-        /// Most active sets; five times as many once descent is enforced.
+        /// Most active sets; five times as many once descent is enforced, or a path has led to another set.
         max_active_sets, with_max_active_sets: usize = 100, in "[1, inf)";
         /// Most operator products, besides those of trials, at most two thirds as many.
         max_products, with_max_products: usize = 10_000, in "[1, inf)";

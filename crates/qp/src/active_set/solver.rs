@@ -14,7 +14,7 @@
 //! The error is the length of the preconditioned residual. After `PATIENCE` sets without progress they are solved
 //! more accurately, every move has to lower the cost, and the set follows the solution only where the problem with
 //! the present set is solved. [`Status::Stagnated`] tells that this did not help either; [`smalse`](crate::smalse())
-//! is proved to converge.
+//! lowers a cost in every step, and is proved to converge with [`Expansion::FixedStep`](crate::Expansion).
 //!
 //! | local | meaning |
 //! |---|---|
@@ -150,6 +150,11 @@ fn check<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
     set.validate()?;
     expect_finite("x", x)?;
     expect_finite("the linear term", problem.linear)?;
-    expect_finite("the scale", &problem.scale[..set.constrained()])?;
+    let scale = &problem.scale[..set.constrained()];
+    expect_finite("the scale", scale)?;
+    if let Some(entry) = scale.iter().position(|s| *s <= 0.0) {
+        let value = scale[entry];
+        return Err(QpError::Scale { entry, value });
+    }
     expect_finite("the right side of the equality", problem.rhs)
 }

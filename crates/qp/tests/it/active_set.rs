@@ -211,9 +211,9 @@ fn wrong_input_is_refused() {
 
 /// The error names the scale, not the products that it spoils.
 #[test]
-fn a_scale_that_is_no_number_is_refused() {
+fn a_scale_that_is_not_positive_is_refused() {
     let (a, identity) = (crate::common::pair(), Identity(2));
-    for bad in [f64::NAN, f64::INFINITY] {
+    for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
         let problem = ActiveSetProblem {
             operator: &a,
             preconditioner: &identity,
@@ -237,16 +237,12 @@ fn a_scale_that_is_no_number_is_refused() {
             &mut work,
             hook,
         );
-        assert!(
-            matches!(
-                found,
-                Err(QpError::Input {
-                    what: "the scale",
-                    entry: 1
-                })
-            ),
-            "{found:?}"
-        );
+        let what = "the scale";
+        let expected = match bad.is_finite() {
+            true => QpError::Scale { entry: 1, value: bad },
+            false => QpError::Input { what, entry: 1 },
+        };
+        assert_eq!(found.err(), Some(expected));
     }
 }
 

@@ -218,7 +218,7 @@ fn contact_and_friction() {
     let nan = f64::NAN;
     let count = check(cases! {
         "contact on an unknown tag": attempt(touching(Contact::rigid(FacetTag(9)))) => Error::Contact(ContactError::UnknownTag { tag: 9, .. }), "contact 0", "tag 9";
-        "a crease of no angle": attempt(touching(Contact::rigid(brick::Z_MIN).with_crease(0.0))) => Error::Contact(ContactError::Setting { name: "crease", .. }), "crease", "(0, 180]";
+        "a crease of no angle": attempt(touching(Contact::rigid(brick::Z_MIN).with_crease(0.0))) => Error::Contact(ContactError::ContactValue { contact: 0, name: "crease", .. }), "crease", "(0, 180]";
         "a contact tag twice": attempt(touching(Contact::rigid(brick::Z_MIN).with_tag(brick::Z_MIN))) => Error::Surface(SurfaceError::RepeatedTag { .. }), "twice";
         "a normal of length zero": attempt(touching(Contact::rigid(brick::Z_MIN).with_normal([0.0; 3]))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal", "not zero";
         "a half-space without a direction": attempt(touching(Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0; 3]))) => Error::Contact(ContactError::ObstacleNormal { .. }), "normal", "0.0";

@@ -30,7 +30,7 @@ pub(crate) const KNOWN: [(&str, &str); 3] = [
     ),
     (
         "moved fields",
-        "an obstacle given by a gap field that is moved along the surface stays where it was: it is moved along its normal only",
+        "the check does not know how an obstacle given by a gap field moves along the surface: it is moved along its normal only",
     ),
 ];
 
