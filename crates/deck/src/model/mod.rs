@@ -24,7 +24,7 @@ pub(crate) use coupling::{Coupling, CouplingLaw};
 pub(crate) use keywords::read;
 pub(crate) use names::Names;
 pub(crate) use step::{
-    COMPONENT, Components, Condition, Conditions, DistributedKind, FORCE, Given, INCREMENTS, Step, Target,
+    COMPONENT, Components, Condition, Conditions, DistributedKind, FORCE, Given, INCREMENTS, Step, Target, VolumeLaw,
 };
 pub(crate) use transform::{Axes, Transform};
 

@@ -99,6 +99,45 @@ impl Track {
     }
 }
 
+/// A condition by what it acts on.
+pub(super) struct Tracks<K>(pub(super) BTreeMap<K, Track>);
+
+impl<K> Default for Tracks<K> {
+    fn default() -> Self {
+        Self(BTreeMap::new())
+    }
+}
+
+impl<K: Ord> Tracks<K> {
+    pub(super) fn remove(&mut self, step: usize) {
+        self.0.values_mut().for_each(|track| track.remove(step));
+    }
+
+    /// Notes a value. Another one in the same step is added, if it may be and has the same amplitude.
+    pub(super) fn set(
+        &mut self,
+        key: K,
+        (step, order, adds): (usize, usize, bool),
+        mut given: Given,
+        word: &Word,
+    ) -> Result<(), DeckError> {
+        let track = self.0.entry(key).or_insert_with(|| Track::new(order, word));
+        if let Some(before) = track.given_in(step) {
+            if !adds || before.amplitude != given.amplitude {
+                return Err(word.cannot(if adds {
+                    "a force along this component is given in this step already, with another amplitude; \
+                    put them on different nodes, or give one amplitude"
+                } else {
+                    "such a load is given there in this step already; add the values and give their sum once"
+                }));
+            }
+            given.value += before.value;
+        }
+        track.set(step, given);
+        Ok(())
+    }
+}
+
 /// A factor within a step.
 #[derive(Clone, Copy)]
 enum Law<'a> {

@@ -20,6 +20,7 @@ mod temperatures;
 mod ties;
 mod timeline;
 mod transforms;
+mod volume;
 
 use std::path::Path;
 

@@ -10,4 +10,5 @@ mod same_bits;
 mod temperatures;
 mod ties;
 mod transforms;
+mod volume;
 mod write;
