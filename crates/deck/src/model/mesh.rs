@@ -158,31 +158,28 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NAME", "TYPE", "INTERNAL"])?;
     card.flag("INTERNAL")?;
     let surface = card.need("NAME")?;
-    let kind = card.value("TYPE")?;
-    if let Some(kind) = kind.filter(|kind| kind.name != "ELEMENT") {
-        return Err(kind.word.fault(Fault::Unsupported(match kind.name.as_str() {
-            "NODE" => {
-                "a surface of nodes has no areas and normals, which contact and pressure need; give faces of \
-                elements, TYPE=ELEMENT"
-            }
-            _ => "only surfaces of element faces are read, TYPE=ELEMENT",
-        })));
-    }
+    let kinds = ["ELEMENT", "NODE"];
+    let of_nodes = card.choice("TYPE", &kinds, "TYPE=ELEMENT or TYPE=NODE")? == Some(1);
     if model.surfaces.position(&surface.name).is_some() {
         let why = "a surface of this name is there already; give all its faces at once";
         return Err(card.word.cannot(why));
     }
     let mut faces = Vec::new();
     for line in &card.lines {
-        let wanted = "an element or element set, and a face S1, S2, S3 or S4 (SPOS or SNEG of rigid facets)";
+        let wanted = match of_nodes {
+            true => "a node or node set",
+            false => "an element or element set, and a face S1, S2, S3 or S4 (SPOS or SNEG of rigid facets), or none",
+        };
         let fields = line.at_most(2, wanted)?;
-        let side = match fields.get(1).map(|f| name(f)).as_deref() {
-            Some("S1") => Side::Face(1),
-            Some("S2") => Side::Face(2),
-            Some("S3") => Side::Face(3),
-            Some("S4") => Side::Face(4),
-            Some("SPOS") => Side::Facet { positive: true },
-            Some("SNEG") => Side::Facet { positive: false },
+        let side = match (of_nodes, fields.get(1).map(|f| name(f)).as_deref()) {
+            (true, None) => Side::Nodes,
+            (false, None | Some("")) => Side::Outside,
+            (false, Some("S1")) => Side::Face(1),
+            (false, Some("S2")) => Side::Face(2),
+            (false, Some("S3")) => Side::Face(3),
+            (false, Some("S4")) => Side::Face(4),
+            (false, Some("SPOS")) => Side::Facet { positive: true },
+            (false, Some("SNEG")) => Side::Facet { positive: false },
             _ => return Err(line.entry(&fields, 1).expected(wanted)),
         };
         let target = target(line, fields[0])?;
@@ -190,7 +187,9 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         faces.push(Faces { target, side, word });
     }
     if faces.is_empty() {
-        return Err(card.word.cannot("the surface has no faces; give them in lines"));
+        return Err(card
+            .word
+            .cannot("the surface has no faces; give them, or nodes with TYPE=NODE, in lines"));
     }
     model.surfaces.add(surface.name, faces);
     Ok(())

@@ -112,9 +112,13 @@ pub(crate) enum Side {
     Face(u8),
     /// Where the normal of a rigid facet points to, or the other side.
     Facet { positive: bool },
+    /// All faces of solids on the boundary.
+    Outside,
+    /// Faces on the boundary whose corners are all among the nodes of the surface.
+    Nodes,
 }
 
-/// Faces with the same number, of an element or of those of a set.
+/// Faces with the same number, of an element or of those of a set; nodes of a surface of nodes.
 #[derive(Debug, Clone)]
 pub(crate) struct Faces {
     pub(crate) target: Target,
@@ -154,10 +158,13 @@ pub(crate) struct Interaction {
     pub(crate) compliance: [f64; 2],
 }
 
-/// Elements that keep their shape and follow a node.
+/// Elements or nodes that keep their shape and follow a node.
 #[derive(Debug, Clone)]
 pub(crate) struct RigidBody {
-    pub(crate) elset: Named,
+    /// The keyword.
+    pub(crate) word: Word,
+    pub(crate) elset: Option<Named>,
+    pub(crate) nset: Option<Named>,
     /// The node whose displacement it has, with the word that names it.
     pub(crate) reference: (Target, Word),
     /// The node whose displacement is its rotation.

@@ -252,15 +252,21 @@ fn surfaces(model: &mut Model, card: &Card, law: &Law) -> Result<(), DeckError> 
 
 /// `*RIGID BODY`.
 pub(super) fn rigid(model: &mut Model, card: &Card) -> Result<(), DeckError> {
-    card.allow(&["ELSET", "REF NODE", "ROT NODE"])?;
+    card.allow(&["ELSET", "NSET", "TIE NSET", "REF NODE", "ROT NODE"])?;
     card.lines_at_most(0, "no data")?;
-    let elset = card.need("ELSET")?;
+    let elset = card.value("ELSET")?;
+    let nset = card.value("NSET")?.or(card.value("TIENSET")?);
+    if elset.is_none() && nset.is_none() {
+        return Err(card.word.fault(Fault::MissingParameter("ELSET or NSET")));
+    }
     let node = |value: Named| match label(&value.name) {
         Some(number) => (Target::Number(number), value.word),
         None => (Target::Name(value.name), value.word),
     };
     model.rigid.push(RigidBody {
+        word: card.word.clone(),
         elset,
+        nset,
         reference: node(card.need("REFNODE")?),
         rotation: card.value("ROTNODE")?.map(node),
     });

@@ -4,13 +4,13 @@ use signorini_contact::{Contact, Friction};
 use signorini_fem_mesh::FacetTag;
 
 use super::faces::{FaceTable, Known};
-use super::rigid::{Motion, half_space};
+use super::rigid::{Motion, obstacle};
 use super::ties;
 use crate::error::DeckError;
 use crate::lexer::Named;
 use crate::model::{Ignored, Law, Names};
 
-/// One contact for each pair: nodes of the dependent surface touch nodes of the other one, or a rigid plane.
+/// One contact for each pair: nodes of the dependent surface touch nodes of the other one, or an obstacle.
 pub(super) fn contacts(
     known: Known,
     faces: &FaceTable,
@@ -47,9 +47,9 @@ pub(super) fn contacts(
                 return Err(partner.cannot(why));
             }
             ([], Some(_)) => {
-                let nodes = faces.nodes_of(known.raw, dependent as u32);
-                let plane = half_space(&faces.rigid[other], motions, slave[0], &nodes);
-                plane.map_err(|why| partner.cannot(why))?
+                let nodes = faces.places_of(known.raw, dependent as u32);
+                let rigid = obstacle(&faces.rigid[other], motions, slave[0], &nodes);
+                rigid.map_err(|why| partner.cannot(why))?
             }
             ([first, more @ ..], interaction) => {
                 let between = match interaction {

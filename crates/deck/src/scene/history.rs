@@ -21,6 +21,8 @@ pub(super) struct Track {
     pub(super) order: usize,
     /// Where it appears first.
     pub(super) word: Word,
+    /// A value and its factor that stand in place of events.
+    course: Option<(f64, History)>,
 }
 
 impl Track {
@@ -29,6 +31,15 @@ impl Track {
             events: Vec::new(),
             order,
             word: word.clone(),
+            course: None,
+        }
+    }
+
+    /// The same with a value and a history that follow from others.
+    pub(super) fn with_course(&self, value: f64, history: History) -> Self {
+        Self {
+            course: Some((value, history)),
+            ..Self::new(self.order, &self.word)
         }
     }
 
@@ -67,12 +78,18 @@ impl Track {
 
     /// The value that the factor multiplies: the first that is not zero; `None` if there is none.
     fn reference(&self) -> Option<f64> {
+        if let Some((value, _)) = &self.course {
+            return Some(*value).filter(|value| *value != 0.0);
+        }
         let values = self.events.iter().filter_map(|e| Some(e.1?.value));
         values.into_iter().find(|value| *value != 0.0)
     }
 
     /// The points of the factor, times strictly ascending.
     fn points(&self, timeline: &Timeline, reference: f64) -> Vec<(f64, f64)> {
+        if let Some((_, history)) = &self.course {
+            return history.points().to_vec();
+        }
         let spans = &timeline.spans;
         let mut points = Vec::new();
         let (mut value, mut follows) = (0.0, None);

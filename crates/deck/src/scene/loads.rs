@@ -211,6 +211,12 @@ impl Known<'_> {
                 None => Ok(Place::Coupling(index)),
             };
         }
+        if self.bodies.has(node) {
+            return Err(line.word.cannot(
+                "a rigid body is held or moved here, not loaded; give its displacement with *BOUNDARY, whose reaction is \
+                the force",
+            ));
+        }
         let inside = self.raw.in_mesh(node).ok_or_else(|| {
             let label = self.model.nodes[node as usize].label;
             line.word.cannot(format!(

@@ -57,12 +57,17 @@ fn keywords() {
         "not negative",
     );
     behind("*PART, NAME=A\n", "*PART, NAME=A", "*PART", "flat one");
-    behind("*RIGID BODY\n", "*RIGID BODY", "*RIGID BODY", "ELSET is missing");
+    behind(
+        "*RIGID BODY\n",
+        "*RIGID BODY",
+        "*RIGID BODY",
+        "ELSET or NSET is missing",
+    );
     behind(
         "*RIGID BODY, ANALYTICAL SURFACE=A\n",
         "*RIGID BODY, ANALYTICAL SURFACE=A",
         "ANALYTICAL SURFACE=A",
-        "ELSET, REF NODE, ROT NODE",
+        "ELSET, NSET, TIE NSET, REF NODE, ROT NODE",
     );
     behind("*RESTART, READ\n", "*RESTART, READ", "*RESTART", "resumed");
     inside("*DYNAMIC\n", "*DYNAMIC", "*DYNAMIC", "only *STATIC");
