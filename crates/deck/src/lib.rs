@@ -59,9 +59,11 @@
 //! | keyword | parameters | what it means here |
 //! |---|---|---|
 //! | `*HEADING` | | a comment |
+//! | `*PART`, `*END PART` | `NAME` | nodes, elements, sets, surfaces and sections of a part |
+//! | `*ASSEMBLY`, `*INSTANCE` and their ends | `NAME`, `PART` | where parts are, see below |
 //! | `*NODE` | `NSET` | any numbers; nodes that no element uses are dropped |
 //! | `*ELEMENT` | `TYPE=C3D4`, `C3D10`, `ELSET` | linear or quadratic tetrahedra; `R3D3` and `R3D4` for rigid surfaces; other types are refused |
-//! | `*NSET`, `*ELSET` | `NSET` or `ELSET`, `GENERATE`, `INTERNAL` | numbers and sets defined before; cards of one name add up |
+//! | `*NSET`, `*ELSET` | `NSET` or `ELSET`, `GENERATE`, `INTERNAL`, `INSTANCE` | numbers and sets defined before; cards of one name add up |
 //! | `*SURFACE` | `NAME`, `TYPE=ELEMENT`, `INTERNAL` | faces `S1` to `S4` of elements or sets, on the boundary, or without a number all that are there; `SPOS`, `SNEG` of rigid facets |
 //! | | `TYPE=NODE` | the faces on the boundary whose corners are all among these nodes and sets; a node on none of them is refused |
 //! | `*MATERIAL` | `NAME` | |
@@ -85,7 +87,7 @@
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |
 //! | `*STATIC` | `DIRECT`, `SOLVER` | first increment, period, least and largest increment |
 //! | `*CLOAD` | `OP`, `AMPLITUDE` | forces at nodes; moments, 4 to 6, at the node of a `*DISTRIBUTING` |
-//! | `*DLOAD` | `OP`, `AMPLITUDE` | `P1` to `P4` on faces; `GRAV`, `CENTRIF` (with the square of the angular velocity), `BX`, `BY`, `BZ` in elements |
+//! | `*DLOAD` | `OP`, `AMPLITUDE` | `P1` to `P4` on faces; `GRAV`, `CENTRIF` (with the square of the angular velocity), `BX`, `BY`, `BZ` in elements, without a set in all |
 //! | `*DSLOAD` | `OP`, `AMPLITUDE` | `P` on a surface |
 //! | `*TEMPERATURE` | `OP`, `AMPLITUDE` | at nodes; linear between the corners of a tetrahedron |
 //! | `*END STEP`, `*INCLUDE` | `INPUT` | paths are relative to the file that includes; loops are refused |
@@ -122,6 +124,13 @@
 //! All six components of the reference node must be held or moved (rotations are 4 to 6, `ENCASTRE` is all, or the
 //! components 1 to 3 of the rotation node); displacement and rotation have one history each. A body that is free or
 //! loaded is refused.
+//!
+//! # Parts and instances
+//!
+//! Names of a part are those of an instance behind its name and a dot: `ROD-1.TIP` is the set `TIP` of the instance
+//! `ROD-1`. The first instance keeps the numbers of its nodes and elements; each later one adds to them once more the
+//! power of ten above all numbers of parts, so that node 12 of the third instance is 2012 if parts have numbers up to
+//! 999. Nodes and elements of the assembly count as one instance.
 //!
 //! # Surfaces and tags
 //!

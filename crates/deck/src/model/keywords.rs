@@ -1,5 +1,6 @@
 //! Which keyword is read by whom, where it may stand, and what is said about the others.
 
+use super::assembly::Assembly;
 use super::step::{self, SOLVER, Step};
 use super::{Ignored, Model, coupling, elastic, mesh, property, temperature, transform};
 use crate::error::{DeckError, Fault};
@@ -8,7 +9,7 @@ use crate::lexer::Card;
 /// What is read, as an error lists it.
 const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, *EXPANSION, \
 *INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *TRANSFORM, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, \
-*TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
+*TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *PART, *ASSEMBLY, *INSTANCE, *SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
 which are ignored and reported";
 
 /// Requests for output, which ask nothing of the solution.
@@ -17,12 +18,7 @@ CONTACTOUTPUT FACEPRINT SECTIONPRINT ENERGYFILE ENERGYPRINT ENERGYOUTPUT OUTPUT 
 TIMEPOINTS";
 
 /// Keywords of these programs that have no counterpart here, and what to do.
-const REFUSED: [(&str, &str); 12] = [
-    (
-        "ASSEMBLY PART INSTANCE",
-        "decks with parts and an assembly are not read; write a flat one (in Abaqus/CAE: Edit Attributes, do not use \
-        parts and assemblies)",
-    ),
+const REFUSED: [(&str, &str); 11] = [
     ("EQUATION MPC", "equations between nodes are not here"),
     (
         "DISTRIBUTINGCOUPLING KINEMATICCOUPLING",
@@ -89,9 +85,13 @@ const INSIDE: &str = "this belongs to a step; put it between *STEP and *END STEP
 pub(crate) fn read(cards: &[Card]) -> Result<Model, DeckError> {
     let mut model = Model::default();
     let mut step: Option<Step> = None;
+    let mut assembly = Assembly::default();
     for card in cards {
-        read_card(&mut model, &mut step, card)?;
+        if step.is_some() || !assembly.take(&mut model, card)? {
+            read_card(&mut model, &mut step, card)?;
+        }
     }
+    assembly.end()?;
     match step {
         Some(step) => Err(step.word.cannot("the step does not end; put *END STEP after it")),
         None => Ok(model),

@@ -20,6 +20,9 @@ const TYPES: [(&str, Kind, usize, &str); 4] = [
     ),
 ];
 
+/// Why a surface is refused whose name is not new.
+pub(super) const TWICE: &str = "a surface of this name is there already; give all its faces at once";
+
 const LABEL: &str = "a number from 1 to 2147483647";
 
 pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
@@ -105,9 +108,9 @@ pub(super) fn set(model: &mut Model, card: &Card, key: &'static str) -> Result<(
             continue;
         }
         for field in line.fields() {
-            let member = match target(line, field)? {
-                Target::Number(number) => Member::One(number),
-                Target::Name(name) => Member::Set(name),
+            let member = match label(field) {
+                Some(number) => Member::One(number),
+                None => Member::Set(set_name(line, field)?),
             };
             members.push((member, line.location.clone()));
         }
@@ -143,15 +146,19 @@ fn range(line: &Word) -> Result<Member, DeckError> {
 
 /// A number, or the name of a set.
 pub(super) fn target(line: &Word, field: &str) -> Result<Target, DeckError> {
-    if let Some(number) = label(field) {
-        return Ok(Target::Number(number));
+    match label(field) {
+        Some(number) => Ok(Target::Number(number)),
+        None => set_name(line, field).map(Target::Name),
     }
+}
+
+fn set_name(line: &Word, field: &str) -> Result<String, DeckError> {
     let begins = field.chars().next();
     if begins.is_none_or(|c| c.is_ascii_digit() || "+-.".contains(c)) {
         let wanted = "a number from 1 to 2147483647, or the name of a set";
         return Err(line.entry(&[field], 0).expected(wanted));
     }
-    Ok(Target::Name(name(field)))
+    Ok(name(field))
 }
 
 pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
@@ -161,8 +168,7 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     let kinds = ["ELEMENT", "NODE"];
     let of_nodes = card.choice("TYPE", &kinds, "TYPE=ELEMENT or TYPE=NODE")? == Some(1);
     if model.surfaces.position(&surface.name).is_some() {
-        let why = "a surface of this name is there already; give all its faces at once";
-        return Err(card.word.cannot(why));
+        return Err(card.word.cannot(TWICE));
     }
     let mut faces = Vec::new();
     for line in &card.lines {

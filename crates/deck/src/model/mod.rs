@@ -5,6 +5,7 @@
 //! understood end here, with their place; names are looked up by [`crate::scene`], above. May use `lexer` and
 //! `error`.
 
+mod assembly;
 mod coupling;
 mod elastic;
 mod keywords;

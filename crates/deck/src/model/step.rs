@@ -13,11 +13,12 @@ pub(super) const SOLVER: &str = "a setting of another solver";
 /// Most increments of a deck.
 pub(crate) const INCREMENTS: f64 = 1e6;
 
-/// A node or element by its number, or a set by its name.
+/// A node or element by its number, a set by its name, or all there are.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) enum Target {
     Number(u32),
     Name(String),
+    All,
 }
 
 impl fmt::Display for Target {
@@ -25,6 +26,7 @@ impl fmt::Display for Target {
         match self {
             Self::Number(number) => write!(f, "{number}"),
             Self::Name(name) => f.write_str(name),
+            Self::All => f.write_str("all"),
         }
     }
 }
@@ -415,12 +417,14 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
                 .part(fields[2])
                 .expected("the square of an angular velocity, not negative"));
         }
-        let target = match on_surface {
-            true => Target::Name(name(fields[0])),
-            false => target(line, fields[0])?,
+        let target = match (on_surface, &kind) {
+            (true, _) => Target::Name(name(fields[0])),
+            // without a set Abaqus loads the whole model
+            (false, DistributedKind::Volume(_)) if fields[0].is_empty() => Target::All,
+            (false, _) => target(line, fields[0])?,
         };
         step.distributed.lines.push(Condition {
-            word: line.part(fields[0]),
+            word: line.entry(&fields, 0),
             target,
             kind,
             given: Given { value, amplitude },

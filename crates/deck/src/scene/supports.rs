@@ -115,6 +115,7 @@ impl Table {
         let name = match target {
             Target::Number(_) => SINGLE,
             Target::Name(name) => name,
+            Target::All => "all",
         };
         let known = self.owners.iter().position(|owner| owner.0 == name);
         known.unwrap_or_else(|| {

@@ -1,5 +1,6 @@
 //! Decks: what they say, that it is the same as what a program says, and what is refused.
 
+mod assembly;
 mod broken;
 mod couplings;
 mod meaning;

@@ -56,7 +56,6 @@ fn keywords() {
         "POSITION TOLERANCE=-1.",
         "not negative",
     );
-    behind("*PART, NAME=A\n", "*PART, NAME=A", "*PART", "flat one");
     behind(
         "*RIGID BODY\n",
         "*RIGID BODY",
