@@ -1,9 +1,9 @@
 //! Parts, their instances and the assembly, as one flat model.
 //!
-//! Each instance has the nodes, elements, sets, surfaces and sections of its part: numbers of the first one as they are,
-//! of each later one with one more time the power of ten above all numbers of parts, and names with the name of the
-//! instance and a dot before them. Nodes and elements of the assembly itself count as one more instance, with names as
-//! they are.
+//! Each instance has the nodes, elements, sets, surfaces and sections of its part: numbers of the first one as they
+//! are, of each later one with one more time the power of ten above all numbers of parts, and names with the name of
+//! the instance and a dot before them. Nodes and elements of the assembly itself count as one more instance, with names
+//! as they are.
 
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, norm, scale, sub};
 
@@ -11,10 +11,13 @@ use super::{Faces, Member, Model, Names, Section, Set, Target, mesh, property};
 use crate::error::{DeckError, Fault, Word};
 use crate::lexer::{Card, LARGEST, Named};
 
+/// Most nodes, elements and members of sets of all instances together.
+const COPIES: u64 = 5_000_000;
+
 const NESTED: &str = "the part, instance or assembly before has not ended; end it first";
 
-const OUTSIDE: &str = "between *PART and *END PART only nodes, elements, sets, surfaces and *SOLID SECTION are read; put \
-this behind *END PART";
+const OUTSIDE: &str = "between *PART and *END PART only nodes, elements, sets, surfaces and *SOLID SECTION are read; \
+put this behind *END PART";
 
 /// What is open, and what has been read of parts.
 #[derive(Default)]
@@ -30,6 +33,7 @@ pub(super) struct Assembly {
     /// The same of nodes and elements of the assembly.
     own: Option<u32>,
     slots: u32,
+    copies: u64,
 }
 
 /// A translation, and then a rotation: two points of its axis and the angle, degrees.
@@ -157,6 +161,16 @@ impl Assembly {
         let moved = placed(card)?;
         let offset = self.slot(&card.word)?;
         let part = self.parts.at(self.parts.find("part", &part.name, &part.word)?);
+        let sets = part.nsets.iter().chain(part.elsets.iter());
+        let members = sets.map(|(_, set)| set.len()).sum::<usize>();
+        self.copies += (part.nodes.len() + part.elements.len() + members) as u64;
+        if self.copies > COPIES {
+            return Err(card.word.fault(Fault::TooMany {
+                what: "nodes, elements and members of sets in all instances",
+                most: COPIES,
+                remedy: "write a deck without parts",
+            }));
+        }
         let prefix = format!("{}.", named.name);
         let scope = Scope {
             own: &prefix,

@@ -380,8 +380,8 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
         let wanted = if on_surface {
             "a surface, P, and a pressure"
         } else {
-            "an element or element set, one of P1 to P4, GRAV, CENTRIF, BX, BY, BZ, a value, with GRAV a direction, and \
-            with CENTRIF, whose value is the square of the angular velocity, a point and the direction of the axis"
+            "an element or element set, one of P1 to P4, GRAV, CENTRIF, BX, BY, BZ, a value, with GRAV a direction, \
+            and with CENTRIF, whose value is the square of the angular velocity, a point and the direction of the axis"
         };
         let fields = line.at_most(9, wanted)?;
         let label = name(fields.get(1).unwrap_or(&""));

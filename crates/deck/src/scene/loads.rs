@@ -213,8 +213,8 @@ impl Known<'_> {
         }
         if self.bodies.has(node) {
             return Err(line.word.cannot(
-                "a rigid body is held or moved here, not loaded; give its displacement with *BOUNDARY, whose reaction is \
-                the force",
+                "a rigid body is held or moved here, not loaded; give its displacement with *BOUNDARY, whose reaction \
+                is the force",
             ));
         }
         let inside = self.raw.in_mesh(node).ok_or_else(|| {

@@ -67,8 +67,8 @@ impl Motion {
                     continue;
                 };
                 if history > 0 {
-                    let why = "the components of a rigid motion have different histories, and displacement and rotation \
-                    have one each; give their components one amplitude";
+                    let why = "the components of a rigid motion have different histories, and displacement and \
+                    rotation have one each; give their components one amplitude";
                     return Err(word.cannot(why));
                 }
                 *component = size;
@@ -80,8 +80,8 @@ impl Motion {
         Ok(Self { shift, turn, about })
     }
 
-    /// A component of the displacement of a place, for small rotations, and its history; `None` if it is zero, the error
-    /// if there are two.
+    /// A component of the displacement of a place, for small rotations, and its history; `None` if it is zero, the
+    /// error if there are two.
     pub(super) fn at(&self, place: Vec3, component: usize) -> Result<Option<(f64, History)>, &'static str> {
         let arm = sub(place, self.about);
         let shift = self.shift.as_ref().map(|(by, history)| (by[component], history));

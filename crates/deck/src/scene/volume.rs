@@ -86,7 +86,7 @@ impl Volume {
                     && before != index
                 {
                     return Err(word.cannot(
-                        "centrifugal forces about another axis stand there; give the same axis, or in a later step OP=NEW",
+                        "centrifugal forces about another axis stand there; give the same axis, or OP=NEW in a later step",
                     ));
                 }
                 let key = (target.clone(), Kind::Centrifugal(index), 0);
