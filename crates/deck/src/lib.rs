@@ -76,7 +76,8 @@
 //! | `*SURFACE INTERACTION` | `NAME` | |
 //! | `*SURFACE BEHAVIOR` | `PRESSURE-OVERCLOSURE=HARD`, `LINEAR` | contact is hard and exact, or has a normal compliance, the inverse of the slope; other laws are refused |
 //! | `*FRICTION` | `SLIP TOLERANCE`, `ELASTIC SLIP` | Coulomb's coefficient, and elastic slip where a stick slope stands beside it; both parameters are ignored: friction is exact |
-//! | `*CONTACT PAIR` | `INTERACTION`, `TYPE`, `SMALL SLIDING` | the first (dependent) surface touches the second, whether their meshes match or not; sliding is small |
+//! | `*CONTACT PAIR` | `INTERACTION`, `TYPE`, `SMALL SLIDING`, `ADJUST` | the first (dependent) surface touches the second, whether their meshes match or not; sliding is small; with `ADJUST` gaps up to that length and overlaps are none |
+//! | `*CLEARANCE` | `SLAVE`, `MASTER`, `VALUE` | the gap of a contact pair, in place of the measured one; negative for a press fit |
 //! | `*TIE` | `NAME`, `ADJUST`, `POSITION TOLERANCE` | bonded surfaces, whether their meshes match or not; nodes are not moved, which is reported where they would be; nodes beyond the tolerance, which CalculiX leaves free, are refused |
 //! | `*RIGID BODY` | `ELSET`, `NSET`, `REF NODE`, `ROT NODE` | an obstacle, or nodes of elastic elements that it carries, see below |
 //! | `*COUPLING` | `CONSTRAINT NAME`, `REF NODE`, `SURFACE` | a node that stands for a surface, as the card behind it says |

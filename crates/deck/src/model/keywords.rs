@@ -9,7 +9,7 @@ use crate::lexer::Card;
 /// What is read, as an error lists it.
 const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, *EXPANSION, \
 *INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *TRANSFORM, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, \
-*TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *PART, *ASSEMBLY, *INSTANCE, \
+*CLEARANCE, *TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *PART, *ASSEMBLY, *INSTANCE, \
 *SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
 which are ignored and reported";
 
@@ -19,7 +19,7 @@ CONTACTOUTPUT FACEPRINT SECTIONPRINT ENERGYFILE ENERGYPRINT ENERGYOUTPUT OUTPUT 
 TIMEPOINTS";
 
 /// Keywords of these programs that have no counterpart here, and what to do.
-const REFUSED: [(&str, &str); 11] = [
+const REFUSED: [(&str, &str); 10] = [
     ("EQUATION MPC", "equations between nodes are not here"),
     (
         "DISTRIBUTINGCOUPLING KINEMATICCOUPLING",
@@ -41,10 +41,6 @@ const REFUSED: [(&str, &str); 11] = [
         "bodies, contacts and coefficients of friction hold for all steps",
     ),
     (
-        "CLEARANCE",
-        "the gap is measured between the nodes; move one of the bodies",
-    ),
-    (
         "CONTACT",
         "general contact is not here; name the surfaces that may touch with *CONTACT PAIR",
     ),
@@ -55,12 +51,7 @@ const REFUSED: [(&str, &str); 11] = [
 ];
 
 /// Parameters of keywords that are read, likewise.
-const PARAMETERS: [(&str, &str, &str); 5] = [
-    (
-        "CONTACTPAIR",
-        "ADJUST",
-        "nodes are not moved; put them where they belong, and remove it",
-    ),
+const PARAMETERS: [(&str, &str, &str); 4] = [
     ("COUPLING", "ORIENTATION", "components are along x, y, z; remove it"),
     (
         "BOUNDARY",
@@ -124,6 +115,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         "SURFACEBEHAVIOR" => Some(property::behavior),
         "FRICTION" => Some(property::friction),
         "CONTACTPAIR" => Some(property::pair),
+        "CLEARANCE" => Some(property::clearance),
         "TIE" => Some(property::tie),
         "RIGIDBODY" => Some(property::rigid),
         "COUPLING" => Some(coupling::coupling),

@@ -182,9 +182,25 @@ pub(crate) struct Pair {
 /// What holds between the surfaces of a pair.
 #[derive(Debug, Clone)]
 pub(crate) enum Law {
-    /// Contact, with the name of its interaction.
-    Contact(Named),
+    Contact(Touch),
     Tied(Tie),
+}
+
+/// Surfaces that may touch.
+#[derive(Debug, Clone)]
+pub(crate) struct Touch {
+    pub(crate) interaction: Named,
+    /// ADJUST, and the gaps up to which sides touch.
+    pub(crate) adjust: Option<(Word, f64)>,
+}
+
+/// The gap of a pair of surfaces.
+#[derive(Debug, Clone)]
+pub(crate) struct Clearance {
+    pub(crate) word: Word,
+    pub(crate) slave: Named,
+    pub(crate) master: Named,
+    pub(crate) value: f64,
 }
 
 /// Bonded surfaces.
@@ -219,6 +235,7 @@ pub(crate) struct Model {
     pub(crate) amplitudes: Names<Amplitude>,
     pub(crate) interactions: Names<Interaction>,
     pub(crate) pairs: Vec<Pair>,
+    pub(crate) clearances: Vec<Clearance>,
     pub(crate) rigid: Vec<RigidBody>,
     pub(crate) couplings: Vec<Coupling>,
     pub(crate) transforms: Vec<Transform>,

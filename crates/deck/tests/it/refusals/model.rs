@@ -213,13 +213,22 @@ fn contact() {
     );
     behind(&format!("{law}{pair}\nS1\n"), "S1", "S1", "slave");
     behind(&format!("{law}{pair}\n"), pair, "*CONTACT PAIR", "no surfaces");
-    let adjust = "*CONTACT PAIR, INTERACTION=I, ADJUST=0.1";
+    let adjust = "*CONTACT PAIR, INTERACTION=I, ADJUST=N1";
     behind(
         &format!("{law}{adjust}\nS1, S2\n"),
         adjust,
-        "ADJUST=0.1",
-        "put them where they belong",
+        "ADJUST=N1",
+        "are not adjusted",
     );
+    let clearance = "*CLEARANCE, SLAVE=S2, MASTER=S1, VALUE=0.1";
+    behind(
+        &format!("{law}{pair}\nS1, S2\n{clearance}\n"),
+        clearance,
+        "*CLEARANCE",
+        "in this order",
+    );
+    let wide = "*CLEARANCE, SLAVE=S1, MASTER=S2, VALUE=wide";
+    behind(&format!("{wide}\n"), wide, "VALUE=wide", "negative for an interference");
     let odd = "*CONTACT PAIR, INTERACTION=I, TYPE=SIDEWAYS";
     behind(&format!("{law}{odd}\nS1, S2\n"), odd, "TYPE=SIDEWAYS", "MORTAR");
 }
@@ -268,6 +277,9 @@ fn rigid_bodies() {
         "900",
         "acts on nothing",
     );
+    let adjusted = held.replace("INTERACTION=I", "INTERACTION=I, ADJUST=0.");
+    let line = "*CONTACT PAIR, INTERACTION=I, ADJUST=0.";
+    try_one(plane, &adjusted, line, "ADJUST=0.", "to a rigid surface");
     let swapped = held.replace("S5, PLANE", "PLANE, S5");
     try_one(plane, &swapped, "PLANE, S5", "PLANE", "swap them");
     let side = "*SURFACE, NAME=B\n900, S1\n";
