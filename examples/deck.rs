@@ -1,6 +1,7 @@
 //! Runs a CalculiX or Abaqus deck: `cargo run --release --example deck -- part.inp --out DIR`.
 //!
-//! Prints what the deck asks for and does not get, the plan, and a line a step; progress and warnings on standard error.
+//! Prints what the deck asks for and does not get, the plan, a line a step, and the reactions at the end; progress and
+//! warnings on standard error.
 //! With `--out` series for ParaView and a table are written. With `--states` the run is stored in that folder every five
 //! minutes, and the same command goes on from there. Ctrl-C ends it after the step, a second one at once.
 
@@ -104,6 +105,9 @@ fn run(part: &Path, out: Option<&Path>, states: Option<&Path>, stop: Arc<AtomicB
             println!("the same command goes on from {}", folder.display());
         }
     }
+    if let Some(step) = simulation.result() {
+        print_reactions(&deck, &step);
+    }
     if let Some(error) = report.mesh_error {
         println!("estimated error of the mesh: {:.0} %", 100.0 * error);
     }
@@ -111,4 +115,27 @@ fn run(part: &Path, out: Option<&Path>, states: Option<&Path>, stop: Arc<AtomicB
         println!("written: {}", writer.path().display());
     }
     Ok(report.stopped)
+}
+
+/// The forces that hold the body at the end, by the sets of the deck, with the numbers of their supports in the table.
+fn print_reactions(deck: &Deck, step: &StepResult) {
+    let reactions = step.reactions();
+    let names = deck.support_names();
+    for (first, name) in names.iter().enumerate() {
+        if names[..first].contains(name) {
+            continue;
+        }
+        let own = names.iter().enumerate().filter(|(_, other)| *other == name);
+        let (mut numbers, mut sum) = (Vec::new(), [0.0; 3]);
+        for (k, _) in own {
+            numbers.push(k.to_string());
+            let force = reactions.supports[k].resultant.force;
+            (0..3).for_each(|c| sum[c] += force[c]);
+        }
+        let [x, y, z] = sum;
+        println!(
+            "reaction at {name} (support {}): {x:.5e} {y:.5e} {z:.5e}",
+            numbers.join(", ")
+        );
+    }
 }
