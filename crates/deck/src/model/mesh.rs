@@ -1,6 +1,6 @@
 //! Nodes, elements, sets and surfaces.
 
-use super::{Element, Faces, Kind, Member, Model, Node, Side, Target};
+use super::{Element, Faces, Ignored, Kind, Member, Model, Node, Side, Target};
 use crate::error::{DeckError, Fault, Word};
 use crate::lexer::{Card, label, name};
 
@@ -8,7 +8,7 @@ use crate::lexer::{Card, label, name};
 const RANGE: u64 = 100_000_000;
 
 /// Elements that are read: what they are, the number of their nodes, and what a line of them is.
-const TYPES: [(&str, Kind, usize, &str); 4] = [
+const TYPES: [(&str, Kind, usize, &str); 8] = [
     ("C3D4", Kind::Solid, 4, "an element number and four node numbers"),
     ("C3D10", Kind::Solid, 10, "an element number and ten node numbers"),
     ("R3D3", Kind::Triangle, 3, "an element number and three node numbers"),
@@ -18,6 +18,10 @@ const TYPES: [(&str, Kind, usize, &str); 4] = [
         4,
         "an element number and four node numbers",
     ),
+    ("CPS3", Kind::Flat, 3, "an element number and three node numbers"),
+    ("CPS6", Kind::Flat, 6, "an element number and six node numbers"),
+    ("T3D2", Kind::Line, 2, "an element number and two node numbers"),
+    ("T3D3", Kind::Line, 3, "an element number and three node numbers"),
 ];
 
 /// Why a surface is refused whose name is not new.
@@ -51,12 +55,16 @@ pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
 pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["TYPE", "ELSET"])?;
     let kind = card.need("TYPE")?;
-    let Some(&(_, kind, nodes, wanted)) = TYPES.iter().find(|k| k.0 == kind.name) else {
+    let Some(&(_, of, nodes, wanted)) = TYPES.iter().find(|k| k.0 == kind.name) else {
         return Err(kind.word.fault(Fault::Unsupported(
-            "only tetrahedra C3D4 and C3D10 are read, and R3D3 and R3D4 for rigid planes; mesh in these, and leave out \
-            elements of surfaces and lines (in Gmsh: save only physical volumes)",
+            "only tetrahedra C3D4 and C3D10 are read, R3D3 and R3D4 for rigid surfaces, and CPS3, CPS6, T3D2 and T3D3 as \
+            marks; mesh in these, and leave out others",
         )));
     };
+    if of.is_mark() {
+        let why = "triangles and lines have no stiffness here; triangles name faces in *SURFACE";
+        model.ignored.push(Ignored::new(&kind.word, why));
+    }
     let set = card.value("ELSET")?;
     let first = model.elements.len();
     let mut lines = card.lines.iter();
@@ -72,15 +80,18 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
             let open = numbers.len() < 1 + nodes && line.text.ends_with(',');
             next = if open { lines.next() } else { None };
         }
-        let (label, nodes, mids) = match numbers[..] {
-            [label, a, b, c] if nodes == 3 => (label, [a, b, c, c], [0; 6]),
-            [label, a, b, c, d] if nodes == 4 => (label, [a, b, c, d], [0; 6]),
-            [label, a, b, c, d, e, f, g, h, i, j] => (label, [a, b, c, d], [e, f, g, h, i, j]),
+        let (label, nodes, mids) = match (of, &numbers[..]) {
+            (_, &[label, a, b, c]) if nodes == 3 => (label, [a, b, c, c], [0; 6]),
+            (_, &[label, a, b, c, d]) if nodes == 4 => (label, [a, b, c, d], [0; 6]),
+            (Kind::Line, &[label, a, b]) => (label, [a, b, b, b], [0; 6]),
+            // a place between the corners is not looked at
+            (Kind::Flat, &[label, a, b, c, _, _, _]) => (label, [a, b, c, c], [0; 6]),
+            (_, &[label, a, b, c, d, e, f, g, h, i, j]) => (label, [a, b, c, d], [e, f, g, h, i, j]),
             _ => return Err(line.expected(wanted)),
         };
         model.elements.push(Element {
             label,
-            kind,
+            kind: of,
             nodes,
             mids,
             location: line.location.clone(),

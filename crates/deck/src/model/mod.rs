@@ -72,6 +72,17 @@ pub(crate) enum Kind {
     Triangle,
     /// R3D4.
     Quadrilateral,
+    /// CPS3 or CPS6, as meshers write the faces of a surface: its corners, the last one twice.
+    Flat,
+    /// T3D2 or T3D3, likewise.
+    Line,
+}
+
+impl Kind {
+    /// Whether it only names a place.
+    pub(crate) fn is_mark(self) -> bool {
+        matches!(self, Self::Flat | Self::Line)
+    }
 }
 
 /// An element.

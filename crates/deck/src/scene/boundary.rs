@@ -5,9 +5,13 @@ use std::collections::BTreeMap;
 use super::mesh::Raw;
 use crate::model::FACES;
 
-/// Tetrahedra and numbers of the faces that no two of them share, ascending.
+/// Tetrahedra and numbers of the faces that no two of them share.
 #[derive(Debug)]
-pub(super) struct Boundary(Vec<(u32, u8)>);
+pub(super) struct Boundary {
+    /// Ascending.
+    faces: Vec<(u32, u8)>,
+    of_corners: BTreeMap<[u32; 3], (u32, u8)>,
+}
 
 impl Boundary {
     pub(super) fn new(raw: &Raw) -> Self {
@@ -20,14 +24,22 @@ impl Boundary {
                 first.or_insert(Some((tet, number)));
             }
         }
-        let mut faces: Vec<_> = of_corners.into_values().flatten().collect();
+        let outside = of_corners.into_iter().filter_map(|(key, face)| Some((key, face?)));
+        let of_corners: BTreeMap<_, _> = outside.collect();
+        let mut faces: Vec<_> = of_corners.values().copied().collect();
         faces.sort_unstable();
-        Self(faces)
+        Self { faces, of_corners }
+    }
+
+    /// That with some corners.
+    pub(super) fn of_corners(&self, mut corners: [u32; 3]) -> Option<(u32, u8)> {
+        corners.sort_unstable();
+        self.of_corners.get(&corners).copied()
     }
 
     /// Those of some tetrahedra, ascending.
     pub(super) fn of_tets(&self, tets: &[u32]) -> Vec<(u32, u8)> {
-        let with = self.0.iter().filter(|(tet, _)| tets.binary_search(tet).is_ok());
+        let with = self.faces.iter().filter(|(tet, _)| tets.binary_search(tet).is_ok());
         with.copied().collect()
     }
 
@@ -39,7 +51,7 @@ impl Boundary {
             FACES[usize::from(number) - 1].map(|i| tet[i])
         };
         let faces: Vec<_> = self
-            .0
+            .faces
             .iter()
             .filter(|face| corners(face).iter().all(among))
             .copied()

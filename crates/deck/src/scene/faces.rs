@@ -17,7 +17,7 @@ use super::rigid::{RigidBodies, RigidFace};
 use super::timeline::Timeline;
 use super::transforms::Transforms;
 use crate::error::{DeckError, Fault, Word};
-use crate::model::{FACES, Faces, Ignored, Model, Names, Side, Target};
+use crate::model::{FACES, Faces, Ignored, Kind, Model, Names, Side, Target};
 
 #[derive(Debug)]
 pub(super) struct Face {
@@ -88,7 +88,7 @@ impl FaceTable {
         let mut faces = Vec::new();
         for element in known.sets.elements.find(target, word)? {
             let Some(tet) = known.raw.tet(element) else {
-                return Err(word.cannot("a pressure on a rigid body acts on nothing; load elastic elements"));
+                return Err(word.cannot("a pressure on what is not elastic acts on nothing; load elastic elements"));
             };
             faces.push(self.face(known.raw, tet, number, word));
         }
@@ -112,10 +112,11 @@ impl FaceTable {
             }
             for faces in faces {
                 let word = &faces.word;
-                let mut solids = Vec::new();
+                let (mut solids, mut flat) = (Vec::new(), Vec::new());
                 for element in known.sets.elements.find(&faces.target, word)? {
                     match known.raw.tet(element) {
                         Some(tet) => solids.push(tet),
+                        None if known.bodies.of_element(element).is_none() => flat.push(element),
                         None => rigid.push(known.bodies.face(known.sets, (element, faces.side), word)?),
                     }
                 }
@@ -133,6 +134,11 @@ impl FaceTable {
                     Side::Facet { .. } | Side::Nodes => return Err(word.expected("faces S1 to S4 of solid elements")),
                 };
                 for face in chosen {
+                    all.extend(self.add(known.raw, face, index, word));
+                }
+                for element in flat {
+                    let boundary = boundary.get_or_insert_with(|| Boundary::new(known.raw));
+                    let face = of_triangle(known, boundary, element, (faces.side, word))?;
                     all.extend(self.add(known.raw, face, index, word));
                 }
                 if !all.is_empty() && !rigid.is_empty() {
@@ -257,6 +263,26 @@ fn of_nodes(
     );
     ignored.push(Ignored::new(&word.part("TYPE=NODE"), why));
     Ok(faces)
+}
+
+/// The face of a tetrahedron that a triangle of the deck, by its position, lies on.
+fn of_triangle(
+    known: Known,
+    boundary: &Boundary,
+    element: u32,
+    (side, word): (Side, &Word),
+) -> Result<(u32, u8), DeckError> {
+    let element = &known.model.elements[element as usize];
+    if element.kind != Kind::Flat || side != Side::Outside {
+        return Err(word.expected("solid elements, or triangles without a number of a face"));
+    }
+    let [a, b, c, _] = known.sets.corners(element)?.map(|n| known.raw.in_mesh(n));
+    let corners = a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]);
+    let face = corners.and_then(|corners| boundary.of_corners(corners));
+    face.ok_or_else(|| {
+        let why = "no face of a tetrahedron on the boundary has the corners of triangle";
+        word.cannot(format!("{why} {}; leave it out of the surface", element.label))
+    })
 }
 
 impl Face {

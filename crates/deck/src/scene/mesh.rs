@@ -37,7 +37,7 @@ impl Raw {
         let mut used = vec![false; model.nodes.len()];
         for (position, element) in model.elements.iter().enumerate() {
             let nodes = sets.corners(element)?;
-            if bodies.of_element(position as u32).is_some() {
+            if element.kind.is_mark() || bodies.of_element(position as u32).is_some() {
                 continue;
             }
             if element.kind != Kind::Solid {
@@ -90,7 +90,7 @@ impl Raw {
         })
     }
 
-    /// The tetrahedron of an element of the deck, by its position; `None` if it is rigid.
+    /// The tetrahedron of an element of the deck, by its position; `None` if it is rigid, or a triangle or line.
     pub(super) fn tet(&self, element: u32) -> Option<u32> {
         self.of_element[element as usize]
     }

@@ -194,7 +194,8 @@ impl RigidBodies {
             (_, Side::Face(_) | Side::Outside | Side::Nodes) => {
                 return Err(word.expected("SPOS or SNEG of rigid facets"));
             }
-            (Kind::Triangle, _) => p[..3].to_vec(),
+            (Kind::Line, _) => return Err(word.expected("facets: lines have no sides")),
+            (Kind::Triangle | Kind::Flat, _) => p[..3].to_vec(),
             (Kind::Quadrilateral, _) => p.to_vec(),
         };
         if side == (Side::Facet { positive: false }) {
