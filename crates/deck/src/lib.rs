@@ -62,7 +62,7 @@
 //! | `*PART`, `*END PART` | `NAME` | nodes, elements, sets, surfaces and sections of a part |
 //! | `*ASSEMBLY`, `*INSTANCE` and their ends | `NAME`, `PART` | where parts are, see below |
 //! | `*NODE` | `NSET` | any numbers; nodes that no element uses are dropped |
-//! | `*ELEMENT` | `TYPE=C3D4`, `C3D10`, `ELSET` | linear or quadratic tetrahedra; `R3D3` and `R3D4` for rigid surfaces; `CPS3`, `CPS6`, `T3D2`, `T3D3`, which Gmsh writes, have no stiffness, and triangles name the faces on which they lie; other types are refused |
+//! | `*ELEMENT` | `TYPE=C3D4`, `C3D10`, `ELSET` | linear or quadratic tetrahedra, and as these their variants (`C3D10M`, `C3D4H`); `R3D3` and `R3D4` for rigid surfaces; `CPS3`, `CPS6`, `T3D2`, `T3D3`, which Gmsh writes, have no stiffness, and triangles name the faces on which they lie; other types are refused |
 //! | `*NSET`, `*ELSET` | `NSET` or `ELSET`, `GENERATE`, `INTERNAL`, `INSTANCE` | numbers and sets defined before; cards of one name add up |
 //! | `*SURFACE` | `NAME`, `TYPE=ELEMENT`, `INTERNAL` | faces `S1` to `S4` of elements or sets, on the boundary, or without a number all that are there, or those of triangles; `SPOS`, `SNEG` of rigid facets |
 //! | | `TYPE=NODE` | the faces on the boundary whose corners are all among these nodes and sets; a node on none of them is refused |
@@ -84,7 +84,7 @@
 //! | `*DISTRIBUTING` | `COUPLING=CONTINUUM`, `WEIGHTING METHOD=UNIFORM` | forces and moments of the node are spread over the surface by areas (of flat faces), growing linearly from its centroid; it stays elastic |
 //! | `*KINEMATIC` | | the surface has the displacement and the small rotation of the node, whose components 1 to 6 are held or moved |
 //! | `*TRANSFORM` | `NSET`, `TYPE=R`, `C` | axes of nodes, along which their supports and forces are |
-//! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `YSYMM`, `ZSYMM`; rotations held at zero are ignored on solids |
+//! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `XASYMM` and so on; rotations held at zero are ignored on solids |
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |
 //! | `*STATIC` | `DIRECT`, `SOLVER` | first increment, period, least and largest increment |
 //! | `*CLOAD` | `OP`, `AMPLITUDE` | forces at nodes; moments, 4 to 6, at the node of a `*DISTRIBUTING` |
@@ -94,7 +94,8 @@
 //! | `*END STEP`, `*INCLUDE` | `INPUT` | paths are relative to the file that includes; loops are refused |
 //!
 //! Skipped and listed as ignored: `*NODE FILE, *EL FILE, *NODE PRINT, *EL PRINT, *CONTACT FILE, *CONTACT PRINT,
-//! *OUTPUT` and the like, `*RESTART, WRITE`, `*CONTROLS`, `SOLVER=`. Upper and lower case are equivalent,
+//! *OUTPUT` and the like, `*RESTART, WRITE`, `*CONTROLS`, `SOLVER=` and other settings of solvers, `*CONDUCTIVITY`,
+//! `*SPECIFIC HEAT`, `*DAMPING`. Upper and lower case are equivalent,
 //! blanks are ignored (except in quoted names), lines may end as on Windows, a keyword line that ends with a
 //! comma continues in the next one, `**` begins a comment.
 //!

@@ -27,6 +27,18 @@ const TYPES: [(&str, Kind, usize, &str); 8] = [
 /// Why a surface is refused whose name is not new.
 pub(super) const TWICE: &str = "a surface of this name is there already; give all its faces at once";
 
+/// Variants of other programs that differ in what is not solved here, and in how they are integrated or locked.
+const VARIANTS: [(&str, &str); 8] = [
+    ("C3D4H", "C3D4"),
+    ("C3D4T", "C3D4"),
+    ("C3D10H", "C3D10"),
+    ("C3D10HS", "C3D10"),
+    ("C3D10I", "C3D10"),
+    ("C3D10M", "C3D10"),
+    ("C3D10MH", "C3D10"),
+    ("C3D10T", "C3D10"),
+];
+
 const LABEL: &str = "a number from 1 to 2147483647";
 
 pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
@@ -55,7 +67,13 @@ pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
 pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["TYPE", "ELSET"])?;
     let kind = card.need("TYPE")?;
-    let Some(&(_, of, nodes, wanted)) = TYPES.iter().find(|k| k.0 == kind.name) else {
+    let variant = VARIANTS.iter().find(|v| v.0 == kind.name);
+    if let Some((_, plain)) = variant {
+        let why = format!("a variant of another program; the element is {plain} here");
+        model.ignored.push(Ignored::new(&kind.word, why));
+    }
+    let plain = variant.map_or(kind.name.as_str(), |v| v.1);
+    let Some(&(_, of, nodes, wanted)) = TYPES.iter().find(|k| k.0 == plain) else {
         return Err(kind.word.fault(Fault::Unsupported(
             "only tetrahedra C3D4 and C3D10 are read, R3D3 and R3D4 for rigid surfaces, and CPS3, CPS6, T3D2 and T3D3 as \
             marks; mesh in these, and leave out others",

@@ -285,7 +285,7 @@ pub(super) fn boundary(model: &mut Model, step: Option<&mut Step>, card: &Card) 
 
 /// What a component of a support is.
 pub(crate) const COMPONENT: &str = "a component: 1, 2 or 3 (solid elements have no rotations), ENCASTRE, \
-PINNED, XSYMM, YSYMM or ZSYMM";
+PINNED, XSYMM, XASYMM and so on for y and z";
 
 fn boundary_line(line: &Word, amplitude: Option<usize>) -> Result<Condition<Components>, DeckError> {
     let wanted = "a node or node set, first and last component (1 to 3), and a value";
@@ -297,6 +297,9 @@ fn boundary_line(line: &Word, amplitude: Option<usize>) -> Result<Condition<Comp
         "XSYMM" => Some([1, 0, 0, 0, 1, 1]),
         "YSYMM" => Some([0, 1, 0, 1, 0, 1]),
         "ZSYMM" => Some([0, 0, 1, 1, 1, 0]),
+        "XASYMM" => Some([0, 1, 1, 1, 0, 0]),
+        "YASYMM" => Some([1, 0, 1, 0, 1, 0]),
+        "ZASYMM" => Some([1, 1, 0, 0, 0, 1]),
         _ => None,
     };
     let mut rotation = None;

@@ -88,9 +88,9 @@ fn keywords() {
 #[test]
 fn parameters() {
     behind(
-        "*NSET, NSET=A, UNSORTED\n1\n",
-        "*NSET, NSET=A, UNSORTED",
-        "UNSORTED",
+        "*NSET, NSET=A, SORTED\n1\n",
+        "*NSET, NSET=A, SORTED",
+        "SORTED",
         "GENERATE",
     );
     behind("*NSET, GENERATE\n1, 2\n", "*NSET, GENERATE", "*NSET", "NSET is missing");

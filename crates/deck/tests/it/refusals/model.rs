@@ -158,12 +158,7 @@ fn materials() {
         "2., 0.3, 100.",
         "temperature",
     );
-    try_one(
-        "*MATERIAL, NAME=M\n*CONDUCTIVITY\n",
-        "*CONDUCTIVITY",
-        "*CONDUCTIVITY",
-        "temperatures are given",
-    );
+    try_one("*MATERIAL, NAME=M\n*CREEP\n", "*CREEP", "*CREEP", "elastic");
     try_one("*MATERIAL, NAME=M\n*PLASTIC\n", "*PLASTIC", "*PLASTIC", "elastic");
     let both = "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n*SOLID SECTION, ELSET=ALL, MATERIAL=M\n*SOLID SECTION, MATERIAL=M, ELSET=ALL\n";
     try_one(

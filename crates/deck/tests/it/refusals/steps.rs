@@ -9,7 +9,7 @@ fn supports() {
     behind("*BOUNDARY\nN5, 1, 7\n", "N5, 1, 7", "7", "no rotations");
     behind("*BOUNDARY\nN5, 3, 1\n", "N5, 3, 1", "1", "not below the first");
     behind("*BOUNDARY\nN5\n", "N5", "N5", "a component");
-    behind("*BOUNDARY\nN5, XASYMM\n", "N5, XASYMM", "XASYMM", "XSYMM");
+    behind("*BOUNDARY\nN5, SYMM\n", "N5, SYMM", "SYMM", "XSYMM");
     behind("*BOUNDARY\nN5, PINNED, 1\n", "N5, PINNED, 1", "1", "nothing after");
     behind(
         "*BOUNDARY\nN5, 1, 1, 0.1\n",
