@@ -106,7 +106,7 @@ fn run(part: &Path, out: Option<&Path>, states: Option<&Path>, stop: Arc<AtomicB
         }
     }
     if let Some(step) = simulation.result() {
-        print_reactions(&deck, &step);
+        print_reactions(&deck, step);
     }
     if let Some(error) = report.mesh_error {
         println!("estimated error of the mesh: {:.0} %", 100.0 * error);

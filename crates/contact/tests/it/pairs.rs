@@ -445,3 +445,23 @@ fn small_gaps_are_closed() {
         assert_eq!(pressed(between().with_closed_gaps(0.0)), 0);
     }
 }
+
+/// Only measured gaps can be closed, by a length.
+#[test]
+fn closed_gaps_are_checked() {
+    let both = with_second(&bulging(), &mirrored(&bulging()));
+    let between = Contact::between(brick::Z_MIN, second(brick::Z_MIN));
+    for contact in [
+        between.clone().with_closed_gaps(-1.0),
+        between.clone().with_closed_gaps(f64::NAN),
+        between.with_gap(0.1).with_closed_gaps(1.0),
+        Contact::rigid(brick::Z_MIN).with_closed_gaps(1.0),
+    ] {
+        let scene = Scene::new(both.clone(), uniform(1e9, 0.3)).with_contact(contact);
+        let error = Simulation::new(scene, Settings::default())
+            .map(|_| ())
+            .expect_err("refused")
+            .to_string();
+        assert!(error.contains("reach of closed gaps"), "{error}");
+    }
+}
