@@ -5,6 +5,7 @@
 //! With `--out` series for ParaView and a table are written. With `--states` the run is stored in that folder every five
 //! minutes, and the same command goes on from there. Ctrl-C ends it after the step, a second one at once.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -64,9 +65,7 @@ fn misused(what: &str) -> ! {
 /// Whether it was stopped.
 fn run(part: &Path, out: Option<&Path>, states: Option<&Path>, stop: Arc<AtomicBool>) -> Result<bool, Error> {
     let deck = Deck::read(part)?;
-    for ignored in deck.ignored() {
-        println!("{ignored}");
-    }
+    print_ignored(&deck);
     let name = part.file_stem().unwrap_or_default().to_string_lossy();
     let writer = |folder| ResultWriter::new(folder, name).with_field(ResultField::Stress);
     let mut writer = out.map(writer);
@@ -137,5 +136,19 @@ fn print_reactions(deck: &Deck, step: &StepResult) {
             "reaction at {name} (support {}): {x:.5e} {y:.5e} {z:.5e}",
             numbers.join(", ")
         );
+    }
+}
+
+/// What the deck asks for and does not get, each where it stands first.
+fn print_ignored(deck: &Deck) {
+    let mut told = BTreeSet::new();
+    for ignored in deck.ignored() {
+        if told.insert((ignored.word.to_uppercase(), &ignored.why)) {
+            println!("{ignored}");
+        }
+    }
+    let again = deck.ignored().len() - told.len();
+    if again > 0 {
+        println!("and {again} more of these");
     }
 }
