@@ -29,7 +29,7 @@ const IDLE: [(&str, &str); 4] = [
 ];
 
 /// Parameters of keywords, likewise.
-const IDLE_PARAMETERS: [(&str, &str, &str); 13] = [
+const IDLE_PARAMETERS: [(&str, &str, &str); 14] = [
     ("NSET", "UNSORTED", "the order of a set has no meaning here"),
     ("ELSET", "UNSORTED", "the order of a set has no meaning here"),
     ("STEP", "EXTRAPOLATION", SOLVER),
@@ -40,6 +40,7 @@ const IDLE_PARAMETERS: [(&str, &str, &str); 13] = [
     ("SOLIDSECTION", "CONTROLS", SOLVER),
     ("SURFACEBEHAVIOR", "AUGMENTEDLAGRANGE", SOLVER),
     ("SURFACEBEHAVIOR", "DIRECT", SOLVER),
+    ("SURFACEBEHAVIOR", "PENALTY", SOLVER),
     ("FRICTION", "LAGRANGE", SOLVER),
     ("CONTACTPAIR", "MECHANICALCONSTRAINT", SOLVER),
     ("CONTACTPAIR", "NOTHICKNESS", "solid elements have no thickness"),
