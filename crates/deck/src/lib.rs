@@ -90,7 +90,7 @@
 //! | `*CLOAD` | `OP`, `AMPLITUDE` | forces at nodes; moments, 4 to 6, at the node of a `*DISTRIBUTING` |
 //! | `*DLOAD` | `OP`, `AMPLITUDE` | `P1` to `P4` on faces; `GRAV`, `CENTRIF` (with the square of the angular velocity), `BX`, `BY`, `BZ` in elements, without a set in all |
 //! | `*DSLOAD` | `OP`, `AMPLITUDE` | `P` on a surface |
-//! | `*TEMPERATURE` | `OP`, `AMPLITUDE` | at nodes; linear between the corners of a tetrahedron |
+//! | `*TEMPERATURE` | `OP`, `AMPLITUDE` | at nodes; linear between the corners of a tetrahedron; an amplitude multiplies the temperature, and its rise above the initial one counts |
 //! | `*END STEP`, `*INCLUDE` | `INPUT` | paths are relative to the file that includes; loops are refused |
 //!
 //! Skipped and listed as ignored: `*NODE FILE, *EL FILE, *NODE PRINT, *EL PRINT, *CONTACT FILE, *CONTACT PRINT,

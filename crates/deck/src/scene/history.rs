@@ -23,6 +23,8 @@ pub(super) struct Track {
     pub(super) word: Word,
     /// A value and its factor that stand in place of events.
     course: Option<(f64, History)>,
+    /// What the values are before the first event and after a removal; only the rise above it counts.
+    base: f64,
 }
 
 impl Track {
@@ -32,7 +34,13 @@ impl Track {
             order,
             word: word.clone(),
             course: None,
+            base: 0.0,
         }
+    }
+
+    /// The same with values of which the rise above `base` counts.
+    pub(super) fn above(self, base: f64) -> Self {
+        Self { base, ..self }
     }
 
     /// The same with a value and a history that follow from others.
@@ -81,6 +89,9 @@ impl Track {
         if let Some((value, _)) = &self.course {
             return Some(*value).filter(|value| *value != 0.0);
         }
+        if self.base != 0.0 {
+            return Some(self.base);
+        }
         let values = self.events.iter().filter_map(|e| Some(e.1?.value));
         values.into_iter().find(|value| *value != 0.0)
     }
@@ -92,7 +103,8 @@ impl Track {
         }
         let spans = &timeline.spans;
         let mut points = Vec::new();
-        let (mut value, mut follows) = (0.0, None);
+        let base = self.base / reference;
+        let (mut value, mut follows) = (base, None);
         for (step, span) in spans.iter().enumerate() {
             let law = match self.event(step) {
                 Some(Some(given)) => match given.amplitude {
@@ -102,7 +114,7 @@ impl Track {
                     }
                     None => Law::to(value, given.value / reference, span.ramp),
                 },
-                Some(None) => Law::to(value, 0.0, span.ramp),
+                Some(None) => Law::to(value, base, span.ramp),
                 None => follows.unwrap_or(Law::Constant(value)),
             };
             follows = match law {
@@ -248,10 +260,17 @@ pub(super) struct Histories {
 impl Histories {
     /// The value of a condition and the position of its history; `None` if it is zero at all times.
     pub(super) fn add(&mut self, timeline: &Timeline, track: &Track) -> Result<Option<(f64, usize)>, DeckError> {
-        let Some(reference) = track.reference() else {
+        let Some(mut reference) = track.reference() else {
             return Ok(None);
         };
-        let points = track.points(timeline, reference);
+        let mut points = track.points(timeline, reference);
+        if track.base != 0.0 {
+            // factors of the base become those of the first rise
+            points.iter_mut().for_each(|p| p.1 -= 1.0);
+            let first = points.iter().map(|p| p.1).find(|rise| *rise != 0.0).unwrap_or(1.0);
+            points.iter_mut().for_each(|p| p.1 /= first);
+            reference *= first;
+        }
         if points.iter().all(|p| p.1 == 0.0) {
             return Ok(None);
         }
