@@ -1,9 +1,11 @@
 //! Runs a CalculiX or Abaqus deck: `cargo run --release --example deck -- part.inp --out DIR`.
 //!
-//! Prints what the deck asks for and does not get, the plan, and a line a step; progress and warnings on standard error.
+//! Prints what the deck asks for and does not get, the plan, a line a step, and the reactions at the end; progress and
+//! warnings on standard error.
 //! With `--out` series for ParaView and a table are written. With `--states` the run is stored in that folder every five
 //! minutes, and the same command goes on from there. Ctrl-C ends it after the step, a second one at once.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -63,9 +65,7 @@ fn misused(what: &str) -> ! {
 /// Whether it was stopped.
 fn run(part: &Path, out: Option<&Path>, states: Option<&Path>, stop: Arc<AtomicBool>) -> Result<bool, Error> {
     let deck = Deck::read(part)?;
-    for ignored in deck.ignored() {
-        println!("{ignored}");
-    }
+    print_ignored(&deck);
     let name = part.file_stem().unwrap_or_default().to_string_lossy();
     let writer = |folder| ResultWriter::new(folder, name).with_field(ResultField::Stress);
     let mut writer = out.map(writer);
@@ -104,6 +104,9 @@ fn run(part: &Path, out: Option<&Path>, states: Option<&Path>, stop: Arc<AtomicB
             println!("the same command goes on from {}", folder.display());
         }
     }
+    if let Some(step) = simulation.result() {
+        print_reactions(&deck, step);
+    }
     if let Some(error) = report.mesh_error {
         println!("estimated error of the mesh: {:.0} %", 100.0 * error);
     }
@@ -111,4 +114,41 @@ fn run(part: &Path, out: Option<&Path>, states: Option<&Path>, stop: Arc<AtomicB
         println!("written: {}", writer.path().display());
     }
     Ok(report.stopped)
+}
+
+/// The forces that hold the body at the end, by the sets of the deck, with the numbers of their supports in the table.
+fn print_reactions(deck: &Deck, step: &StepResult) {
+    let reactions = step.reactions();
+    let names = deck.support_names();
+    for (first, name) in names.iter().enumerate() {
+        if names[..first].contains(name) {
+            continue;
+        }
+        let own = names.iter().enumerate().filter(|(_, other)| *other == name);
+        let (mut numbers, mut sum) = (Vec::new(), [0.0; 3]);
+        for (k, _) in own {
+            numbers.push(k.to_string());
+            let force = reactions.supports[k].resultant.force;
+            (0..3).for_each(|c| sum[c] += force[c]);
+        }
+        let [x, y, z] = sum;
+        println!(
+            "reaction at {name} (support {}): {x:.5e} {y:.5e} {z:.5e}",
+            numbers.join(", ")
+        );
+    }
+}
+
+/// What the deck asks for and does not get, each where it stands first.
+fn print_ignored(deck: &Deck) {
+    let mut told = BTreeSet::new();
+    for ignored in deck.ignored() {
+        if told.insert((ignored.word.to_uppercase(), &ignored.why)) {
+            println!("{ignored}");
+        }
+    }
+    let again = deck.ignored().len() - told.len();
+    if again > 0 {
+        println!("and {again} more of these");
+    }
 }

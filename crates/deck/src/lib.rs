@@ -59,10 +59,13 @@
 //! | keyword | parameters | what it means here |
 //! |---|---|---|
 //! | `*HEADING` | | a comment |
+//! | `*PART`, `*END PART` | `NAME` | nodes, elements, sets, surfaces and sections of a part |
+//! | `*ASSEMBLY`, `*INSTANCE` and their ends | `NAME`, `PART` | where parts are, see below |
 //! | `*NODE` | `NSET` | any numbers; nodes that no element uses are dropped |
-//! | `*ELEMENT` | `TYPE=C3D4`, `C3D10`, `ELSET` | linear or quadratic tetrahedra; `R3D3` and `R3D4` for rigid planes; other types are refused |
-//! | `*NSET`, `*ELSET` | `NSET` or `ELSET`, `GENERATE`, `INTERNAL` | numbers and sets defined before; cards of one name add up |
-//! | `*SURFACE` | `NAME`, `TYPE=ELEMENT`, `INTERNAL` | faces `S1` to `S4` of elements or sets, on the boundary; `SPOS`, `SNEG` of rigid facets |
+//! | `*ELEMENT` | `TYPE=C3D4`, `C3D10`, `ELSET` | linear or quadratic tetrahedra, and as these their variants (`C3D10M`, `C3D4H`); `R3D3` and `R3D4` for rigid surfaces; `CPS3`, `CPS6`, `T3D2`, `T3D3`, which Gmsh writes, have no stiffness, and triangles name the faces on which they lie; other types are refused |
+//! | `*NSET`, `*ELSET` | `NSET` or `ELSET`, `GENERATE`, `INTERNAL`, `INSTANCE` | numbers and sets defined before; cards of one name add up |
+//! | `*SURFACE` | `NAME`, `TYPE=ELEMENT`, `INTERNAL` | faces `S1` to `S4` of elements or sets, on the boundary, or without a number all that are there, or those of triangles; `SPOS`, `SNEG` of rigid facets |
+//! | | `TYPE=NODE` | the faces on the boundary whose corners are all among these nodes and sets; a node on none of them is refused |
 //! | `*MATERIAL` | `NAME` | |
 //! | `*ELASTIC` | `TYPE=ISO`, `ORTHO`, `ENGINEERING CONSTANTS` | numbers of one temperature; axes are x, y, z |
 //! | `*DENSITY` | | for gravity |
@@ -73,24 +76,26 @@
 //! | `*SURFACE INTERACTION` | `NAME` | |
 //! | `*SURFACE BEHAVIOR` | `PRESSURE-OVERCLOSURE=HARD`, `LINEAR` | contact is hard and exact, or has a normal compliance, the inverse of the slope; other laws are refused |
 //! | `*FRICTION` | `SLIP TOLERANCE`, `ELASTIC SLIP` | Coulomb's coefficient, and elastic slip where a stick slope stands beside it; both parameters are ignored: friction is exact |
-//! | `*CONTACT PAIR` | `INTERACTION`, `TYPE`, `SMALL SLIDING` | the first (dependent) surface touches the second, whether their meshes match or not; sliding is small |
+//! | `*CONTACT PAIR` | `INTERACTION`, `TYPE`, `SMALL SLIDING`, `ADJUST` | the first (dependent) surface touches the second, whether their meshes match or not; sliding is small; with `ADJUST` gaps up to that length and overlaps are none |
+//! | `*CLEARANCE` | `SLAVE`, `MASTER`, `VALUE` | the gap of a contact pair, in place of the measured one; negative for a press fit |
 //! | `*TIE` | `NAME`, `ADJUST`, `POSITION TOLERANCE` | bonded surfaces, whether their meshes match or not; nodes are not moved, which is reported where they would be; nodes beyond the tolerance, which CalculiX leaves free, are refused |
-//! | `*RIGID BODY` | `ELSET`, `REF NODE`, `ROT NODE` | an obstacle, see below |
+//! | `*RIGID BODY` | `ELSET`, `NSET`, `REF NODE`, `ROT NODE` | an obstacle, or nodes of elastic elements that it carries, see below |
 //! | `*COUPLING` | `CONSTRAINT NAME`, `REF NODE`, `SURFACE` | a node that stands for a surface, as the card behind it says |
 //! | `*DISTRIBUTING` | `COUPLING=CONTINUUM`, `WEIGHTING METHOD=UNIFORM` | forces and moments of the node are spread over the surface by areas (of flat faces), growing linearly from its centroid; it stays elastic |
-//! | `*KINEMATIC` | | the surface has the displacement of the node, whose components 1 to 6 are held or, 1 to 3, moved |
+//! | `*KINEMATIC` | | the surface has the displacement and the small rotation of the node, whose components 1 to 6 are held or moved |
 //! | `*TRANSFORM` | `NSET`, `TYPE=R`, `C` | axes of nodes, along which their supports and forces are |
-//! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `YSYMM`, `ZSYMM`; rotations held at zero are ignored on solids |
+//! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `XASYMM` and so on; rotations held at zero are ignored on solids |
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |
 //! | `*STATIC` | `DIRECT`, `SOLVER` | first increment, period, least and largest increment |
 //! | `*CLOAD` | `OP`, `AMPLITUDE` | forces at nodes; moments, 4 to 6, at the node of a `*DISTRIBUTING` |
-//! | `*DLOAD` | `OP`, `AMPLITUDE` | `P1` to `P4` on faces; `GRAV`, `BX`, `BY`, `BZ` in elements |
+//! | `*DLOAD` | `OP`, `AMPLITUDE` | `P1` to `P4` on faces; `GRAV`, `CENTRIF` (with the square of the angular velocity), `BX`, `BY`, `BZ` in elements, without a set in all |
 //! | `*DSLOAD` | `OP`, `AMPLITUDE` | `P` on a surface |
-//! | `*TEMPERATURE` | `OP`, `AMPLITUDE` | at nodes; linear between the corners of a tetrahedron |
+//! | `*TEMPERATURE` | `OP`, `AMPLITUDE` | at nodes; linear between the corners of a tetrahedron; an amplitude multiplies the temperature, and its rise above the initial one counts |
 //! | `*END STEP`, `*INCLUDE` | `INPUT` | paths are relative to the file that includes; loops are refused |
 //!
 //! Skipped and listed as ignored: `*NODE FILE, *EL FILE, *NODE PRINT, *EL PRINT, *CONTACT FILE, *CONTACT PRINT,
-//! *OUTPUT` and the like, `*RESTART, WRITE`, `*CONTROLS`, `SOLVER=`. Upper and lower case are equivalent,
+//! *OUTPUT` and the like, `*RESTART, WRITE`, `*CONTROLS`, `SOLVER=` and other settings of solvers, `*CONDUCTIVITY`,
+//! `*SPECIFIC HEAT`, `*DAMPING`. Upper and lower case are equivalent,
 //! blanks are ignored (except in quoted names), lines may end as on Windows, a keyword line that ends with a
 //! comma continues in the next one, `**` begins a comment.
 //!
@@ -111,9 +116,23 @@
 //! A rigid surface, of facets or of solid elements in the `ELSET` of a `*RIGID BODY`, must be the second surface of a
 //! pair. It becomes a half-space ([`Contact::half_space`](signorini_contact::Contact::half_space)) if the two are
 //! equivalent: if the surface is flat, if all nodes of the first surface lie above it, and if the body does not
-//! turn. All six components of its reference node must be held (rotations are 4 to 6, `ENCASTRE` is all, or
-//! the rotation node is held); it may move along a straight line. Anything else is refused with
-//! a reason. Elements of rigid bodies are not part of the mesh and need no section.
+//! turn. Any other one becomes a triangulated obstacle
+//! ([`Contact::obstacle`](signorini_contact::Contact::obstacle)), with triangles between neighbouring nodes; nodes that
+//! do not face it touch nothing. Elements of rigid bodies are not part of the mesh and need no section.
+//!
+//! Nodes of elastic elements in a rigid body, by its `NSET` or by elements that share them, become supports with the
+//! displacement of the body, for small rotations.
+//!
+//! All six components of the reference node must be held or moved (rotations are 4 to 6, `ENCASTRE` is all, or the
+//! components 1 to 3 of the rotation node); displacement and rotation have one history each. A body that is free or
+//! loaded is refused.
+//!
+//! # Parts and instances
+//!
+//! Names of a part are those of an instance behind its name and a dot: `ROD-1.TIP` is the set `TIP` of the instance
+//! `ROD-1`. The first instance keeps the numbers of its nodes and elements; each later one adds to them once more the
+//! power of ten above all numbers of parts, so that node 12 of the third instance is 2012 if parts have numbers up to
+//! 999. Nodes and elements of the assembly count as one instance.
 //!
 //! # Surfaces and tags
 //!

@@ -39,6 +39,8 @@ pub struct Contact {
     pub(crate) crease: f64,
     /// Displacement of the obstacle, m, and its factor in time.
     pub(crate) motion: Option<([f64; 3], History)>,
+    /// Measured gaps up to which sides touch, m.
+    pub(crate) closed: Option<f64>,
     /// Factor of the gap in time.
     pub(crate) gap_history: Option<History>,
     pub(crate) rotation: Option<Rotation>,
@@ -65,6 +67,7 @@ impl Contact {
             friction_axis: None,
             crease: CREASE,
             motion: None,
+            closed: None,
             gap_history: None,
             rotation: None,
             shape: None,
@@ -169,6 +172,14 @@ impl Contact {
     /// obstacle [moves](Self::with_motion) along the surface, it is also evaluated beside the surface.
     pub fn with_gap_field(mut self, gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
         self.gap = Gap::Field(Function(Arc::new(gap)));
+        self
+    }
+
+    /// Of the gaps measured between two bodies those of at most `reach` (m, not negative) are closed: there the sides touch
+    /// without stress, as if nodes had been moved onto each other. Overlaps are, too. For facets that deviate from the
+    /// curves that they stand for.
+    pub fn with_closed_gaps(mut self, reach: f64) -> Self {
+        self.closed = Some(reach);
         self
     }
 
@@ -352,6 +363,7 @@ impl Contact {
         let value = match (&self.gap, &self.shape) {
             (Gap::Constant(value), _) => *value,
             (Gap::Field(field), _) => field(position),
+            (Gap::Measured, _) if self.closed.is_some_and(|reach| measured <= reach) => 0.0,
             (Gap::Measured, _) => measured,
             (Gap::Obstacle, Some(shape)) if self.normal == ContactNormal::Obstacle => shape.distance(position).0,
             (Gap::Obstacle, Some(shape)) => shape.along(position, *normal),

@@ -138,6 +138,16 @@ impl Scene {
         if let Some(&value) = contact.compliance.iter().find(|c| !(c.is_finite() && **c >= 0.0)) {
             return Err(ContactError::Compliance { contact: index, value });
         }
+        if let Some(reach) = contact.closed {
+            let measured = matches!(contact.gap, Gap::Measured) && !contact.tied;
+            let good = measured && reach.is_finite() && reach >= 0.0;
+            check(
+                good,
+                "reach of closed gaps",
+                reach,
+                "[0, inf), of gaps measured between bodies",
+            )?;
+        }
         let crease = contact.crease;
         check(crease > 0.0 && crease <= 180.0, "crease", crease, "(0, 180]")?;
         if let Some((_, ratio)) = contact.friction_axis {

@@ -404,3 +404,64 @@ fn rough_bodies_and_walls_do_not_depend_on_the_cut() {
     let result = solve(wall(&Friction::coulomb(0.3)), Settings::default());
     assert!(!result.report.fallback);
 }
+
+/// Gaps up to a length are closed, overlaps too; others stay, for matching and for other meshes.
+#[test]
+fn small_gaps_are_closed() {
+    let other = block([1.0; 3], [3; 3]).map_points(|[x, y, z]| [x, y, z - 1.0 - 0.005 * x]);
+    let swapped = |tag| match tag {
+        brick::Z_MIN => brick::Z_MAX,
+        brick::Z_MAX => brick::Z_MIN,
+        tag => tag,
+    };
+    for lower in [mirrored(&bulging()), other.expect("tilted").map_tags(swapped)] {
+        let points = |lower: &TetMesh, contact: Contact| {
+            let scene = Scene::new(with_second(&bulging(), lower), uniform(1e9, 0.3))
+                .with_contact(contact.with_normal([0.0, 0.0, -1.0]))
+                .with_support(Support::fixed(brick::Z_MAX))
+                .with_support(Support::fixed(second(brick::Z_MAX)));
+            run(scene, tight()).1.remove(0).points
+        };
+        let between = || Contact::between(brick::Z_MIN, second(brick::Z_MIN));
+        let (open, closed) = (
+            points(&lower, between()),
+            points(&lower, between().with_closed_gaps(0.01)),
+        );
+        assert_eq!(open.len(), closed.len());
+        let near = open.iter().filter(|p| p.gap <= 0.01).count();
+        assert!(near > 0 && near < open.len());
+        for (a, b) in open.iter().zip(&closed) {
+            let exact = if a.gap <= 0.01 { 0.0 } else { a.gap };
+            assert!(a.node == b.node && (b.gap - exact).abs() < 1e-9, "{a:?} {b:?}");
+        }
+        let lifted = lower.map_points(|[x, y, z]| [x, y, z + 0.005]).expect("lifted");
+        let pressed = |contact| {
+            points(&lifted, contact)
+                .iter()
+                .filter(|p| p.normal_force != 0.0)
+                .count()
+        };
+        assert!(pressed(between()) > 0);
+        assert_eq!(pressed(between().with_closed_gaps(0.0)), 0);
+    }
+}
+
+/// Only measured gaps can be closed, by a length.
+#[test]
+fn closed_gaps_are_checked() {
+    let both = with_second(&bulging(), &mirrored(&bulging()));
+    let between = Contact::between(brick::Z_MIN, second(brick::Z_MIN));
+    for contact in [
+        between.clone().with_closed_gaps(-1.0),
+        between.clone().with_closed_gaps(f64::NAN),
+        between.with_gap(0.1).with_closed_gaps(1.0),
+        Contact::rigid(brick::Z_MIN).with_closed_gaps(1.0),
+    ] {
+        let scene = Scene::new(both.clone(), uniform(1e9, 0.3)).with_contact(contact);
+        let error = Simulation::new(scene, Settings::default())
+            .map(|_| ())
+            .expect_err("refused")
+            .to_string();
+        assert!(error.contains("reach of closed gaps"), "{error}");
+    }
+}

@@ -3,7 +3,7 @@
 use crate::error::{DeckError, Fault, Location, Word};
 
 /// Largest number of a node or element.
-const LARGEST: u32 = i32::MAX as u32;
+pub(crate) const LARGEST: u32 = i32::MAX as u32;
 
 /// A parameter of a keyword.
 #[derive(Debug, Clone)]
@@ -155,6 +155,13 @@ impl Card {
             }
         }
         Ok(())
+    }
+
+    /// The same without a parameter.
+    pub(crate) fn without(&self, key: &str) -> Self {
+        let mut card = self.clone();
+        card.params.retain(|param| param.key != key);
+        card
     }
 
     /// A parameter, by its upper-case name without blanks.

@@ -1,5 +1,8 @@
 //! Which keyword is read by whom, where it may stand, and what is said about the others.
 
+use std::borrow::Cow;
+
+use super::assembly::Assembly;
 use super::step::{self, SOLVER, Step};
 use super::{Ignored, Model, coupling, elastic, mesh, property, temperature, transform};
 use crate::error::{DeckError, Fault};
@@ -8,32 +11,50 @@ use crate::lexer::Card;
 /// What is read, as an error lists it.
 const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, *EXPANSION, \
 *INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *TRANSFORM, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, \
-*TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
+*CLEARANCE, *TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *PART, *ASSEMBLY, *INSTANCE, \
+*SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
 which are ignored and reported";
 
 /// Requests for output, which ask nothing of the solution.
 const OUTPUT: &str = "NODEFILE NODEPRINT NODEOUTPUT ELFILE ELPRINT ELEMENTOUTPUT CONTACTFILE CONTACTPRINT \
 CONTACTOUTPUT FACEPRINT SECTIONPRINT ENERGYFILE ENERGYPRINT ENERGYOUTPUT OUTPUT FILEFORMAT PREPRINT MONITOR PRINT \
-TIMEPOINTS";
+TIMEPOINTS FILTER";
+
+/// Other keywords that ask nothing of the solution here, and why.
+const IDLE: [(&str, &str); 4] = [
+    ("CONTROLS CONTACTCONTROLS SECTIONCONTROLS", SOLVER),
+    ("CONDUCTIVITY SPECIFICHEAT", "temperatures are given here, not computed"),
+    ("DAMPING", "steps are static"),
+    ("PHYSICALCONSTANTS", "nothing depends on these numbers here"),
+];
+
+/// Parameters of keywords, likewise.
+const IDLE_PARAMETERS: [(&str, &str, &str); 14] = [
+    ("NSET", "UNSORTED", "the order of a set has no meaning here"),
+    ("ELSET", "UNSORTED", "the order of a set has no meaning here"),
+    ("STEP", "EXTRAPOLATION", SOLVER),
+    ("STEP", "CONVERTSDI", SOLVER),
+    ("STATIC", "STABILIZE", SOLVER),
+    ("STATIC", "ALLSDTOL", SOLVER),
+    ("STATIC", "FACTOR", SOLVER),
+    ("SOLIDSECTION", "CONTROLS", SOLVER),
+    ("SURFACEBEHAVIOR", "AUGMENTEDLAGRANGE", SOLVER),
+    ("SURFACEBEHAVIOR", "DIRECT", SOLVER),
+    ("SURFACEBEHAVIOR", "PENALTY", SOLVER),
+    ("FRICTION", "LAGRANGE", SOLVER),
+    ("CONTACTPAIR", "MECHANICALCONSTRAINT", SOLVER),
+    ("CONTACTPAIR", "NOTHICKNESS", "solid elements have no thickness"),
+];
 
 /// Keywords of these programs that have no counterpart here, and what to do.
-const REFUSED: [(&str, &str); 12] = [
-    (
-        "ASSEMBLY PART INSTANCE",
-        "decks with parts and an assembly are not read; write a flat one (in Abaqus/CAE: Edit Attributes, do not use \
-        parts and assemblies)",
-    ),
+const REFUSED: [(&str, &str); 9] = [
     ("EQUATION MPC", "equations between nodes are not here"),
     (
         "DISTRIBUTINGCOUPLING KINEMATICCOUPLING",
         "couplings are read of surfaces; give *COUPLING and behind it *DISTRIBUTING or *KINEMATIC",
     ),
     ("ORIENTATION", "the axes of materials are x, y, z"),
-    ("PLASTIC CREEP HYPERELASTIC DAMPING", "materials are linear and elastic"),
-    (
-        "CONDUCTIVITY SPECIFICHEAT",
-        "temperatures are given here, not computed; remove it",
-    ),
+    ("PLASTIC CREEP HYPERELASTIC", "materials are linear and elastic"),
     (
         "SHELLSECTION BEAMSECTION MEMBRANESECTION SPRING MASS",
         "only solid elements C3D4 and C3D10 are read",
@@ -42,10 +63,6 @@ const REFUSED: [(&str, &str); 12] = [
     (
         "MODELCHANGE CHANGEFRICTION",
         "bodies, contacts and coefficients of friction hold for all steps",
-    ),
-    (
-        "CLEARANCE",
-        "the gap is measured between the nodes; move one of the bodies",
     ),
     (
         "CONTACT",
@@ -58,12 +75,7 @@ const REFUSED: [(&str, &str); 12] = [
 ];
 
 /// Parameters of keywords that are read, likewise.
-const PARAMETERS: [(&str, &str, &str); 5] = [
-    (
-        "CONTACTPAIR",
-        "ADJUST",
-        "nodes are not moved; put them where they belong, and remove it",
-    ),
+const PARAMETERS: [(&str, &str, &str); 4] = [
     ("COUPLING", "ORIENTATION", "components are along x, y, z; remove it"),
     (
         "BOUNDARY",
@@ -89,13 +101,30 @@ const INSIDE: &str = "this belongs to a step; put it between *STEP and *END STEP
 pub(crate) fn read(cards: &[Card]) -> Result<Model, DeckError> {
     let mut model = Model::default();
     let mut step: Option<Step> = None;
+    let mut assembly = Assembly::default();
     for card in cards {
-        read_card(&mut model, &mut step, card)?;
+        let card = &*without_idle(&mut model, card);
+        if step.is_some() || !assembly.take(&mut model, card)? {
+            read_card(&mut model, &mut step, card)?;
+        }
     }
+    assembly.end()?;
     match step {
         Some(step) => Err(step.word.cannot("the step does not end; put *END STEP after it")),
         None => Ok(model),
     }
+}
+
+/// A card without the parameters that ask nothing, which are noted.
+fn without_idle<'a>(model: &mut Model, card: &'a Card) -> Cow<'a, Card> {
+    let mut kept = Cow::Borrowed(card);
+    for (_, key, why) in IDLE_PARAMETERS.iter().filter(|idle| idle.0 == card.key) {
+        if let Some(param) = card.param(key) {
+            model.ignored.push(Ignored::new(&param.word, *why));
+            kept = Cow::Owned(kept.without(key));
+        }
+    }
+    kept
 }
 
 fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Result<(), DeckError> {
@@ -123,6 +152,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         "SURFACEBEHAVIOR" => Some(property::behavior),
         "FRICTION" => Some(property::friction),
         "CONTACTPAIR" => Some(property::pair),
+        "CLEARANCE" => Some(property::clearance),
         "TIE" => Some(property::tie),
         "RIGIDBODY" => Some(property::rigid),
         "COUPLING" => Some(coupling::coupling),
@@ -171,10 +201,11 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
 fn other(model: &mut Model, card: &Card, key: &str) -> Result<(), DeckError> {
     let among = |keys: &str| keys.split_whitespace().any(|known| known == key);
     let restart = key == "RESTART" && card.param("READ").is_none();
+    let idle = IDLE.iter().find(|(keys, _)| among(keys));
     let why = if among(OUTPUT) || restart {
         "results are those that the program writes which runs the deck"
-    } else if key == "CONTROLS" {
-        SOLVER
+    } else if let Some((_, why)) = idle {
+        why
     } else if key == "RESTART" {
         let why = "a run is resumed from a state of this library, not from a restart file";
         return Err(card.word.fault(Fault::Unsupported(why)));

@@ -1,6 +1,6 @@
 //! Nodes, elements, sets and surfaces.
 
-use super::{Element, Faces, Kind, Member, Model, Node, Side, Target};
+use super::{Element, Faces, Ignored, Kind, Member, Model, Node, Side, Target};
 use crate::error::{DeckError, Fault, Word};
 use crate::lexer::{Card, label, name};
 
@@ -8,7 +8,7 @@ use crate::lexer::{Card, label, name};
 const RANGE: u64 = 100_000_000;
 
 /// Elements that are read: what they are, the number of their nodes, and what a line of them is.
-const TYPES: [(&str, Kind, usize, &str); 4] = [
+const TYPES: [(&str, Kind, usize, &str); 8] = [
     ("C3D4", Kind::Solid, 4, "an element number and four node numbers"),
     ("C3D10", Kind::Solid, 10, "an element number and ten node numbers"),
     ("R3D3", Kind::Triangle, 3, "an element number and three node numbers"),
@@ -18,6 +18,25 @@ const TYPES: [(&str, Kind, usize, &str); 4] = [
         4,
         "an element number and four node numbers",
     ),
+    ("CPS3", Kind::Flat, 3, "an element number and three node numbers"),
+    ("CPS6", Kind::Flat, 6, "an element number and six node numbers"),
+    ("T3D2", Kind::Line, 2, "an element number and two node numbers"),
+    ("T3D3", Kind::Line, 3, "an element number and three node numbers"),
+];
+
+/// Why a surface is refused whose name is not new.
+pub(super) const TWICE: &str = "a surface of this name is there already; give all its faces at once";
+
+/// Variants of other programs that differ in what is not solved here, and in how they are integrated or locked.
+const VARIANTS: [(&str, &str); 8] = [
+    ("C3D4H", "C3D4"),
+    ("C3D4T", "C3D4"),
+    ("C3D10H", "C3D10"),
+    ("C3D10HS", "C3D10"),
+    ("C3D10I", "C3D10"),
+    ("C3D10M", "C3D10"),
+    ("C3D10MH", "C3D10"),
+    ("C3D10T", "C3D10"),
 ];
 
 const LABEL: &str = "a number from 1 to 2147483647";
@@ -48,12 +67,22 @@ pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
 pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["TYPE", "ELSET"])?;
     let kind = card.need("TYPE")?;
-    let Some(&(_, kind, nodes, wanted)) = TYPES.iter().find(|k| k.0 == kind.name) else {
+    let variant = VARIANTS.iter().find(|v| v.0 == kind.name);
+    if let Some((_, plain)) = variant {
+        let why = format!("a variant of another program; the element is {plain} here");
+        model.ignored.push(Ignored::new(&kind.word, why));
+    }
+    let plain = variant.map_or(kind.name.as_str(), |v| v.1);
+    let Some(&(_, of, nodes, wanted)) = TYPES.iter().find(|k| k.0 == plain) else {
         return Err(kind.word.fault(Fault::Unsupported(
-            "only tetrahedra C3D4 and C3D10 are read, and R3D3 and R3D4 for rigid planes; mesh in these, and leave out \
-            elements of surfaces and lines (in Gmsh: save only physical volumes)",
+            "only tetrahedra C3D4 and C3D10 are read, R3D3 and R3D4 for rigid surfaces, and CPS3, CPS6, T3D2 and T3D3 as \
+            marks; mesh in these, and leave out others",
         )));
     };
+    if of.is_mark() {
+        let why = "triangles and lines have no stiffness here; triangles name faces in *SURFACE";
+        model.ignored.push(Ignored::new(&kind.word, why));
+    }
     let set = card.value("ELSET")?;
     let first = model.elements.len();
     let mut lines = card.lines.iter();
@@ -69,15 +98,18 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
             let open = numbers.len() < 1 + nodes && line.text.ends_with(',');
             next = if open { lines.next() } else { None };
         }
-        let (label, nodes, mids) = match numbers[..] {
-            [label, a, b, c] if nodes == 3 => (label, [a, b, c, c], [0; 6]),
-            [label, a, b, c, d] if nodes == 4 => (label, [a, b, c, d], [0; 6]),
-            [label, a, b, c, d, e, f, g, h, i, j] => (label, [a, b, c, d], [e, f, g, h, i, j]),
+        let (label, nodes, mids) = match (of, &numbers[..]) {
+            (_, &[label, a, b, c]) if nodes == 3 => (label, [a, b, c, c], [0; 6]),
+            (_, &[label, a, b, c, d]) if nodes == 4 => (label, [a, b, c, d], [0; 6]),
+            (Kind::Line, &[label, a, b]) => (label, [a, b, b, b], [0; 6]),
+            // a place between the corners is not looked at
+            (Kind::Flat, &[label, a, b, c, _, _, _]) => (label, [a, b, c, c], [0; 6]),
+            (_, &[label, a, b, c, d, e, f, g, h, i, j]) => (label, [a, b, c, d], [e, f, g, h, i, j]),
             _ => return Err(line.expected(wanted)),
         };
         model.elements.push(Element {
             label,
-            kind,
+            kind: of,
             nodes,
             mids,
             location: line.location.clone(),
@@ -105,9 +137,9 @@ pub(super) fn set(model: &mut Model, card: &Card, key: &'static str) -> Result<(
             continue;
         }
         for field in line.fields() {
-            let member = match target(line, field)? {
-                Target::Number(number) => Member::One(number),
-                Target::Name(name) => Member::Set(name),
+            let member = match label(field) {
+                Some(number) => Member::One(number),
+                None => Member::Set(set_name(line, field)?),
             };
             members.push((member, line.location.clone()));
         }
@@ -143,46 +175,46 @@ fn range(line: &Word) -> Result<Member, DeckError> {
 
 /// A number, or the name of a set.
 pub(super) fn target(line: &Word, field: &str) -> Result<Target, DeckError> {
-    if let Some(number) = label(field) {
-        return Ok(Target::Number(number));
+    match label(field) {
+        Some(number) => Ok(Target::Number(number)),
+        None => set_name(line, field).map(Target::Name),
     }
+}
+
+fn set_name(line: &Word, field: &str) -> Result<String, DeckError> {
     let begins = field.chars().next();
     if begins.is_none_or(|c| c.is_ascii_digit() || "+-.".contains(c)) {
         let wanted = "a number from 1 to 2147483647, or the name of a set";
         return Err(line.entry(&[field], 0).expected(wanted));
     }
-    Ok(Target::Name(name(field)))
+    Ok(name(field))
 }
 
 pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NAME", "TYPE", "INTERNAL"])?;
     card.flag("INTERNAL")?;
     let surface = card.need("NAME")?;
-    let kind = card.value("TYPE")?;
-    if let Some(kind) = kind.filter(|kind| kind.name != "ELEMENT") {
-        return Err(kind.word.fault(Fault::Unsupported(match kind.name.as_str() {
-            "NODE" => {
-                "a surface of nodes has no areas and normals, which contact and pressure need; give faces of \
-                elements, TYPE=ELEMENT"
-            }
-            _ => "only surfaces of element faces are read, TYPE=ELEMENT",
-        })));
-    }
+    let kinds = ["ELEMENT", "NODE"];
+    let of_nodes = card.choice("TYPE", &kinds, "TYPE=ELEMENT or TYPE=NODE")? == Some(1);
     if model.surfaces.position(&surface.name).is_some() {
-        let why = "a surface of this name is there already; give all its faces at once";
-        return Err(card.word.cannot(why));
+        return Err(card.word.cannot(TWICE));
     }
     let mut faces = Vec::new();
     for line in &card.lines {
-        let wanted = "an element or element set, and a face S1, S2, S3 or S4 (SPOS or SNEG of rigid facets)";
+        let wanted = match of_nodes {
+            true => "a node or node set",
+            false => "an element or element set, and a face S1, S2, S3 or S4 (SPOS or SNEG of rigid facets), or none",
+        };
         let fields = line.at_most(2, wanted)?;
-        let side = match fields.get(1).map(|f| name(f)).as_deref() {
-            Some("S1") => Side::Face(1),
-            Some("S2") => Side::Face(2),
-            Some("S3") => Side::Face(3),
-            Some("S4") => Side::Face(4),
-            Some("SPOS") => Side::Facet { positive: true },
-            Some("SNEG") => Side::Facet { positive: false },
+        let side = match (of_nodes, fields.get(1).map(|f| name(f)).as_deref()) {
+            (true, None) => Side::Nodes,
+            (false, None | Some("")) => Side::Outside,
+            (false, Some("S1")) => Side::Face(1),
+            (false, Some("S2")) => Side::Face(2),
+            (false, Some("S3")) => Side::Face(3),
+            (false, Some("S4")) => Side::Face(4),
+            (false, Some("SPOS")) => Side::Facet { positive: true },
+            (false, Some("SNEG")) => Side::Facet { positive: false },
             _ => return Err(line.entry(&fields, 1).expected(wanted)),
         };
         let target = target(line, fields[0])?;
@@ -190,7 +222,9 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         faces.push(Faces { target, side, word });
     }
     if faces.is_empty() {
-        return Err(card.word.cannot("the surface has no faces; give them in lines"));
+        return Err(card
+            .word
+            .cannot("the surface has no faces; give them, or nodes with TYPE=NODE, in lines"));
     }
     model.surfaces.add(surface.name, faces);
     Ok(())

@@ -5,6 +5,7 @@
 //! understood end here, with their place; names are looked up by [`crate::scene`], above. May use `lexer` and
 //! `error`.
 
+mod assembly;
 mod coupling;
 mod elastic;
 mod keywords;
@@ -24,7 +25,7 @@ pub(crate) use coupling::{Coupling, CouplingLaw};
 pub(crate) use keywords::read;
 pub(crate) use names::Names;
 pub(crate) use step::{
-    COMPONENT, Components, Condition, Conditions, DistributedKind, FORCE, Given, INCREMENTS, Step, Target,
+    COMPONENT, Components, Condition, Conditions, DistributedKind, FORCE, Given, INCREMENTS, Step, Target, VolumeLaw,
 };
 pub(crate) use transform::{Axes, Transform};
 
@@ -71,6 +72,17 @@ pub(crate) enum Kind {
     Triangle,
     /// R3D4.
     Quadrilateral,
+    /// CPS3 or CPS6, as meshers write the faces of a surface: its corners, the last one twice.
+    Flat,
+    /// T3D2 or T3D3, likewise.
+    Line,
+}
+
+impl Kind {
+    /// Whether it only names a place.
+    pub(crate) fn is_mark(self) -> bool {
+        matches!(self, Self::Flat | Self::Line)
+    }
 }
 
 /// An element.
@@ -112,9 +124,13 @@ pub(crate) enum Side {
     Face(u8),
     /// Where the normal of a rigid facet points to, or the other side.
     Facet { positive: bool },
+    /// All faces of solids on the boundary.
+    Outside,
+    /// Faces on the boundary whose corners are all among the nodes of the surface.
+    Nodes,
 }
 
-/// Faces with the same number, of an element or of those of a set.
+/// Faces with the same number, of an element or of those of a set; nodes of a surface of nodes.
 #[derive(Debug, Clone)]
 pub(crate) struct Faces {
     pub(crate) target: Target,
@@ -154,10 +170,13 @@ pub(crate) struct Interaction {
     pub(crate) compliance: [f64; 2],
 }
 
-/// Elements that keep their shape and follow a node.
+/// Elements or nodes that keep their shape and follow a node.
 #[derive(Debug, Clone)]
 pub(crate) struct RigidBody {
-    pub(crate) elset: Named,
+    /// The keyword.
+    pub(crate) word: Word,
+    pub(crate) elset: Option<Named>,
+    pub(crate) nset: Option<Named>,
     /// The node whose displacement it has, with the word that names it.
     pub(crate) reference: (Target, Word),
     /// The node whose displacement is its rotation.
@@ -174,9 +193,25 @@ pub(crate) struct Pair {
 /// What holds between the surfaces of a pair.
 #[derive(Debug, Clone)]
 pub(crate) enum Law {
-    /// Contact, with the name of its interaction.
-    Contact(Named),
+    Contact(Touch),
     Tied(Tie),
+}
+
+/// Surfaces that may touch.
+#[derive(Debug, Clone)]
+pub(crate) struct Touch {
+    pub(crate) interaction: Named,
+    /// ADJUST, and the gaps up to which sides touch.
+    pub(crate) adjust: Option<(Word, f64)>,
+}
+
+/// The gap of a pair of surfaces.
+#[derive(Debug, Clone)]
+pub(crate) struct Clearance {
+    pub(crate) word: Word,
+    pub(crate) slave: Named,
+    pub(crate) master: Named,
+    pub(crate) value: f64,
 }
 
 /// Bonded surfaces.
@@ -211,6 +246,7 @@ pub(crate) struct Model {
     pub(crate) amplitudes: Names<Amplitude>,
     pub(crate) interactions: Names<Interaction>,
     pub(crate) pairs: Vec<Pair>,
+    pub(crate) clearances: Vec<Clearance>,
     pub(crate) rigid: Vec<RigidBody>,
     pub(crate) couplings: Vec<Coupling>,
     pub(crate) transforms: Vec<Transform>,

@@ -1,6 +1,8 @@
 //! Materials, sections, amplitudes, contact pairs and their interactions.
 
-use super::{Amplitude, Ignored, Interaction, Law, Material, Model, Pair, RigidBody, Section, Target, Tie};
+use super::{
+    Amplitude, Clearance, Ignored, Interaction, Law, Material, Model, Pair, RigidBody, Section, Target, Tie, Touch,
+};
 use crate::error::{DeckError, Fault, Location, Word};
 use crate::lexer::{Card, Named, label, name};
 use signorini_fem_mesh::History;
@@ -185,7 +187,7 @@ pub(super) fn friction(model: &mut Model, card: &Card) -> Result<(), DeckError> 
 }
 
 pub(super) fn pair(model: &mut Model, card: &Card) -> Result<(), DeckError> {
-    card.allow(&["INTERACTION", "TYPE", "SMALL SLIDING"])?;
+    card.allow(&["INTERACTION", "TYPE", "SMALL SLIDING", "ADJUST"])?;
     let interaction = card.need("INTERACTION")?;
     card.flag("SMALLSLIDING")?;
     let types = [
@@ -204,7 +206,33 @@ pub(super) fn pair(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         let why = "matching meshes touch node by node, others by dual multipliers; there is one kind of contact here";
         model.ignored.push(Ignored::new(&kind.word, why));
     }
-    surfaces(model, card, &Law::Contact(interaction))
+    let adjust = card.value("ADJUST")?.map(|named| {
+        let reach = distance(&named, "a distance, not negative: nodes by sets are not adjusted");
+        reach.map(|reach| (named.word, reach))
+    });
+    let adjust = adjust.transpose()?;
+    surfaces(model, card, &Law::Contact(Touch { interaction, adjust }))
+}
+
+/// The value of a parameter that is a distance.
+fn distance(Named { name, word }: &Named, wanted: &'static str) -> Result<f64, DeckError> {
+    let distance = word.part(name).real(&[name], 0, wanted).ok().filter(|d| *d >= 0.0);
+    distance.ok_or_else(|| word.expected(wanted))
+}
+
+/// `*CLEARANCE`.
+pub(super) fn clearance(model: &mut Model, card: &Card) -> Result<(), DeckError> {
+    card.allow(&["SLAVE", "MASTER", "VALUE"])?;
+    card.lines_at_most(0, "no data: VALUE is the gap of all nodes")?;
+    let Named { name, word } = card.need("VALUE")?;
+    let value = word.part(&name).real(&[&name], 0, "a number").ok();
+    model.clearances.push(Clearance {
+        word: card.word.clone(),
+        slave: card.need("SLAVE")?,
+        master: card.need("MASTER")?,
+        value: value.ok_or_else(|| word.expected("a distance, negative for an interference"))?,
+    });
+    Ok(())
 }
 
 /// `*TIE`.
@@ -212,12 +240,8 @@ pub(super) fn tie(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NAME", "POSITION TOLERANCE", "ADJUST"])?;
     card.value("NAME")?;
     let adjust = card.choice("ADJUST", &["YES", "NO"], "YES or NO")?;
-    let tolerance = card.value("POSITIONTOLERANCE")?.map(|Named { name, word }| {
-        let distance = word.part(&name).real(&[&name], 0, "a distance").ok();
-        distance
-            .filter(|d| *d >= 0.0)
-            .ok_or_else(|| word.expected("a distance, not negative"))
-    });
+    let tolerance = card.value("POSITIONTOLERANCE")?;
+    let tolerance = tolerance.map(|named| distance(&named, "a distance, not negative"));
     let tie = Tie {
         word: card.param("ADJUST").map_or(&card.word, |param| &param.word).clone(),
         adjust: adjust != Some(1),
@@ -252,15 +276,21 @@ fn surfaces(model: &mut Model, card: &Card, law: &Law) -> Result<(), DeckError> 
 
 /// `*RIGID BODY`.
 pub(super) fn rigid(model: &mut Model, card: &Card) -> Result<(), DeckError> {
-    card.allow(&["ELSET", "REF NODE", "ROT NODE"])?;
+    card.allow(&["ELSET", "NSET", "TIE NSET", "REF NODE", "ROT NODE"])?;
     card.lines_at_most(0, "no data")?;
-    let elset = card.need("ELSET")?;
+    let elset = card.value("ELSET")?;
+    let nset = card.value("NSET")?.or(card.value("TIENSET")?);
+    if elset.is_none() && nset.is_none() {
+        return Err(card.word.fault(Fault::MissingParameter("ELSET or NSET")));
+    }
     let node = |value: Named| match label(&value.name) {
         Some(number) => (Target::Number(number), value.word),
         None => (Target::Name(value.name), value.word),
     };
     model.rigid.push(RigidBody {
+        word: card.word.clone(),
         elset,
+        nset,
         reference: node(card.need("REFNODE")?),
         rotation: card.value("ROTNODE")?.map(node),
     });

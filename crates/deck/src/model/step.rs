@@ -13,11 +13,12 @@ pub(super) const SOLVER: &str = "a setting of another solver";
 /// Most increments of a deck.
 pub(crate) const INCREMENTS: f64 = 1e6;
 
-/// A node or element by its number, or a set by its name.
+/// A node or element by its number, a set by its name, or all there are.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(crate) enum Target {
     Number(u32),
     Name(String),
+    All,
 }
 
 impl fmt::Display for Target {
@@ -25,6 +26,7 @@ impl fmt::Display for Target {
         match self {
             Self::Number(number) => write!(f, "{number}"),
             Self::Name(name) => f.write_str(name),
+            Self::All => f.write_str("all"),
         }
     }
 }
@@ -62,10 +64,18 @@ pub(crate) enum DistributedKind {
     Face(u8),
     /// Pressure on a surface.
     Surface,
+    Volume(VolumeLaw),
+}
+
+/// A load of the volume.
+#[derive(Debug, Clone)]
+pub(crate) enum VolumeLaw {
+    /// Force per volume along a component.
+    Force(usize),
     /// Acceleration in a direction (not of unit length).
     Gravity([f64; 3]),
-    /// Force per volume along a component.
-    Body(usize),
+    /// The square of an angular velocity about an axis: a point and its direction (not of unit length).
+    Centrifugal([[f64; 3]; 2]),
 }
 
 /// What the cards of one kind of condition say in a step.
@@ -275,7 +285,7 @@ pub(super) fn boundary(model: &mut Model, step: Option<&mut Step>, card: &Card) 
 
 /// What a component of a support is.
 pub(crate) const COMPONENT: &str = "a component: 1, 2 or 3 (solid elements have no rotations), ENCASTRE, \
-PINNED, XSYMM, YSYMM or ZSYMM";
+PINNED, XSYMM, XASYMM and so on for y and z";
 
 fn boundary_line(line: &Word, amplitude: Option<usize>) -> Result<Condition<Components>, DeckError> {
     let wanted = "a node or node set, first and last component (1 to 3), and a value";
@@ -287,6 +297,9 @@ fn boundary_line(line: &Word, amplitude: Option<usize>) -> Result<Condition<Comp
         "XSYMM" => Some([1, 0, 0, 0, 1, 1]),
         "YSYMM" => Some([0, 1, 0, 1, 0, 1]),
         "ZSYMM" => Some([0, 0, 1, 1, 1, 0]),
+        "XASYMM" => Some([0, 1, 1, 1, 0, 0]),
+        "YASYMM" => Some([1, 0, 1, 0, 1, 0]),
+        "ZASYMM" => Some([1, 1, 0, 0, 0, 1]),
         _ => None,
     };
     let mut rotation = None;
@@ -370,48 +383,69 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
         let wanted = if on_surface {
             "a surface, P, and a pressure"
         } else {
-            "an element or element set, one of P1 to P4, GRAV, BX, BY, BZ, a value, and with GRAV a direction"
+            "an element or element set, one of P1 to P4, GRAV, CENTRIF, BX, BY, BZ, a value, with GRAV a direction, \
+            and with CENTRIF, whose value is the square of the angular velocity, a point and the direction of the axis"
         };
-        let fields = line.fields();
-        let found = match (on_surface, name(fields.get(1).unwrap_or(&"")).as_str()) {
-            (true, "P") => Some(DistributedKind::Surface),
-            (false, "P1") => Some(DistributedKind::Face(1)),
-            (false, "P2") => Some(DistributedKind::Face(2)),
-            (false, "P3") => Some(DistributedKind::Face(3)),
-            (false, "P4") => Some(DistributedKind::Face(4)),
-            (false, "BX") => Some(DistributedKind::Body(0)),
-            (false, "BY") => Some(DistributedKind::Body(1)),
-            (false, "BZ") => Some(DistributedKind::Body(2)),
-            (false, "GRAV") => Some(DistributedKind::Gravity([0.0; 3])),
-            _ => None,
+        let fields = line.at_most(9, wanted)?;
+        let label = name(fields.get(1).unwrap_or(&""));
+        let (kind, count) = match (on_surface, label.as_str()) {
+            (true, "P") => (DistributedKind::Surface, 3),
+            (false, "P1") => (DistributedKind::Face(1), 3),
+            (false, "P2") => (DistributedKind::Face(2), 3),
+            (false, "P3") => (DistributedKind::Face(3), 3),
+            (false, "P4") => (DistributedKind::Face(4), 3),
+            (false, "BX") => (DistributedKind::Volume(VolumeLaw::Force(0)), 3),
+            (false, "BY") => (DistributedKind::Volume(VolumeLaw::Force(1)), 3),
+            (false, "BZ") => (DistributedKind::Volume(VolumeLaw::Force(2)), 3),
+            (false, "GRAV") => (
+                DistributedKind::Volume(VolumeLaw::Gravity(vector(line, &fields, 3)?)),
+                6,
+            ),
+            (false, "CENTRIF") => {
+                let mut point = [0.0; 3];
+                for (c, p) in point.iter_mut().enumerate() {
+                    *p = line.real(&fields, 3 + c, "a point of the axis: three numbers")?;
+                }
+                let axis = [point, vector(line, &fields, 6)?];
+                (DistributedKind::Volume(VolumeLaw::Centrifugal(axis)), 9)
+            }
+            _ => return Err(line.entry(&fields, 1).expected(wanted)),
         };
-        let Some(mut kind) = found else {
-            return Err(line.entry(&fields, 1).expected(wanted));
-        };
-        line.at_most(6, wanted)?;
         let value = line.real(&fields, 2, wanted)?;
-        if let DistributedKind::Gravity(direction) = &mut kind {
-            let wanted = "a direction that is not zero: three numbers";
-            for (c, d) in direction.iter_mut().enumerate() {
-                *d = line.real(&fields, 3 + c, wanted)?;
-            }
-            let length = direction.iter().map(|d| d * d).sum::<f64>();
-            if !(length > 0.0 && length.is_finite()) {
-                return Err(line.expected(wanted));
-            }
-        } else if let Some(extra) = fields.get(3) {
+        if let Some(extra) = fields.get(count) {
             return Err(line.part(extra).expected(wanted));
         }
-        let target = match on_surface {
-            true => Target::Name(name(fields[0])),
-            false => target(line, fields[0])?,
+        if label == "CENTRIF" && value < 0.0 {
+            return Err(line
+                .part(fields[2])
+                .expected("the square of an angular velocity, not negative"));
+        }
+        let target = match (on_surface, &kind) {
+            (true, _) => Target::Name(name(fields[0])),
+            // without a set Abaqus loads the whole model
+            (false, DistributedKind::Volume(_)) if fields[0].is_empty() => Target::All,
+            (false, _) => target(line, fields[0])?,
         };
         step.distributed.lines.push(Condition {
-            word: line.part(fields[0]),
+            word: line.entry(&fields, 0),
             target,
             kind,
             given: Given { value, amplitude },
         });
     }
     Ok(())
+}
+
+/// A direction, by its three numbers.
+fn vector(line: &Word, fields: &[&str], at: usize) -> Result<[f64; 3], DeckError> {
+    let wanted = "a direction that is not zero: three numbers";
+    let mut direction = [0.0; 3];
+    for (c, d) in direction.iter_mut().enumerate() {
+        *d = line.real(fields, at + c, wanted)?;
+    }
+    let length = direction.iter().map(|d| d * d).sum::<f64>();
+    match length > 0.0 && length.is_finite() {
+        true => Ok(direction),
+        false => Err(line.expected(wanted)),
+    }
 }

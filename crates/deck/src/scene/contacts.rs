@@ -4,13 +4,13 @@ use signorini_contact::{Contact, Friction};
 use signorini_fem_mesh::FacetTag;
 
 use super::faces::{FaceTable, Known};
-use super::rigid::{Motion, half_space};
+use super::rigid::{Motion, obstacle};
 use super::ties;
 use crate::error::DeckError;
 use crate::lexer::Named;
-use crate::model::{Ignored, Law, Names};
+use crate::model::{Clearance, Ignored, Law, Names, Pair, Touch};
 
-/// One contact for each pair: nodes of the dependent surface touch nodes of the other one, or a rigid plane.
+/// One contact for each pair: nodes of the dependent surface touch nodes of the other one, or an obstacle.
 pub(super) fn contacts(
     known: Known,
     faces: &FaceTable,
@@ -22,7 +22,11 @@ pub(super) fn contacts(
     let mut out = Vec::with_capacity(model.pairs.len());
     for pair in &model.pairs {
         let interaction = match &pair.law {
-            Law::Contact(Named { name, word }) => Some(model.interactions.find("interaction", name, word)?),
+            Law::Contact(Touch { interaction, .. }) => Some(model.interactions.find(
+                "interaction",
+                &interaction.name,
+                &interaction.word,
+            )?),
             Law::Tied(_) => None,
         };
         let surface = |Named { name, word }: &Named| surfaces.find("surface", name, word);
@@ -47,9 +51,9 @@ pub(super) fn contacts(
                 return Err(partner.cannot(why));
             }
             ([], Some(_)) => {
-                let nodes = faces.nodes_of(known.raw, dependent as u32);
-                let plane = half_space(&faces.rigid[other], motions, slave[0], &nodes);
-                plane.map_err(|why| partner.cannot(why))?
+                let nodes = faces.places_of(known.raw, dependent as u32);
+                let rigid = obstacle(&faces.rigid[other], motions, slave[0], &nodes);
+                rigid.map_err(|why| partner.cannot(why))?
             }
             ([first, more @ ..], interaction) => {
                 let between = match interaction {
@@ -71,7 +75,39 @@ pub(super) fn contacts(
                 contact = contact.with_friction(Friction::coulomb(coefficient));
             }
         }
+        let given = model
+            .clearances
+            .iter()
+            .rfind(|c| c.slave.name == pair.slave.name && c.master.name == pair.master.name);
+        let adjust = match &pair.law {
+            Law::Contact(Touch { adjust, .. }) => adjust.as_ref(),
+            Law::Tied(_) => None,
+        };
+        contact = match (given, adjust) {
+            (Some(given), _) => contact.with_gap(given.value),
+            (None, Some((word, _))) if master.is_empty() => {
+                return Err(
+                    word.cannot("gaps to a rigid surface are not closed; put the nodes on it, and remove ADJUST")
+                );
+            }
+            (None, Some((word, reach))) => {
+                let why = "nodes are not moved; where a gap is not larger than this, the sides touch without stress";
+                ignored.push(Ignored::new(word, why));
+                contact.with_closed_gaps(*reach)
+            }
+            (None, None) => contact,
+        };
         out.push(contact);
+    }
+    for Clearance {
+        word, slave, master, ..
+    } in &model.clearances
+    {
+        let touch = |pair: &&Pair| matches!(pair.law, Law::Contact(_));
+        let mut pairs = model.pairs.iter().filter(touch);
+        if !pairs.any(|pair| pair.slave.name == slave.name && pair.master.name == master.name) {
+            return Err(word.cannot("no *CONTACT PAIR has these surfaces in this order; name those of one"));
+        }
     }
     Ok(out)
 }

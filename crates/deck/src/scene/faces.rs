@@ -9,6 +9,7 @@ use std::collections::HashMap;
 use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::{Facet, FacetTag, vec3};
 
+use super::boundary::Boundary;
 use super::couplings::Couplings;
 use super::mesh::Raw;
 use super::numbers::Sets;
@@ -16,7 +17,7 @@ use super::rigid::{RigidBodies, RigidFace};
 use super::timeline::Timeline;
 use super::transforms::Transforms;
 use crate::error::{DeckError, Fault, Word};
-use crate::model::{FACES, Model, Names, Side, Target};
+use crate::model::{FACES, Faces, Ignored, Kind, Model, Names, Side, Target};
 
 #[derive(Debug)]
 pub(super) struct Face {
@@ -87,7 +88,7 @@ impl FaceTable {
         let mut faces = Vec::new();
         for element in known.sets.elements.find(target, word)? {
             let Some(tet) = known.raw.tet(element) else {
-                return Err(word.cannot("a pressure on a rigid body acts on nothing; load elastic elements"));
+                return Err(word.cannot("a pressure on what is not elastic acts on nothing; load elastic elements"));
             };
             faces.push(self.face(known.raw, tet, number, word));
         }
@@ -95,27 +96,50 @@ impl FaceTable {
     }
 
     /// Notes the faces of all surfaces, and gives the elastic ones surface by surface.
-    pub(super) fn surfaces(&mut self, known: Known) -> Result<Vec<Vec<u32>>, DeckError> {
+    pub(super) fn surfaces(&mut self, known: Known, ignored: &mut Vec<Ignored>) -> Result<Vec<Vec<u32>>, DeckError> {
         let mut out = Vec::new();
-        for (index, (_, faces)) in known.model.surfaces.iter().enumerate() {
+        let mut boundary = None;
+        for (index, (_, faces)) in (0..).zip(known.model.surfaces.iter()) {
             let (mut all, mut rigid) = (Vec::new(), Vec::new());
+            if faces.iter().any(|faces| faces.side == Side::Nodes) {
+                let boundary = boundary.get_or_insert_with(|| Boundary::new(known.raw));
+                for (tet, number) in of_nodes(known, boundary, faces, ignored)? {
+                    all.extend(self.add(known.raw, (tet, number), index, &faces[0].word));
+                }
+                out.push(all);
+                self.rigid.push(rigid);
+                continue;
+            }
             for faces in faces {
                 let word = &faces.word;
+                let (mut solids, mut flat) = (Vec::new(), Vec::new());
                 for element in known.sets.elements.find(&faces.target, word)? {
-                    let Some(tet) = known.raw.tet(element) else {
-                        let side = (element, faces.side);
-                        rigid.push(known.bodies.face(known.sets, side, word)?);
-                        continue;
-                    };
-                    let Side::Face(number) = faces.side else {
-                        return Err(word.expected("faces S1 to S4 of solid elements"));
-                    };
-                    let face = self.face(known.raw, tet, number, word);
-                    let surfaces = &mut self.list[face as usize].surfaces;
-                    if surfaces.last() != Some(&(index as u32)) {
-                        surfaces.push(index as u32);
-                        all.push(face);
+                    match known.raw.tet(element) {
+                        Some(tet) => solids.push(tet),
+                        None if known.bodies.of_element(element).is_none() => flat.push(element),
+                        None => rigid.push(known.bodies.face(known.sets, (element, faces.side), word)?),
                     }
+                }
+                let chosen = match faces.side {
+                    Side::Face(number) => solids.into_iter().map(|tet| (tet, number)).collect(),
+                    _ if solids.is_empty() => Vec::new(),
+                    Side::Outside => {
+                        let boundary = boundary.get_or_insert_with(|| Boundary::new(known.raw));
+                        let chosen = boundary.of_tets(&solids);
+                        if chosen.is_empty() {
+                            return Err(word.cannot("none of these elements is at the boundary"));
+                        }
+                        chosen
+                    }
+                    Side::Facet { .. } | Side::Nodes => return Err(word.expected("faces S1 to S4 of solid elements")),
+                };
+                for face in chosen {
+                    all.extend(self.add(known.raw, face, index, word));
+                }
+                for element in flat {
+                    let boundary = boundary.get_or_insert_with(|| Boundary::new(known.raw));
+                    let face = of_triangle(known, boundary, element, (faces.side, word))?;
+                    all.extend(self.add(known.raw, face, index, word));
                 }
                 if !all.is_empty() && !rigid.is_empty() {
                     return Err(word.cannot("the surface has rigid and elastic faces; make two surfaces of them"));
@@ -125,6 +149,14 @@ impl FaceTable {
             self.rigid.push(rigid);
         }
         Ok(out)
+    }
+
+    /// Notes a face of a surface; its position, unless it is in it already.
+    fn add(&mut self, raw: &Raw, (tet, number): (u32, u8), surface: u32, word: &Word) -> Option<u32> {
+        let face = self.face(raw, tet, number, word);
+        let surfaces = &mut self.list[face as usize].surfaces;
+        let new = surfaces.last() != Some(&surface);
+        new.then(|| surfaces.push(surface)).map(|()| face)
     }
 
     /// Refuses faces between two elements.
@@ -150,11 +182,10 @@ impl FaceTable {
         self.list.iter().filter(move |f| f.surfaces.contains(&surface))
     }
 
-    /// The nodes of a surface: their numbers in the deck and places.
-    pub(super) fn nodes_of(&self, raw: &Raw, surface: u32) -> Vec<(u32, [f64; 3])> {
+    /// Where the corners of a surface are.
+    pub(super) fn places_of(&self, raw: &Raw, surface: u32) -> Vec<[f64; 3]> {
         let nodes = distinct(self.of_surface(surface).flat_map(|face| face.nodes));
-        let place = |n: u32| (raw.node_labels[n as usize], raw.points[n as usize]);
-        nodes.into_iter().map(place).collect()
+        nodes.into_iter().map(|n| raw.points[n as usize]).collect()
     }
 
     /// The triangles of a surface, the faces of quadratic elements as four each.
@@ -197,6 +228,61 @@ impl FaceTable {
         }
         names
     }
+}
+
+/// The faces of a surface of nodes.
+fn of_nodes(
+    known: Known,
+    boundary: &Boundary,
+    lines: &[Faces],
+    ignored: &mut Vec<Ignored>,
+) -> Result<Vec<(u32, u8)>, DeckError> {
+    let word = &lines[0].word;
+    let mut nodes = Vec::new();
+    for line in lines {
+        for node in known.sets.nodes.find(&line.target, &line.word)? {
+            nodes.push(known.raw.in_mesh(node).ok_or_else(|| {
+                let label = known.model.nodes[node as usize].label;
+                (line.word).cannot(format!(
+                    "no elastic element uses node {label}; leave it out of the surface"
+                ))
+            })?);
+        }
+    }
+    let (faces, alone) = boundary.of_nodes(known.raw, &distinct(nodes));
+    if let Some(node) = alone {
+        return Err(word.cannot(format!(
+            "node {} is on no face of the boundary whose corners are all in this surface of nodes, and forces act on \
+            faces here; add its neighbours, or leave it out",
+            known.raw.node_labels[node as usize]
+        )));
+    }
+    let why = format!(
+        "the surface is that of the {} faces of the boundary whose corners are all in it",
+        faces.len()
+    );
+    ignored.push(Ignored::new(&word.part("TYPE=NODE"), why));
+    Ok(faces)
+}
+
+/// The face of a tetrahedron that a triangle of the deck, by its position, lies on.
+fn of_triangle(
+    known: Known,
+    boundary: &Boundary,
+    element: u32,
+    (side, word): (Side, &Word),
+) -> Result<(u32, u8), DeckError> {
+    let element = &known.model.elements[element as usize];
+    if element.kind != Kind::Flat || side != Side::Outside {
+        return Err(word.expected("solid elements, or triangles without a number of a face"));
+    }
+    let [a, b, c, _] = known.sets.corners(element)?.map(|n| known.raw.in_mesh(n));
+    let corners = a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]);
+    let face = corners.and_then(|corners| boundary.of_corners(corners));
+    face.ok_or_else(|| {
+        let why = "no face of a tetrahedron on the boundary has the corners of triangle";
+        word.cannot(format!("{why} {}; leave it out of the surface", element.label))
+    })
 }
 
 impl Face {

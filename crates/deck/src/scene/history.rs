@@ -21,6 +21,10 @@ pub(super) struct Track {
     pub(super) order: usize,
     /// Where it appears first.
     pub(super) word: Word,
+    /// A value and its factor that stand in place of events.
+    course: Option<(f64, History)>,
+    /// What the values are before the first event and after a removal; only the rise above it counts.
+    base: f64,
 }
 
 impl Track {
@@ -29,6 +33,21 @@ impl Track {
             events: Vec::new(),
             order,
             word: word.clone(),
+            course: None,
+            base: 0.0,
+        }
+    }
+
+    /// The same with values of which the rise above `base` counts.
+    pub(super) fn above(self, base: f64) -> Self {
+        Self { base, ..self }
+    }
+
+    /// The same with a value and a history that follow from others.
+    pub(super) fn with_course(&self, value: f64, history: History) -> Self {
+        Self {
+            course: Some((value, history)),
+            ..Self::new(self.order, &self.word)
         }
     }
 
@@ -67,15 +86,25 @@ impl Track {
 
     /// The value that the factor multiplies: the first that is not zero; `None` if there is none.
     fn reference(&self) -> Option<f64> {
+        if let Some((value, _)) = &self.course {
+            return Some(*value).filter(|value| *value != 0.0);
+        }
+        if self.base != 0.0 {
+            return Some(self.base);
+        }
         let values = self.events.iter().filter_map(|e| Some(e.1?.value));
         values.into_iter().find(|value| *value != 0.0)
     }
 
     /// The points of the factor, times strictly ascending.
     fn points(&self, timeline: &Timeline, reference: f64) -> Vec<(f64, f64)> {
+        if let Some((_, history)) = &self.course {
+            return history.points().to_vec();
+        }
         let spans = &timeline.spans;
         let mut points = Vec::new();
-        let (mut value, mut follows) = (0.0, None);
+        let base = self.base / reference;
+        let (mut value, mut follows) = (base, None);
         for (step, span) in spans.iter().enumerate() {
             let law = match self.event(step) {
                 Some(Some(given)) => match given.amplitude {
@@ -85,7 +114,7 @@ impl Track {
                     }
                     None => Law::to(value, given.value / reference, span.ramp),
                 },
-                Some(None) => Law::to(value, 0.0, span.ramp),
+                Some(None) => Law::to(value, base, span.ramp),
                 None => follows.unwrap_or(Law::Constant(value)),
             };
             follows = match law {
@@ -96,6 +125,45 @@ impl Track {
             value = law.at(span, span.end);
         }
         simplified(points)
+    }
+}
+
+/// A condition by what it acts on.
+pub(super) struct Tracks<K>(pub(super) BTreeMap<K, Track>);
+
+impl<K> Default for Tracks<K> {
+    fn default() -> Self {
+        Self(BTreeMap::new())
+    }
+}
+
+impl<K: Ord> Tracks<K> {
+    pub(super) fn remove(&mut self, step: usize) {
+        self.0.values_mut().for_each(|track| track.remove(step));
+    }
+
+    /// Notes a value. Another one in the same step is added, if it may be and has the same amplitude.
+    pub(super) fn set(
+        &mut self,
+        key: K,
+        (step, order, adds): (usize, usize, bool),
+        mut given: Given,
+        word: &Word,
+    ) -> Result<(), DeckError> {
+        let track = self.0.entry(key).or_insert_with(|| Track::new(order, word));
+        if let Some(before) = track.given_in(step) {
+            if !adds || before.amplitude != given.amplitude {
+                return Err(word.cannot(if adds {
+                    "a force along this component is given in this step already, with another amplitude; \
+                    put them on different nodes, or give one amplitude"
+                } else {
+                    "such a load is given there in this step already; add the values and give their sum once"
+                }));
+            }
+            given.value += before.value;
+        }
+        track.set(step, given);
+        Ok(())
     }
 }
 
@@ -192,10 +260,17 @@ pub(super) struct Histories {
 impl Histories {
     /// The value of a condition and the position of its history; `None` if it is zero at all times.
     pub(super) fn add(&mut self, timeline: &Timeline, track: &Track) -> Result<Option<(f64, usize)>, DeckError> {
-        let Some(reference) = track.reference() else {
+        let Some(mut reference) = track.reference() else {
             return Ok(None);
         };
-        let points = track.points(timeline, reference);
+        let mut points = track.points(timeline, reference);
+        if track.base != 0.0 {
+            // factors of the base become those of the first rise
+            points.iter_mut().for_each(|p| p.1 -= 1.0);
+            let first = points.iter().map(|p| p.1).find(|rise| *rise != 0.0).unwrap_or(1.0);
+            points.iter_mut().for_each(|p| p.1 /= first);
+            reference *= first;
+        }
         if points.iter().all(|p| p.1 == 0.0) {
             return Ok(None);
         }

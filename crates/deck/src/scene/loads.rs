@@ -5,25 +5,22 @@ use std::collections::btree_map::Entry;
 
 use signorini_contact::Load;
 use signorini_fem_mesh::internal::distinct;
-use signorini_fem_mesh::vec3::{norm, scale, sub};
+use signorini_fem_mesh::vec3::Vec3;
 use signorini_fem_mesh::{FacetTag, LoadDensity};
 
 use super::faces::{FaceTable, Known};
-use super::history::{Histories, Track};
-use super::materials::sections;
+use super::history::{Histories, Tracks};
 use super::spread::Spread;
+use super::volume::Volume;
 use crate::error::{DeckError, Word};
-use crate::model::{Components, Condition, Conditions, CouplingLaw, DistributedKind, FORCE, Given, Target};
+use crate::model::{Components, Condition, Conditions, CouplingLaw, DistributedKind, FORCE, Target};
 
 /// Most different pressures that get tags of their own. More become forces at nodes, which are the same for
 /// linear elements.
 const PRESSURES: usize = 100;
 
-/// Difference of unit vectors that is rounding of what a deck writes.
-const TURNED: f64 = 1e-5;
-
-/// Loads that share a history, by its position, and their place among all.
-type Groups<T> = BTreeMap<usize, (usize, T)>;
+/// Forces at nodes that share a history, by its position, and their place among all.
+type Forces = BTreeMap<usize, (usize, BTreeMap<u32, Vec3>)>;
 
 /// What a force is on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -34,73 +31,35 @@ enum Place {
     Coupling(usize),
 }
 
-/// A load of the volume: elements, what it is, and the component.
-type BodyKey = (Target, bool, usize);
-
 /// All loads, with the pressures noted in the table of faces.
 #[derive(Debug, Default)]
 pub(super) struct Loads {
     histories: Histories,
     /// Value, history, place among all.
     pressures: Vec<(f64, usize, usize)>,
-    forces: Groups<BTreeMap<u32, [f64; 3]>>,
-    bodies: Vec<(usize, usize, [f64; 3])>,
+    forces: Forces,
+    /// Loads of the whole mesh: place among all, density, history.
+    bodies: Vec<(usize, LoadDensity, usize)>,
     /// The targets in the order of the deck.
     words: Vec<Word>,
-}
-
-/// A condition by what it acts on.
-struct Tracks<K>(BTreeMap<K, Track>);
-
-impl<K: Ord> Tracks<K> {
-    fn remove(&mut self, step: usize) {
-        self.0.values_mut().for_each(|track| track.remove(step));
-    }
-
-    /// Notes a value. Another one in the same step is added, if it may be and has the same amplitude.
-    fn set(
-        &mut self,
-        key: K,
-        (step, order, adds): (usize, usize, bool),
-        mut given: Given,
-        word: &Word,
-    ) -> Result<(), DeckError> {
-        let track = self.0.entry(key).or_insert_with(|| Track::new(order, word));
-        if let Some(before) = track.given_in(step) {
-            if !adds || before.amplitude != given.amplitude {
-                return Err(word.cannot(if adds {
-                    "a force along this component is given in this step already, with another amplitude; \
-                    put them on different nodes, or give one amplitude"
-                } else {
-                    "such a load is given there in this step already; add the values and give their sum once"
-                }));
-            }
-            given.value += before.value;
-        }
-        track.set(step, given);
-        Ok(())
-    }
 }
 
 impl Loads {
     /// The loads of all steps; `surfaces` are the faces of each surface.
     pub(super) fn new(known: Known, surfaces: &[Vec<u32>], faces: &mut FaceTable) -> Result<Self, DeckError> {
-        let mut forces = Tracks(BTreeMap::new());
-        let mut pressures = Tracks(BTreeMap::new());
-        let mut bodies = Tracks(BTreeMap::new());
-        let mut gravity = BTreeMap::new();
+        let mut forces = Tracks::default();
+        let mut pressures = Tracks::default();
+        let mut bodies = Volume::default();
         let mut loads = Self::default();
         for (step, given) in known.model.steps.iter().enumerate() {
             known.forces(&mut forces, step, &given.forces, &mut loads.words)?;
             if given.distributed.removes() {
                 pressures.remove(step);
                 bodies.remove(step);
-                gravity.clear();
             }
             for line in &given.distributed.lines {
                 let order = loads.words.len();
                 loads.words.push(line.word.clone());
-                one_gravity(&mut gravity, line)?;
                 let to = (&mut pressures, &mut bodies);
                 known.distributed(to, (step, order), line, surfaces, faces)?;
             }
@@ -128,7 +87,10 @@ impl Loads {
             }
         }
         loads.pressures(known, &pressures, faces)?;
-        loads.bodies(known, &bodies)?;
+        let Self { histories, forces, .. } = &mut loads;
+        loads.bodies = bodies.lower(known, histories, |history, order, node, force| {
+            add_force(forces, (history, order), node, force);
+        })?;
         Ok(loads)
     }
 
@@ -169,54 +131,8 @@ impl Loads {
         Ok(())
     }
 
-    /// Gravity and forces per volume: one density where all elements have the same, else forces at nodes.
-    fn bodies(&mut self, known: Known, tracks: &Tracks<BodyKey>) -> Result<(), DeckError> {
-        type Group = (Target, bool, usize);
-        let mut groups: BTreeMap<Group, (usize, [f64; 3], &Track)> = BTreeMap::new();
-        for ((target, gravity, component), track) in &tracks.0 {
-            let found = self.histories.add(known.timeline, track)?;
-            if let Some((value, history)) = found {
-                let key = (target.clone(), *gravity, history);
-                let group = groups.entry(key).or_insert((track.order, [0.0; 3], track));
-                group.1[*component] = value;
-            }
-        }
-        for ((target, gravity, history), (order, value, track)) in groups {
-            let Known { sets, raw, .. } = known;
-            let elements = sets.elements.find(&target, &track.word)?;
-            // rigid ones are held, whatever pulls them
-            let elements: Vec<u32> = elements.into_iter().filter_map(|e| raw.tet(e)).collect();
-            if elements.is_empty() {
-                continue;
-            }
-            let densities = match gravity {
-                true => known.densities(&elements, track)?,
-                false => vec![1.0; elements.len()],
-            };
-            let same = densities.iter().all(|d| *d == densities[0]);
-            if same && elements.len() == raw.tets.len() {
-                let density = densities[0];
-                self.bodies.push((order, history, value.map(|v| density * v)));
-                continue;
-            }
-            for (&element, density) in elements.iter().zip(densities) {
-                for (node, part) in raw.shares(element) {
-                    let share = part * density * raw.volume(element);
-                    self.force(history, order, node, value.map(|v| share * v));
-                }
-            }
-        }
-        Ok(())
-    }
-
-    fn force(&mut self, history: usize, order: usize, node: u32, force: [f64; 3]) {
-        let group = self.forces.entry(history);
-        let (first, list) = group.or_insert_with(|| (order, BTreeMap::new()));
-        *first = order.min(*first);
-        let sum = list.entry(node).or_insert([0.0; 3]);
-        for c in 0..3 {
-            sum[c] += force[c];
-        }
+    fn force(&mut self, history: usize, order: usize, node: u32, force: Vec3) {
+        add_force(&mut self.forces, (history, order), node, force);
     }
 
     /// The loads of the scene, in the order of the deck, each with the first word that asks for it; `tags` are those of
@@ -234,9 +150,7 @@ impl Loads {
             let forces = forces.into_iter().collect();
             out.push((order, LoadDensity::nodal_forces(forces), history));
         }
-        for (order, history, value) in self.bodies {
-            out.push((order, LoadDensity::body(value), history));
-        }
+        out.extend(self.bodies);
         out.sort_by_key(|load| load.0);
         let load = |(order, density, history): (usize, LoadDensity, usize)| {
             let load = Load::new(density).with_history(self.histories.at(history));
@@ -246,21 +160,13 @@ impl Loads {
     }
 }
 
-/// Refuses gravity along another direction than before; `directions` are those that stand.
-fn one_gravity<'a>(
-    directions: &mut BTreeMap<&'a Target, [f64; 3]>,
-    line: &'a Condition<DistributedKind>,
-) -> Result<(), DeckError> {
-    let DistributedKind::Gravity(direction) = line.kind else {
-        return Ok(());
-    };
-    let unit = scale(1.0 / norm(direction), direction);
-    match directions.insert(&line.target, unit) {
-        Some(before) if norm(sub(before, unit)) > TURNED => Err(line.word.cannot(
-            "gravity along another direction stands there, which CalculiX keeps beside this and Abaqus replaces; give \
-            one vector, in a later step with OP=NEW",
-        )),
-        _ => Ok(()),
+/// Adds a force at a node to those with the same history.
+fn add_force(forces: &mut Forces, (history, order): (usize, usize), node: u32, force: Vec3) {
+    let (first, list) = forces.entry(history).or_insert_with(|| (order, BTreeMap::new()));
+    *first = order.min(*first);
+    let sum = list.entry(node).or_insert([0.0; 3]);
+    for c in 0..3 {
+        sum[c] += force[c];
     }
 }
 
@@ -305,6 +211,12 @@ impl Known<'_> {
                 None => Ok(Place::Coupling(index)),
             };
         }
+        if self.bodies.has(node) {
+            return Err(line.word.cannot(
+                "a rigid body is held or moved here, not loaded; give its displacement with *BOUNDARY, whose reaction \
+                is the force",
+            ));
+        }
         let inside = self.raw.in_mesh(node).ok_or_else(|| {
             let label = self.model.nodes[node as usize].label;
             line.word.cannot(format!(
@@ -319,7 +231,7 @@ impl Known<'_> {
 
     fn distributed(
         self,
-        (pressures, bodies): (&mut Tracks<u32>, &mut Tracks<BodyKey>),
+        (pressures, bodies): (&mut Tracks<u32>, &mut Volume),
         (step, order): (usize, usize),
         line: &Condition<DistributedKind>,
         surfaces: &[Vec<u32>],
@@ -343,45 +255,15 @@ impl Known<'_> {
                 }
                 surfaces[found].clone()
             }
-            DistributedKind::Gravity(direction) => {
+            DistributedKind::Volume(law) => {
                 // so that an unknown set is refused here
                 self.sets.elements.find(&line.target, word)?;
-                let length = norm(*direction);
-                for (c, d) in direction.iter().enumerate() {
-                    let key = (line.target.clone(), true, c);
-                    let value = given.value * (d / length);
-                    bodies.set(key, when, Given { value, ..given }, word)?;
-                }
-                return Ok(());
-            }
-            DistributedKind::Body(component) => {
-                self.sets.elements.find(&line.target, word)?;
-                let key = (line.target.clone(), false, *component);
-                return bodies.set(key, when, given, word);
+                return bodies.set(&line.target, law, when, given, word);
             }
         };
         for face in faces {
             pressures.set(face, when, given, word)?;
         }
         Ok(())
-    }
-
-    /// Densities of elements, that of the material of their section.
-    fn densities(self, elements: &[u32], track: &Track) -> Result<Vec<f64>, DeckError> {
-        let Known { model, raw, sets, .. } = self;
-        let sections = sections(raw, sets)?;
-        let sections = sections.ok_or_else(|| track.word.cannot("gravity needs materials; give *SOLID SECTION"))?;
-        let mut of_section = Vec::with_capacity(model.sections.len());
-        for section in &model.sections {
-            of_section.push((model.material(section)?.density, &section.material.name));
-        }
-        let density = |&element: &u32| {
-            let (density, name) = of_section[sections[element as usize] as usize];
-            density.ok_or_else(|| {
-                let why = format!("gravity needs a density; give material {name} *DENSITY");
-                track.word.cannot(why)
-            })
-        };
-        elements.iter().map(density).collect()
     }
 }

@@ -41,6 +41,12 @@ pub(super) fn sections(raw: &Raw, sets: &Sets) -> Result<Option<Vec<u32>>, DeckE
     for (index, section) in model.sections.iter().enumerate() {
         let word = &section.elset.word;
         let elements = sets.elements_of(&section.elset)?;
+        if let Some(&mark) = elements.iter().find(|e| model.elements[**e as usize].kind.is_mark()) {
+            return Err(word.cannot(format!(
+                "element {} is a triangle or a line, which have no stiffness here; give sections to solid elements only",
+                model.elements[mark as usize].label
+            )));
+        }
         // rigid ones need no material
         for tet in elements.into_iter().filter_map(|e| raw.tet(e)) {
             let before = std::mem::replace(&mut of_element[tet as usize], index as u32);

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use signorini_contact::{ContactError, Part};
 use signorini_fem_mesh::internal::EDGES;
-use signorini_fem_mesh::vec3::tet_volume;
+use signorini_fem_mesh::vec3::{add, scale, sub, tet_volume};
 use signorini_fem_mesh::{Facet, TetMesh};
 
 use super::numbers::{Numbers, Sets};
@@ -37,7 +37,7 @@ impl Raw {
         let mut used = vec![false; model.nodes.len()];
         for (position, element) in model.elements.iter().enumerate() {
             let nodes = sets.corners(element)?;
-            if bodies.of_element(position as u32).is_some() {
+            if element.kind.is_mark() || bodies.of_element(position as u32).is_some() {
                 continue;
             }
             if element.kind != Kind::Solid {
@@ -90,7 +90,7 @@ impl Raw {
         })
     }
 
-    /// The tetrahedron of an element of the deck, by its position; `None` if it is rigid.
+    /// The tetrahedron of an element of the deck, by its position; `None` if it is rigid, or a triangle or line.
     pub(super) fn tet(&self, element: u32) -> Option<u32> {
         self.of_element[element as usize]
     }
@@ -124,6 +124,23 @@ impl Raw {
             Some(mids) => {
                 let corners = corners.into_iter().map(|n| (n, -0.05));
                 corners.chain(mids.iter().map(|&n| (n, 0.2))).collect()
+            }
+        }
+    }
+
+    /// The same of one that grows linearly, given at the corners.
+    pub(super) fn linear_shares(&self, tet: u32, given: [[f64; 3]; 4]) -> Vec<(u32, [f64; 3])> {
+        let corners = self.tets[tet as usize];
+        let sum = given.into_iter().fold([0.0; 3], add);
+        let own = corners.into_iter().zip(given);
+        match self.mids.get(tet as usize) {
+            None => own.map(|(n, f)| (n, scale(0.05, add(sum, f)))).collect(),
+            Some(mids) => {
+                let corners = own.map(|(n, f)| (n, scale(1.0 / 60.0, sub(f, sum))));
+                let ends = |[a, b]: [usize; 2]| add(given[a], given[b]);
+                let mids = mids.iter().zip(EDGES);
+                let mids = mids.map(|(&n, edge)| (n, scale(1.0 / 30.0, add(sum, ends(edge)))));
+                corners.chain(mids).collect()
             }
         }
     }

@@ -4,6 +4,7 @@
 //! the mesh, faces get tags, the conditions of all steps become one history each. What cannot be said to the
 //! solver is refused here, with its place. May use `model`, `lexer`, `error`.
 
+mod boundary;
 mod contacts;
 mod couplings;
 mod faces;
@@ -20,6 +21,7 @@ mod temperatures;
 mod ties;
 mod timeline;
 mod transforms;
+mod volume;
 
 use std::path::Path;
 
@@ -67,7 +69,8 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         transforms: &transforms,
     };
     let mut faces = faces::FaceTable::default();
-    let surfaces = faces.surfaces(known)?;
+    let mut notes = Vec::new();
+    let surfaces = faces.surfaces(known, &mut notes)?;
     let loads = loads::Loads::new(known, &surfaces, &mut faces)?;
     faces.check_outside(&raw)?;
     let tags = faces.tags();
@@ -77,6 +80,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     let surfaces = faces.tags_of(&tags, model);
 
     let mut supports = supports::supports(known, &faces)?;
+    supports.ignored.append(&mut notes);
     let contacts = contacts::contacts(known, &faces, &surfaces, &supports.motions, &mut supports.ignored)?;
     let warm = temperatures::temperatures(known, &mut supports.ignored)?;
     let loads = loads.lower(&faces, &tags).into_iter().chain(warm);

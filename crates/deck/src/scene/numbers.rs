@@ -86,6 +86,7 @@ impl<'a> Table<'a> {
                 let found = self.numbers.get(*number);
                 Ok(vec![found.ok_or_else(|| word.fault(Fault::UnknownNumber(self.what)))?])
             }
+            Target::All => Ok((0..self.numbers.0.len() as u32).collect()),
             Target::Name(name) => match &self.sets[self.names.find(self.what_set, name, word)?][..] {
                 [] => Err(word.cannot("the set is empty; fill it, or remove this line")),
                 set => Ok(set.to_vec()),

@@ -1,19 +1,20 @@
 //! Rigid bodies: what belongs to them, how they move, and where they are a plane.
 //!
-//! The library knows a rigid half-space. A rigid surface is one, exactly, if it is flat, if all nodes that may
-//! touch it lie over it, and if the body is held or moved along a straight line without turning. Anything else
-//! is refused.
+//! A rigid surface is a half-space, exactly, if it is flat, if all nodes that may touch it lie over it, and if the body
+//! does not turn. Any other one is a triangulated obstacle.
 
 use std::collections::BTreeMap;
 
-use signorini_contact::Contact;
-use signorini_fem_mesh::vec3::{area_vector, dot, norm, sub};
+use signorini_contact::{Contact, Obstacle};
+use signorini_fem_mesh::internal::{EDGES, distinct};
+use signorini_fem_mesh::vec3::{Vec3, area_vector, cross, dot, norm, sub};
 use signorini_fem_mesh::{FacetTag, History};
 
 use super::history::{Histories, Track};
 use super::numbers::Sets;
 use super::timeline::Timeline;
 use crate::error::{DeckError, Word};
+use crate::lexer::Named;
 use crate::model::{FACES, Kind, Side, Target};
 
 /// Deviation from a plane, and of a node from the rim of a surface, over its size, that is rounding.
@@ -24,6 +25,8 @@ const ROUNDING: f64 = 1e-9;
 struct Body {
     reference: u32,
     rotation: Option<u32>,
+    /// Nodes of its elements and its set.
+    nodes: Vec<u32>,
 }
 
 /// All rigid bodies and their elements.
@@ -36,12 +39,74 @@ pub(super) struct RigidBodies {
 /// A side of a rigid element: corners, counter-clockwise seen from outside.
 #[derive(Debug)]
 pub(super) struct RigidFace {
-    corners: Vec<[f64; 3]>,
+    corners: Vec<Vec3>,
+    /// The same between neighbouring nodes.
+    triangles: Vec<[Vec3; 3]>,
     body: u32,
 }
 
-/// Displacement of a body and its history; `None` if it is held.
-pub(super) type Motion = Option<([f64; 3], History)>;
+/// A vector and its history; `None` if it is zero at all times.
+type Course = Option<(Vec3, History)>;
+
+/// How a body moves: the displacement of a point, and its rotation about it, radians.
+#[derive(Debug)]
+pub(super) struct Motion {
+    pub(super) shift: Course,
+    pub(super) turn: Course,
+    pub(super) about: Vec3,
+}
+
+impl Motion {
+    /// Of the node with some components 1 to 6 in time; `word` names it.
+    pub(super) fn new(timeline: &Timeline, tracks: [&Track; 6], about: Vec3, word: &Word) -> Result<Self, DeckError> {
+        let course = |tracks: &[&Track]| -> Result<Course, DeckError> {
+            let mut histories = Histories::default();
+            let mut value = [0.0; 3];
+            for (component, track) in value.iter_mut().zip(tracks) {
+                let Some((size, history)) = histories.add(timeline, track)? else {
+                    continue;
+                };
+                if history > 0 {
+                    let why = "the components of a rigid motion have different histories, and displacement and \
+                    rotation have one each; give their components one amplitude";
+                    return Err(word.cannot(why));
+                }
+                *component = size;
+            }
+            let moves = value.iter().any(|v| *v != 0.0);
+            Ok(moves.then(|| (value, histories.at(0))))
+        };
+        let (shift, turn) = (course(&tracks[..3])?, course(&tracks[3..])?);
+        Ok(Self { shift, turn, about })
+    }
+
+    /// A component of the displacement of a place, for small rotations, and its history; `None` if it is zero, the
+    /// error if there are two.
+    pub(super) fn at(&self, place: Vec3, component: usize) -> Result<Option<(f64, History)>, &'static str> {
+        let arm = sub(place, self.about);
+        let shift = self.shift.as_ref().map(|(by, history)| (by[component], history));
+        let turn = self
+            .turn
+            .as_ref()
+            .map(|(by, history)| (cross(*by, arm)[component], history));
+        let parts: Vec<_> = [shift, turn]
+            .into_iter()
+            .flatten()
+            .filter(|part| part.0 != 0.0)
+            .collect();
+        match parts[..] {
+            [] => Ok(None),
+            [(value, history)] => Ok(Some((value, history.clone()))),
+            [(a, one), (b, other), ..] => match one.points() == other.points() {
+                true => Ok(Some((a + b, one.clone()))),
+                false => Err(
+                    "elastic nodes of what is rigid are displaced and turned with different histories, and a \
+                    support has one; give both one amplitude, or move the nodes with *BOUNDARY",
+                ),
+            },
+        }
+    }
+}
 
 impl RigidBodies {
     pub(super) fn new(sets: &Sets) -> Result<Self, DeckError> {
@@ -49,18 +114,27 @@ impl RigidBodies {
         let mut of_element = vec![None; model.elements.len()];
         let mut list = Vec::with_capacity(model.rigid.len());
         for (index, body) in model.rigid.iter().enumerate() {
-            let word = &body.elset.word;
-            for element in sets.elements_of(&body.elset)? {
-                if of_element[element as usize].replace(index as u32).is_some() {
-                    let label = model.elements[element as usize].label;
-                    let why = format!("element {label} is in another rigid body; keep one of them");
-                    return Err(word.cannot(why));
+            let mut nodes = Vec::new();
+            if let Some(elset) = &body.elset {
+                for element in sets.elements_of(elset)? {
+                    let position = element as usize;
+                    let element = &model.elements[position];
+                    if of_element[position].replace(index as u32).is_some() {
+                        let why = format!("element {} is in another rigid body; keep one of them", element.label);
+                        return Err(elset.word.cannot(why));
+                    }
+                    nodes.extend(sets.corners(element)?);
+                    nodes.extend(sets.mids(element)?.into_iter().flatten());
                 }
+            }
+            if let Some(Named { name, word }) = &body.nset {
+                nodes.extend(sets.nodes.find(&Target::Name(name.clone()), word)?);
             }
             let node = |(target, word): &(Target, Word)| sets.one_node(target, word);
             list.push(Body {
                 reference: node(&body.reference)?,
                 rotation: body.rotation.as_ref().map(node).transpose()?,
+                nodes: distinct(nodes),
             });
         }
         Ok(Self { list, of_element })
@@ -77,31 +151,22 @@ impl RigidBodies {
             .any(|n| n == Some(node))
     }
 
-    /// Refuses bodies that share nodes with elastic elements, which would be bonded to them; `elastic` are the nodes
-    /// that such elements use.
+    /// Refuses reference nodes that elastic elements use; `elastic` are those that do.
     pub(super) fn check_apart(&self, sets: &Sets, elastic: &[bool]) -> Result<(), DeckError> {
-        let model = sets.model;
-        let fault = |word: &Word, node: u32| {
-            Err(word.cannot(format!(
-                "node {} is of a rigid body and of elastic elements, and rigid parts of elastic bodies are not here; \
-                hold or move the nodes with *BOUNDARY, or give the rigid body nodes of its own",
-                model.nodes[node as usize].label
-            )))
-        };
-        for (body, said) in self.list.iter().zip(&model.rigid) {
+        for (body, said) in self.list.iter().zip(&sets.model.rigid) {
             let own = [Some(body.reference), body.rotation].into_iter().flatten();
             if let Some(node) = own.into_iter().find(|n| elastic[*n as usize]) {
-                return fault(&said.reference.1, node);
-            }
-        }
-        let all = model.elements.iter().zip(&self.of_element);
-        for (element, _) in all.filter(|(_, body)| body.is_some()) {
-            let nodes = sets.corners(element)?;
-            if let Some(node) = nodes.into_iter().find(|n| elastic[*n as usize]) {
-                return fault(&element.word(), node);
+                let label = sets.model.nodes[node as usize].label;
+                let why = format!("node {label} belongs to an elastic element; give the rigid body a node of its own");
+                return Err(said.reference.1.cannot(why));
             }
         }
         Ok(())
+    }
+
+    /// Nodes of the deck that move with a body, its reference node and the node of its rotation.
+    pub(super) fn nodes(&self) -> impl Iterator<Item = (&[u32], u32, Option<u32>)> {
+        self.list.iter().map(|b| (&*b.nodes, b.reference, b.rotation))
     }
 
     /// A side of a rigid element, by its position.
@@ -110,21 +175,42 @@ impl RigidBodies {
         let element = &sets.model.elements[element as usize];
         let nodes = sets.corners(element)?;
         let p = nodes.map(|n| sets.model.nodes[n as usize].point);
+        let mut triangles = Vec::new();
         let mut corners = match (element.kind, side) {
             (Kind::Solid, Side::Face(number)) => {
                 let [a, b, c] = FACES[usize::from(number) - 1];
+                if let Some(mids) = sets.mids(element)? {
+                    let mid = |i: usize, j: usize| {
+                        let edge = EDGES.iter().position(|edge| edge.contains(&i) && edge.contains(&j));
+                        sets.model.nodes[mids[edge.unwrap_or(0)] as usize].point
+                    };
+                    let [ab, bc, ca] = [mid(a, b), mid(b, c), mid(c, a)];
+                    triangles = vec![[p[a], ca, ab], [ab, bc, p[b]], [ca, p[c], bc], [ab, ca, bc]];
+                }
                 // these faces are numbered counter-clockwise seen from inside
                 vec![p[a], p[c], p[b]]
             }
             (Kind::Solid, _) => return Err(word.expected("faces S1 to S4 of solid elements")),
-            (_, Side::Face(_)) => return Err(word.expected("SPOS or SNEG of rigid facets")),
-            (Kind::Triangle, _) => p[..3].to_vec(),
+            (_, Side::Face(_) | Side::Outside | Side::Nodes) => {
+                return Err(word.expected("SPOS or SNEG of rigid facets"));
+            }
+            (Kind::Line, _) => return Err(word.expected("facets: lines have no sides")),
+            (Kind::Triangle | Kind::Flat, _) => p[..3].to_vec(),
             (Kind::Quadrilateral, _) => p.to_vec(),
         };
         if side == (Side::Facet { positive: false }) {
             corners.reverse();
         }
-        Ok(RigidFace { corners, body })
+        if triangles.is_empty() {
+            let fan = (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]);
+            // the second one of a triangle has no area, since its last corner is there twice
+            triangles.extend(fan.filter(|t| t[1] != t[2]));
+        }
+        Ok(RigidFace {
+            corners,
+            triangles,
+            body,
+        })
     }
 
     /// How each body moves; `held` are the components 0 to 5 of its nodes that supports hold.
@@ -136,52 +222,88 @@ impl RigidBodies {
         let mut out = Vec::with_capacity(self.list.len());
         for (body, said) in self.list.iter().zip(&timeline.model.rigid) {
             let word = &said.reference.1;
-            let mut histories = Histories::default();
-            let mut value = [0.0; 3];
+            let mut tracks = Vec::with_capacity(6);
             for component in 0..6 {
-                let own = held.get(&(body.reference, component));
-                let other = body.rotation.filter(|_| component >= 3);
-                let turned = other.and_then(|n| held.get(&(n, component - 3)));
-                let Some(track) = own.or(turned) else {
-                    return Err(word.cannot(format!(
-                        "the rigid body is not held along component {} (of 6, rotations are 4 to 6); give \
-                        its node *BOUNDARY, since only a held or moved obstacle can be said",
+                let track = rigid_component(held, (body.reference, body.rotation), component);
+                tracks.push(track.ok_or_else(|| {
+                    word.cannot(format!(
+                        "the rigid body is not held along component {} (of 6, rotations are 4 to 6); give its node \
+                        *BOUNDARY, since what is rigid is held or moved here, not loaded",
                         component + 1
-                    )));
-                };
-                let Some((size, history)) = histories.add(timeline, track)? else {
-                    continue;
-                };
-                if component >= 3 {
-                    return Err(word.cannot("a rigid body that turns cannot be said; hold its rotations"));
-                }
-                if history > 0 {
-                    let why = "the components of a rigid body's motion have different histories, and an obstacle has \
-                    one; give them one amplitude";
-                    return Err(word.cannot(why));
-                }
-                value[component] = size;
+                    ))
+                })?);
             }
-            let moves = value.iter().any(|v| *v != 0.0);
-            out.push(moves.then(|| (value, histories.at(0))));
+            let about = timeline.model.nodes[body.reference as usize].point;
+            let tracks = [0, 1, 2, 3, 4, 5].map(|c| tracks[c]);
+            out.push(Motion::new(timeline, tracks, about, word)?);
         }
         Ok(out)
     }
 }
 
-/// The contact of the facets with a tag with a rigid surface, as one with a half-space. `over` are the nodes
-/// that may touch it, with their numbers in the deck.
-pub(super) fn half_space(
+/// What the steps say about a component 0 to 5 of what is rigid: of its reference node, or of the node whose
+/// displacement is its rotation.
+pub(super) fn rigid_component<T>(
+    held: &BTreeMap<(u32, usize), T>,
+    (reference, rotation): (u32, Option<u32>),
+    component: usize,
+) -> Option<&T> {
+    let own = held.get(&(reference, component));
+    let other = rotation.filter(|_| component >= 3);
+    own.or_else(|| held.get(&(other?, component - 3)))
+}
+
+/// The contact of the facets with a tag with a rigid surface. `over` are the places that may touch it.
+pub(super) fn obstacle(
     faces: &[RigidFace],
     motions: &[Motion],
     tag: FacetTag,
-    over: &[(u32, [f64; 3])],
+    over: &[Vec3],
 ) -> Result<Contact, String> {
     let body = faces[0].body;
     if faces.iter().any(|face| face.body != body) {
         return Err("the surface is on several rigid bodies; give a pair for each".into());
     }
-    let triangles: Vec<[[f64; 3]; 3]> = faces
+    let motion = &motions[body as usize];
+    let plane = if motion.turn.is_none() {
+        plane(faces, over)
+    } else {
+        None
+    };
+    let mut contact = match plane {
+        Some([point, normal]) => Contact::half_space(tag, point, normal),
+        None => {
+            let triangles = faces.iter().flat_map(|face| &face.triangles);
+            let points: Vec<Vec3> = triangles.flatten().copied().collect();
+            let triangles: Vec<[u32; 3]> = (0..points.len() as u32 / 3)
+                .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
+                .collect();
+            let surface = Obstacle::surface(&points, &triangles);
+            Contact::obstacle(
+                tag,
+                surface.map_err(|error| format!("the rigid surface is no obstacle: {error}"))?,
+            )
+        }
+    };
+    if let Some((displacement, history)) = &motion.shift {
+        contact = contact.with_motion(*displacement, history.clone());
+    }
+    if let Some((by, history)) = &motion.turn {
+        let angle = norm(*by);
+        let points = history
+            .points()
+            .iter()
+            .map(|(time, factor)| (*time, factor * angle))
+            .collect();
+        let angle = History::table(points).map_err(|error| format!("the rotation of the rigid body: {error}"))?;
+        contact = contact.with_rotation(motion.about, *by, angle);
+    }
+    Ok(contact)
+}
+
+/// A point and the outward normal of the plane of a surface, if it is flat and all places lie over it.
+fn plane(faces: &[RigidFace], over: &[Vec3]) -> Option<[Vec3; 2]> {
+    let triangles: Vec<[Vec3; 3]> = faces
         .iter()
         .flat_map(|face| (1..face.corners.len() - 1).map(|i| [face.corners[0], face.corners[i], face.corners[i + 1]]))
         .collect();
@@ -195,7 +317,7 @@ pub(super) fn half_space(
     let point = faces[0].corners[0];
     let size = norm(area).sqrt();
     if !(size > 0.0 && size.is_finite()) {
-        return Err("the rigid surface has no area; check its nodes".into());
+        return None;
     }
     let height = |x: &[f64; 3]| dot(sub(*x, point), normal);
     let reach = triangles
@@ -207,26 +329,10 @@ pub(super) fn half_space(
         let own = area_vector(t);
         t.iter().all(|x| height(x).abs() <= ROUNDING * reach) && dot(own, normal) >= (1.0 - ROUNDING) * norm(own)
     };
-    if !triangles.iter().all(flat) {
-        return Err(
-            "the rigid surface is not flat, and only a plane can be said exactly; give a plane, or a \
-        gap that depends on the place in a program (Contact::with_gap_field)"
-                .into(),
-        );
-    }
-    for (label, x) in over {
-        if !triangles.iter().any(|t| contains(t, normal, *x)) {
-            return Err(format!(
-                "node {label} of the other surface lies beside the rigid surface, where a half-space would \
-                hold it as well; make the rigid surface larger or the other one smaller"
-            ));
-        }
-    }
-    let contact = Contact::half_space(tag, point, normal);
-    Ok(match &motions[body as usize] {
-        Some((displacement, history)) => contact.with_motion(*displacement, history.clone()),
-        None => contact,
-    })
+    let mids = faces.iter().flat_map(|face| &face.triangles).flatten();
+    let is_flat = triangles.iter().all(flat) && mids.into_iter().all(|x| height(x).abs() <= ROUNDING * reach);
+    let covers = |x: &Vec3| triangles.iter().any(|t| contains(t, normal, *x));
+    (is_flat && over.iter().all(covers)).then_some([point, normal])
 }
 
 /// Whether a point lies over a triangle, its rim included.

@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use signorini_contact::Support;
+use signorini_fem_mesh::History;
 
 use super::faces::{FaceTable, Known};
 use super::history::{Histories, Track};
-use super::rigid::Motion;
+use super::rigid::{Motion, rigid_component};
 use super::spread::coupled_nodes;
 use crate::error::{DeckError, Word};
 use crate::model::{COMPONENT, Components, Condition, Given, Ignored, Target};
@@ -114,6 +115,7 @@ impl Table {
         let name = match target {
             Target::Number(_) => SINGLE,
             Target::Name(name) => name,
+            Target::All => "all",
         };
         let known = self.owners.iter().position(|owner| owner.0 == name);
         known.unwrap_or_else(|| {
@@ -175,41 +177,64 @@ impl Table {
         Ok(())
     }
 
-    /// Gives the nodes of surfaces the displacements of the nodes that stand for them.
+    /// Gives the nodes of what is rigid its displacements: of surfaces with *KINEMATIC, and of rigid bodies.
     fn couple(&mut self, known: Known, faces: &FaceTable) -> Result<(), DeckError> {
         for coupling in known.couplings.0.iter().filter(|c| known.couplings.moves(c.node)) {
-            let word = &coupling.word;
-            let mut components = Vec::with_capacity(3);
-            for component in 0..6 {
-                let Some(held) = self.rigid.remove(&(coupling.node, component)) else {
-                    return Err(word.cannot(format!(
-                        "component {} (of 6, rotations are 4 to 6) of the node of this surface is free, and a \
-                        surface that keeps its shape and moves freely is not here; hold it with *BOUNDARY",
-                        component + 1
-                    )));
-                };
-                match component {
-                    0..3 => components.push(held),
-                    _ if Histories::default().add(known.timeline, &held.track)?.is_some() => {
-                        return Err(held
-                            .track
-                            .word
-                            .cannot("a surface that turns is not here; move its nodes"));
-                    }
-                    _ => {}
-                }
+            let nodes = coupled_nodes(coupling, known, faces)?;
+            self.move_rigidly(known, nodes.into_keys(), (coupling.node, None), &coupling.word)?;
+            (0..6).for_each(|c| drop(self.rigid.remove(&(coupling.node, c))));
+        }
+        for ((nodes, reference, rotation), said) in known.bodies.nodes().zip(&known.model.rigid) {
+            let elastic = nodes.iter().filter_map(|n| known.raw.in_mesh(*n));
+            self.move_rigidly(known, elastic, (reference, rotation), &said.word)?;
+        }
+        Ok(())
+    }
+
+    /// Gives nodes of the mesh the displacement of a reference node and its rotation.
+    fn move_rigidly(
+        &mut self,
+        known: Known,
+        nodes: impl Iterator<Item = u32>,
+        leads: (u32, Option<u32>),
+        word: &Word,
+    ) -> Result<(), DeckError> {
+        let mut nodes = nodes.peekable();
+        if nodes.peek().is_none() {
+            return Ok(());
+        }
+        let mut held = Vec::with_capacity(6);
+        for component in 0..6 {
+            let found = rigid_component(&self.rigid, leads, component).cloned();
+            held.push(found.ok_or_else(|| {
+                word.cannot(format!(
+                    "component {} (of 6, rotations are 4 to 6) of the node of this surface is free, and a surface that \
+                    keeps its shape and moves freely is not here; hold it with *BOUNDARY",
+                    component + 1
+                ))
+            })?);
+        }
+        let tracks = [0, 1, 2, 3, 4, 5].map(|c: usize| &held[c].track);
+        let about = known.model.nodes[leads.0 as usize].point;
+        let motion = Motion::new(known.timeline, tracks, about, word)?;
+        for node in nodes {
+            let label = known.raw.node_labels[node as usize];
+            if known.transforms.of(node).is_some() {
+                let why = format!("node {label} of this surface has axes of its own; take it out of *TRANSFORM");
+                return Err(word.cannot(why));
             }
-            for node in coupled_nodes(coupling, known, faces)?.into_keys() {
-                let label = known.raw.node_labels[node as usize];
-                if known.transforms.of(node).is_some() {
-                    let why = format!("node {label} of this surface has axes of its own; take it out of *TRANSFORM");
-                    return Err(word.cannot(why));
+            for (component, lead) in held[..3].iter().enumerate() {
+                let mut held = lead.clone();
+                if motion.turn.is_some() {
+                    let at = motion.at(known.raw.points[node as usize], component);
+                    let (value, history) = at
+                        .map_err(|why| word.cannot(why))?
+                        .unwrap_or((0.0, History::constant(0.0)));
+                    held.track = held.track.with_course(value, history);
                 }
-                for (component, held) in components.iter().enumerate() {
-                    if self.held.insert((node, component), held.clone()).is_some() {
-                        let why = format!("node {label} of this surface is held by itself, too; keep one of them");
-                        return Err(word.cannot(why));
-                    }
+                if self.held.insert((node, component), held).is_some() {
+                    let why = format!("node {label} of this surface is held by itself, too; keep one of them");
+                    return Err(word.cannot(why));
                 }
             }
         }

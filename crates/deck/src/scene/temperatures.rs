@@ -24,6 +24,8 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
         }
     }
     let mut tracks: BTreeMap<u32, Track> = BTreeMap::new();
+    let lines = model.steps.iter().flat_map(|step| &step.temperatures.lines);
+    let absolute = lines.into_iter().any(|line| line.given.amplitude.is_some());
     let mut order = 0;
     for (step, given) in model.steps.iter().enumerate() {
         if given.temperatures.removes() {
@@ -34,14 +36,15 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
             for node in sets.nodes.find(&line.target, &line.word)? {
                 let Some(node) = raw.in_mesh(node) else { continue };
                 let initial = first[node as usize];
-                if line.given.amplitude.is_some() && initial != 0.0 {
-                    return Err(line.word.cannot(
-                        "an amplitude multiplies the temperature, not its rise above the initial one, which is not zero \
-                        here; count temperatures from the initial one",
-                    ));
-                }
-                let value = line.given.value - initial;
-                let track = tracks.entry(node).or_insert_with(|| Track::new(order, &line.word));
+                // an amplitude multiplies the temperature, not its rise
+                let (value, base) = if absolute {
+                    (line.given.value, initial)
+                } else {
+                    (line.given.value - initial, 0.0)
+                };
+                let track = tracks
+                    .entry(node)
+                    .or_insert_with(|| Track::new(order, &line.word).above(base));
                 track.set(step, Given { value, ..line.given });
             }
         }

@@ -26,6 +26,21 @@ fn valid() -> String {
     deck.replace("HERE", &format!("{element}, P{number}"))
 }
 
+/// A small deck with parts.
+fn assembled() -> String {
+    let deck = cube("");
+    let (mesh, material) = deck.split_once("*MATERIAL").expect("a material");
+    format!(
+        "*PART, NAME=P\n{mesh}*SOLID SECTION, ELSET=ALL, MATERIAL=STEEL\n*SURFACE, NAME=NODES, TYPE=NODE\nN6\n*END PART\n\
+        *ASSEMBLY, NAME=A\n*INSTANCE, NAME=I, PART=P\n*END INSTANCE\n*INSTANCE, NAME=J, PART=P\n0., 0., 1.\n\
+        0., 0., 0., 0., 0., 1., 90.\n*END INSTANCE\n*NODE\n1\n2\n*NSET, NSET=R\n1\n*NSET, NSET=S, INSTANCE=J\nN6, 1\n\
+        *SURFACE, NAME=SKIN\nJ.ALL\n*END ASSEMBLY\n*MATERIAL{}*RIGID BODY, NSET=S, REF NODE=R, ROT NODE=202\n\
+        *SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I\nI.NODES, J.S5\n*BOUNDARY\nI.N5, 1, 3\nR, 1, 3\n\
+        202, 1, 3\n*STEP\n*STATIC\n*BOUNDARY\n202, 2, 2, 0.01\n*DLOAD\n, CENTRIF, 100., 0., 0., 0., 0., 0., 1.\n*END STEP\n",
+        material.split("*SOLID").next().expect("a material")
+    )
+}
+
 /// Reads what may be broken, within a second.
 fn survive(path: &std::path::Path, bytes: &[u8]) -> bool {
     std::fs::write(path, bytes).expect("written");
@@ -67,14 +82,15 @@ impl Dice {
 
 #[test]
 fn cut_anywhere() {
-    let text = valid();
-    let (_folder, path) = folder(&[("part.inp", &text)]);
-    Deck::read(&path).expect("the deck before it is broken");
-    for (at, _) in text.match_indices('\n') {
-        survive(&path, &text.as_bytes()[..at]);
-    }
-    for at in (text.len() - 700)..text.len() {
-        survive(&path, &text.as_bytes()[..at]);
+    for text in [valid(), assembled()] {
+        let (_folder, path) = folder(&[("part.inp", &text)]);
+        Deck::read(&path).expect("the deck before it is broken");
+        for (at, _) in text.match_indices('\n') {
+            survive(&path, &text.as_bytes()[..at]);
+        }
+        for at in (text.len() - 700)..text.len() {
+            survive(&path, &text.as_bytes()[..at]);
+        }
     }
 }
 
@@ -100,10 +116,11 @@ fn bytes_are_flipped() {
 
 #[test]
 fn lines_are_repeated_lost_and_swapped() {
-    let text = valid();
-    let (_folder, path) = folder(&[("part.inp", &text)]);
+    let texts = [valid(), assembled()];
+    let (_folder, path) = folder(&[("part.inp", "")]);
     let mut dice = Dice(16);
-    for _ in 0..1500 {
+    for round in 0..2500 {
+        let text = &texts[round % 2];
         let mut lines: Vec<&str> = text.lines().collect();
         let (a, b) = (dice.roll(lines.len()), dice.roll(lines.len()));
         match dice.roll(3) {
@@ -148,6 +165,15 @@ fn bombs() {
         &path,
         cube(&"*STEP\n*STATIC\n1e-6, 1.\n*END STEP\n".repeat(50)).as_bytes(),
     );
+    // a part, many times
+    let nodes: String = (1..50_000).map(|n| format!("{n}\n")).collect();
+    let instances: String = (0..20_000)
+        .map(|n| format!("*INSTANCE, NAME={n}, PART=P\n*END INSTANCE\n"))
+        .collect();
+    let many = format!("*PART, NAME=P\n*NODE\n{nodes}*END PART\n*ASSEMBLY\n{instances}");
+    std::fs::write(&path, many).expect("written");
+    let error = Deck::read(&path).expect_err("too many").to_string();
+    assert!(error.contains("in all instances"), "{error}");
     survive(&path, ",".repeat(1_000_000).as_bytes());
     survive(&path, format!("*NODE{}", ",\n".repeat(200_000)).as_bytes());
     survive(&path, &[0; 100_000]);

@@ -103,13 +103,14 @@ fn what_is_refused() {
     refused("*DISTRIBUTING\n4, 7", &idle, "4, 7", "4, 7", "1 to 6");
     let free = format!("{HELD}*BOUNDARY\n900, 1, 3\n{idle}");
     refused("*KINEMATIC\n1, 3", &free, card, "SURFACE=S6", "component 4");
-    let turned = step("*BOUNDARY\n900, 1, 5\n900, 6, 6, 0.1\n");
+    let own = "*AMPLITUDE, NAME=A\n0., 0., 1., 1., 2., 0.\n";
+    let turned = step("*BOUNDARY\n900, 2, 5\n900, 1, 1, 0.1\n*BOUNDARY, AMPLITUDE=A\n900, 6, 6, 0.1\n");
     refused(
         "*KINEMATIC",
-        &format!("{HELD}{turned}"),
-        "900, 6, 6, 0.1",
-        "900",
-        "turns",
+        &format!("{own}{HELD}{turned}"),
+        card,
+        "SURFACE=S6",
+        "one amplitude",
     );
     let twice = format!("{HELD}*BOUNDARY\n900, 1, 6\n27, 1\n{idle}");
     refused("*KINEMATIC", &twice, card, "SURFACE=S6", "keep one");

@@ -1,13 +1,18 @@
 //! Decks: what they say, that it is the same as what a program says, and what is refused.
 
+mod assembly;
 mod broken;
 mod couplings;
+mod gaps;
 mod meaning;
 mod names;
 mod reading;
 mod refusals;
+mod rigid;
 mod same_bits;
+mod surfaces;
 mod temperatures;
 mod ties;
 mod transforms;
+mod volume;
 mod write;

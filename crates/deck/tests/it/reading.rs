@@ -147,6 +147,61 @@ fn what_is_ignored_is_reported() {
     assert!(first.contains("part.inp:") && first.contains("ignored"), "{first}");
 }
 
+/// What asks nothing of a static solution: settings of other solvers, constants of other analyses, variants of elements.
+#[test]
+fn what_asks_nothing_is_reported() {
+    let rest = "*NSET, NSET=Q, UNSORTED\n3, 2\n*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-273.15\n*SECTION CONTROLS, NAME=EC\n1.\n\
+        *MATERIAL, NAME=M\n*CONDUCTIVITY\n50.\n*SPECIFIC HEAT\n4e8\n*DAMPING, ALPHA=1.\n*SURFACE INTERACTION, NAME=I\n\
+        *SURFACE BEHAVIOR, AUGMENTED LAGRANGE, PENALTY\n*FRICTION, LAGRANGE\n0.3\n\
+        *CONTACT PAIR, INTERACTION=I, MECHANICAL CONSTRAINT=PENALTY, NO THICKNESS\nS1, S2\n\
+        *STEP, EXTRAPOLATION=PARABOLIC, CONVERT SDI=NO\n*STATIC, STABILIZE, FACTOR=0.1, ALLSDTOL=0.05\n\
+        *CONTACT CONTROLS, STABILIZE=1\n*FILTER, NAME=F\n*END STEP\n";
+    let text = cube(rest).replace("TYPE=C3D4", "TYPE=C3D4H");
+    let text = text.replace("ELSET=ALL, MATERIAL", "ELSET=ALL, CONTROLS=EC, MATERIAL");
+    let deck = read(&text).expect("deck");
+    assert_eq!(deck.node_set("Q").expect("a set"), [1, 2]);
+    let mut words: Vec<&str> = deck.ignored().iter().map(|i| i.word.as_str()).collect();
+    words.sort_unstable();
+    let wanted = [
+        "*CONDUCTIVITY",
+        "*CONTACT CONTROLS",
+        "*DAMPING",
+        "*FILTER",
+        "*PHYSICAL CONSTANTS",
+        "*SECTION CONTROLS",
+        "*SPECIFIC HEAT",
+        "ALLSDTOL=0.05",
+        "AUGMENTED LAGRANGE",
+        "CONTROLS=EC",
+        "CONVERT SDI=NO",
+        "EXTRAPOLATION=PARABOLIC",
+        "FACTOR=0.1",
+        "LAGRANGE",
+        "MECHANICAL CONSTRAINT=PENALTY",
+        "NO THICKNESS",
+        "PENALTY",
+        "STABILIZE",
+        "TYPE=C3D4H",
+        "UNSORTED",
+    ];
+    assert_eq!(words, wanted);
+}
+
+/// Symmetry and its contrary by name.
+#[test]
+fn conditions_by_name() {
+    for (name, on) in [
+        ("XSYMM", [true, false, false]),
+        ("XASYMM", [false, true, true]),
+        ("YASYMM", [true, false, true]),
+        ("ZASYMM", [true, true, false]),
+    ] {
+        let deck = read(&cube(&format!("*BOUNDARY\nN5, {name}\n"))).expect("deck");
+        let scene = deck.scene().expect("scene");
+        assert_eq!(scene.supports()[0].directions(), &Directions::Components(on), "{name}");
+    }
+}
+
 #[test]
 fn a_deck_without_steps_is_a_scene_to_add_to() {
     let deck = read(&cube("*BOUNDARY\nN5, 1, 3\n")).expect("deck");

@@ -6,7 +6,7 @@ use signorini_fem_mesh::{Brick, FacetTag, History, Hooke, LoadDensity, Materials
 use crate::write;
 
 /// Compares all steps: displacements of all copies and the states of contact points.
-fn compare(deck: &str, program: Scene) {
+pub(crate) fn compare(deck: &str, program: Scene) {
     let deck = write::read(deck).expect("deck");
     assert_eq!(deck.mesh().points(), program.mesh().points());
     assert_eq!(deck.mesh().tets(), program.mesh().tets());
@@ -25,7 +25,7 @@ fn compare(deck: &str, program: Scene) {
     assert!(by_deck.is_finished());
 }
 
-fn steel() -> Materials {
+pub(crate) fn steel() -> Materials {
     Materials::uniform(Hooke::isotropic(2.1e5, 0.3).expect("steel"))
 }
 

@@ -56,13 +56,17 @@ fn keywords() {
         "POSITION TOLERANCE=-1.",
         "not negative",
     );
-    behind("*PART, NAME=A\n", "*PART, NAME=A", "*PART", "flat one");
-    behind("*RIGID BODY\n", "*RIGID BODY", "*RIGID BODY", "ELSET is missing");
+    behind(
+        "*RIGID BODY\n",
+        "*RIGID BODY",
+        "*RIGID BODY",
+        "ELSET or NSET is missing",
+    );
     behind(
         "*RIGID BODY, ANALYTICAL SURFACE=A\n",
         "*RIGID BODY, ANALYTICAL SURFACE=A",
         "ANALYTICAL SURFACE=A",
-        "ELSET, REF NODE, ROT NODE",
+        "ELSET, NSET, TIE NSET, REF NODE, ROT NODE",
     );
     behind("*RESTART, READ\n", "*RESTART, READ", "*RESTART", "resumed");
     inside("*DYNAMIC\n", "*DYNAMIC", "*DYNAMIC", "only *STATIC");
@@ -84,9 +88,9 @@ fn keywords() {
 #[test]
 fn parameters() {
     behind(
-        "*NSET, NSET=A, UNSORTED\n1\n",
-        "*NSET, NSET=A, UNSORTED",
-        "UNSORTED",
+        "*NSET, NSET=A, SORTED\n1\n",
+        "*NSET, NSET=A, SORTED",
+        "SORTED",
         "GENERATE",
     );
     behind("*NSET, GENERATE\n1, 2\n", "*NSET, GENERATE", "*NSET", "NSET is missing");

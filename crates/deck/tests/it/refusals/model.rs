@@ -97,19 +97,31 @@ fn sets_and_surfaces() {
         "1, 2000000000",
         "more than 100000000",
     );
+    let of_nodes = "*SURFACE, NAME=A, TYPE=NODE\n";
+    behind(&format!("{of_nodes}1, S1\n"), "1, S1", "S1", "a node or node set");
+    behind(&format!("{of_nodes}N5, 27\n"), "N5, 27", "27", "a node or node set");
     behind(
-        "*SURFACE, NAME=A, TYPE=NODE\n",
-        "*SURFACE, NAME=A, TYPE=NODE",
-        "TYPE=NODE",
-        "no areas",
+        &format!("{of_nodes}N5\n27\n"),
+        "N5",
+        "N5",
+        "node 27 is on no face of the boundary",
     );
+    let unused = format!("*NODE\n900\n{of_nodes}N5\n900\n");
+    behind(&unused, "900", "900", "no elastic element uses node 900");
+    let kind = "*SURFACE, NAME=A, TYPE=CYLINDER";
+    behind(&format!("{kind}\n"), kind, "TYPE=CYLINDER", "TYPE=NODE");
     behind(
         "*SURFACE, NAME=S1\n1, S1\n",
         "*SURFACE, NAME=S1",
         "*SURFACE",
         "there already",
     );
-    behind("*SURFACE, NAME=A\nALL\n", "ALL", "ALL", "S1, S2, S3 or S4");
+    behind(
+        "*ELSET, ELSET=IN\n5\n*SURFACE, NAME=A\nIN\n",
+        "IN",
+        "IN",
+        "at the boundary",
+    );
     behind("*SURFACE, NAME=A\nALL, S5\n", "ALL, S5", "S5", "S1, S2, S3 or S4");
     behind("*SURFACE, NAME=A\nPART, S1\n", "PART, S1", "PART", "there are: ALL");
     behind("*SURFACE, NAME=A\nALL, S1\n", "ALL, S1", "ALL", "inside the body");
@@ -146,12 +158,7 @@ fn materials() {
         "2., 0.3, 100.",
         "temperature",
     );
-    try_one(
-        "*MATERIAL, NAME=M\n*CONDUCTIVITY\n",
-        "*CONDUCTIVITY",
-        "*CONDUCTIVITY",
-        "temperatures are given",
-    );
+    try_one("*MATERIAL, NAME=M\n*CREEP\n", "*CREEP", "*CREEP", "elastic");
     try_one("*MATERIAL, NAME=M\n*PLASTIC\n", "*PLASTIC", "*PLASTIC", "elastic");
     let both = "*MATERIAL, NAME=M\n*ELASTIC\n1., 0.3\n*SOLID SECTION, ELSET=ALL, MATERIAL=M\n*SOLID SECTION, MATERIAL=M, ELSET=ALL\n";
     try_one(
@@ -201,13 +208,22 @@ fn contact() {
     );
     behind(&format!("{law}{pair}\nS1\n"), "S1", "S1", "slave");
     behind(&format!("{law}{pair}\n"), pair, "*CONTACT PAIR", "no surfaces");
-    let adjust = "*CONTACT PAIR, INTERACTION=I, ADJUST=0.1";
+    let adjust = "*CONTACT PAIR, INTERACTION=I, ADJUST=N1";
     behind(
         &format!("{law}{adjust}\nS1, S2\n"),
         adjust,
-        "ADJUST=0.1",
-        "put them where they belong",
+        "ADJUST=N1",
+        "are not adjusted",
     );
+    let clearance = "*CLEARANCE, SLAVE=S2, MASTER=S1, VALUE=0.1";
+    behind(
+        &format!("{law}{pair}\nS1, S2\n{clearance}\n"),
+        clearance,
+        "*CLEARANCE",
+        "in this order",
+    );
+    let wide = "*CLEARANCE, SLAVE=S1, MASTER=S2, VALUE=wide";
+    behind(&format!("{wide}\n"), wide, "VALUE=wide", "negative for an interference");
     let odd = "*CONTACT PAIR, INTERACTION=I, TYPE=SIDEWAYS";
     behind(&format!("{law}{odd}\nS1, S2\n"), odd, "TYPE=SIDEWAYS", "MORTAR");
 }
@@ -232,13 +248,6 @@ fn rigid_bodies() {
     let free = format!("{pair}*BOUNDARY\n109, PINNED\n");
     try_one(plane, &free, body, "REF NODE=109", "component 4");
     let step = |lines: &str| format!("{held}*STEP\n*STATIC\n{lines}*END STEP\n");
-    try_one(
-        plane,
-        &step("*BOUNDARY\n109, 5, 5, 0.1\n"),
-        body,
-        "REF NODE=109",
-        "turns",
-    );
     let two = "*AMPLITUDE, NAME=A\n0., 0., 1., 1., 2., 0.\n".to_owned()
         + &step("*BOUNDARY\n109, 1, 1, 0.1\n*BOUNDARY, AMPLITUDE=A\n109, 2, 2, 0.1\n");
     try_one(plane, &two, body, "REF NODE=109", "different histories");
@@ -254,7 +263,7 @@ fn rigid_bodies() {
         &step("*CLOAD\n109, 1, 1.\n"),
         "109, 1, 1.",
         "109",
-        "no elastic element",
+        "whose reaction is the force",
     );
     try_one(
         plane,
@@ -263,10 +272,9 @@ fn rigid_bodies() {
         "900",
         "acts on nothing",
     );
-    let bent = plane.replace("103, 2., 2.", "103, 2., 2., 0.1");
-    try_one(&bent, &held, "S5, PLANE", "PLANE", "not flat");
-    let small = plane.replace("103, 2., 2.", "103, 0.5, 0.5");
-    try_one(&small, &held, "S5, PLANE", "PLANE", "lies beside the rigid surface");
+    let adjusted = held.replace("INTERACTION=I", "INTERACTION=I, ADJUST=0.");
+    let line = "*CONTACT PAIR, INTERACTION=I, ADJUST=0.";
+    try_one(plane, &adjusted, line, "ADJUST=0.", "to a rigid surface");
     let swapped = held.replace("S5, PLANE", "PLANE, S5");
     try_one(plane, &swapped, "PLANE, S5", "PLANE", "swap them");
     let side = "*SURFACE, NAME=B\n900, S1\n";
@@ -292,14 +300,6 @@ fn rigid_bodies() {
     let many = "*ELSET, ELSET=MORE\n1\n*RIGID BODY, ELSET=MORE, REF NODE=N5\n";
     let line = "*RIGID BODY, ELSET=MORE, REF NODE=N5";
     try_one(plane, &format!("{many}{held}"), line, "REF NODE=N5", "one node");
-    let bonded = "*ELEMENT, TYPE=R3D3, ELSET=FLOOR\n901, 101, 1, 103\n";
-    try_one(
-        plane,
-        &format!("{bonded}{held}"),
-        "901, 101, 1, 103",
-        "901",
-        "node 1 is of a rigid body and of elastic elements",
-    );
     let corner =
         "*ELSET, ELSET=MORE\n901\n*ELEMENT, TYPE=R3D3\n901, 101, 102, 103\n*RIGID BODY, ELSET=MORE, REF NODE=2\n";
     let line = "*RIGID BODY, ELSET=MORE, REF NODE=2";
@@ -308,8 +308,26 @@ fn rigid_bodies() {
         &format!("{corner}{held}"),
         line,
         "REF NODE=2",
-        "node 2 is of a rigid body",
+        "node 2 belongs to an elastic element",
     );
+    let folded = "*ELEMENT, TYPE=R3D3, ELSET=FLOOR\n901, 102, 103, 27\n";
+    try_one(
+        &plane.replace("103, 2., 2.", "103, 2., 2., 0.1"),
+        &format!("{folded}{held}"),
+        "S5, PLANE",
+        "PLANE",
+        "is no obstacle: facet",
+    );
+    let own = format!("*RIGID BODY, NSET=N6, REF NODE=109\n{}", "*BOUNDARY\n27, 1\n");
+    let line = "*RIGID BODY, NSET=N6, REF NODE=109";
+    behind(
+        &format!("*NODE\n109\n*BOUNDARY\n109, 1, 6\n{own}"),
+        line,
+        "*RIGID BODY",
+        "held by itself",
+    );
+    let free = "*NODE\n109\n*BOUNDARY\n109, 1, 5\n*RIGID BODY, NSET=N6, REF NODE=109\n";
+    behind(free, line, "*RIGID BODY", "component 6");
     let loose = "*ELEMENT, TYPE=R3D3\n901, 101, 102, 103\n";
     try_one(
         plane,

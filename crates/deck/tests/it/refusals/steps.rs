@@ -9,7 +9,7 @@ fn supports() {
     behind("*BOUNDARY\nN5, 1, 7\n", "N5, 1, 7", "7", "no rotations");
     behind("*BOUNDARY\nN5, 3, 1\n", "N5, 3, 1", "1", "not below the first");
     behind("*BOUNDARY\nN5\n", "N5", "N5", "a component");
-    behind("*BOUNDARY\nN5, XASYMM\n", "N5, XASYMM", "XASYMM", "XSYMM");
+    behind("*BOUNDARY\nN5, SYMM\n", "N5, SYMM", "SYMM", "XSYMM");
     behind("*BOUNDARY\nN5, PINNED, 1\n", "N5, PINNED, 1", "1", "nothing after");
     behind(
         "*BOUNDARY\nN5, 1, 1, 0.1\n",
@@ -43,8 +43,20 @@ fn loads() {
     inside("*CLOAD\nN6, 1\n", "N6, 1", "N6, 1", "and a force");
     inside("*CLOAD\nN7, 1, 1.\n", "N7, 1, 1.", "N7", "there are: N1");
     inside("*DLOAD\nALL, P5, 1.\n", "ALL, P5, 1.", "P5", "P1 to P4");
-    let turning = "ALL, CENTRIF, 1., 0., 0., 0., 0., 0., 1.";
-    inside(&format!("*DLOAD\n{turning}\n"), turning, "CENTRIF", "GRAV");
+    let turning = "ALL, CORIO, 1., 0., 0., 0., 0., 0., 1.";
+    inside(&format!("*DLOAD\n{turning}\n"), turning, "CORIO", "GRAV");
+    for (turning, word, part) in [
+        ("ALL, CENTRIF, 1., 0., 0., 0., 0., 0., 0.", "", "a direction"),
+        ("ALL, CENTRIF, -1., 0., 0., 0., 0., 0., 1.", "-1.", "not negative"),
+        ("ALL, CENTRIF, 1., 0., 0., 0., 0., 0., 1., 2.", "2.", "CENTRIF"),
+        ("ALL, CENTRIF, 1., 0., 0.", "", "a point of the axis"),
+    ] {
+        let word = if word.is_empty() { turning } else { word };
+        inside(&format!("*DLOAD\n{turning}\n"), turning, word, part);
+    }
+    let other = "ALL, CENTRIF, 1., 1., 0., 0., 0., 0., 1.";
+    let both = format!("*DLOAD\nALL, CENTRIF, 1., 0., 0., 0., 0., 0., 1.\n{other}\n");
+    inside(&both, other, "ALL", "about another axis");
     let held = "*BOUNDARY, FIXED";
     inside(
         &format!("{held}\nN6, 1\n"),

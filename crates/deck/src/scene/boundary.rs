@@ -1,0 +1,68 @@
+//! Faces on the boundary, for surfaces that are given by elements or by nodes only.
+
+use std::collections::BTreeMap;
+
+use super::mesh::Raw;
+use crate::model::FACES;
+
+/// Tetrahedra and numbers of the faces that no two of them share.
+#[derive(Debug)]
+pub(super) struct Boundary {
+    /// Ascending.
+    faces: Vec<(u32, u8)>,
+    of_corners: BTreeMap<[u32; 3], (u32, u8)>,
+}
+
+impl Boundary {
+    pub(super) fn new(raw: &Raw) -> Self {
+        let mut of_corners: BTreeMap<[u32; 3], Option<(u32, u8)>> = BTreeMap::new();
+        for (tet, corners) in (0..).zip(&raw.tets) {
+            for (number, face) in (1..).zip(FACES) {
+                let mut key = face.map(|i| corners[i]);
+                key.sort_unstable();
+                let first = of_corners.entry(key).and_modify(|face| *face = None);
+                first.or_insert(Some((tet, number)));
+            }
+        }
+        let outside = of_corners.into_iter().filter_map(|(key, face)| Some((key, face?)));
+        let of_corners: BTreeMap<_, _> = outside.collect();
+        let mut faces: Vec<_> = of_corners.values().copied().collect();
+        faces.sort_unstable();
+        Self { faces, of_corners }
+    }
+
+    /// That with some corners.
+    pub(super) fn of_corners(&self, mut corners: [u32; 3]) -> Option<(u32, u8)> {
+        corners.sort_unstable();
+        self.of_corners.get(&corners).copied()
+    }
+
+    /// Those of some tetrahedra, ascending.
+    pub(super) fn of_tets(&self, tets: &[u32]) -> Vec<(u32, u8)> {
+        let with = self.faces.iter().filter(|(tet, _)| tets.binary_search(tet).is_ok());
+        with.copied().collect()
+    }
+
+    /// Those whose corners are all among some nodes, ascending, and a node, if there is one, that none of them uses.
+    pub(super) fn of_nodes(&self, raw: &Raw, nodes: &[u32]) -> (Vec<(u32, u8)>, Option<u32>) {
+        let among = |node: &u32| nodes.binary_search(node).is_ok();
+        let corners = |&(tet, number): &(u32, u8)| {
+            let tet = raw.tets[tet as usize];
+            FACES[usize::from(number) - 1].map(|i| tet[i])
+        };
+        let faces: Vec<_> = self
+            .faces
+            .iter()
+            .filter(|face| corners(face).iter().all(among))
+            .copied()
+            .collect();
+        let mut used: Vec<u32> = Vec::new();
+        for &(tet, number) in &faces {
+            let corners = corners(&(tet, number));
+            used.extend(corners.into_iter().chain(raw.loaded(tet, corners)));
+        }
+        used.sort_unstable();
+        let alone = nodes.iter().find(|node| used.binary_search(node).is_err());
+        (faces, alone.copied())
+    }
+}

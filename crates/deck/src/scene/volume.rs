@@ -1,0 +1,194 @@
+//! `*DLOAD` in the volume of elements: gravity, forces per volume, centrifugal forces.
+
+use std::collections::BTreeMap;
+
+use signorini_fem_mesh::LoadDensity;
+use signorini_fem_mesh::vec3::{Vec3, dot, norm, scale, sub};
+
+use super::faces::Known;
+use super::history::{Histories, Track, Tracks};
+use super::materials::sections;
+use crate::error::{DeckError, Word};
+use crate::model::{Given, Target, VolumeLaw};
+
+/// Difference of unit vectors that is rounding of what a deck writes.
+const TURNED: f64 = 1e-5;
+
+/// A point of an axis, and its direction, of length 1.
+type Axis = [Vec3; 2];
+
+/// What acts in elements.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    Force,
+    Gravity,
+    /// About an axis, by its position.
+    Centrifugal(usize),
+}
+
+/// Loads of the volume by elements, what they are, and the component.
+#[derive(Default)]
+pub(super) struct Volume {
+    tracks: Tracks<(Target, Kind, usize)>,
+    axes: Vec<Axis>,
+    /// Directions of gravity and axes that stand.
+    gravity: BTreeMap<Target, Vec3>,
+    turns: BTreeMap<Target, usize>,
+}
+
+impl Volume {
+    pub(super) fn remove(&mut self, step: usize) {
+        self.tracks.remove(step);
+        self.gravity.clear();
+        self.turns.clear();
+    }
+
+    /// Notes what a line gives; `when` are the step and its place among all.
+    pub(super) fn set(
+        &mut self,
+        target: &Target,
+        law: &VolumeLaw,
+        when: (usize, usize, bool),
+        given: Given,
+        word: &Word,
+    ) -> Result<(), DeckError> {
+        match law {
+            VolumeLaw::Force(component) => {
+                let key = (target.clone(), Kind::Force, *component);
+                self.tracks.set(key, when, given, word)
+            }
+            VolumeLaw::Gravity(direction) => {
+                let length = norm(*direction);
+                let unit = scale(1.0 / length, *direction);
+                if let Some(before) = self.gravity.insert(target.clone(), unit)
+                    && norm(sub(before, unit)) > TURNED
+                {
+                    return Err(word.cannot(
+                        "gravity along another direction stands there, which CalculiX keeps beside this and Abaqus \
+                        replaces; give one vector, in a later step with OP=NEW",
+                    ));
+                }
+                for (c, d) in direction.iter().enumerate() {
+                    let value = given.value * (d / length);
+                    let key = (target.clone(), Kind::Gravity, c);
+                    self.tracks.set(key, when, Given { value, ..given }, word)?;
+                }
+                Ok(())
+            }
+            VolumeLaw::Centrifugal([point, along]) => {
+                let axis = [*point, scale(1.0 / norm(*along), *along)];
+                let index = self.axes.iter().position(|known| *known == axis);
+                let index = index.unwrap_or(self.axes.len());
+                if index == self.axes.len() {
+                    self.axes.push(axis);
+                }
+                if let Some(before) = self.turns.insert(target.clone(), index)
+                    && before != index
+                {
+                    return Err(word.cannot(
+                        "centrifugal forces about another axis stand there; give the same axis, or OP=NEW in a later step",
+                    ));
+                }
+                let key = (target.clone(), Kind::Centrifugal(index), 0);
+                self.tracks.set(key, when, given, word)
+            }
+        }
+    }
+
+    /// Densities of the whole mesh, each with its place among all and its history; what is not given in all elements
+    /// alike goes to `force` as forces at nodes, with history and place.
+    pub(super) fn lower(
+        &self,
+        known: Known,
+        histories: &mut Histories,
+        mut force: impl FnMut(usize, usize, u32, Vec3),
+    ) -> Result<Vec<(usize, LoadDensity, usize)>, DeckError> {
+        let mut bodies = Vec::new();
+        type Group = (Target, Kind, usize);
+        let mut groups: BTreeMap<Group, (usize, Vec3, &Track)> = BTreeMap::new();
+        for ((target, kind, component), track) in &self.tracks.0 {
+            let found = histories.add(known.timeline, track)?;
+            if let Some((value, history)) = found {
+                let key = (target.clone(), *kind, history);
+                let group = groups.entry(key).or_insert((track.order, [0.0; 3], track));
+                group.1[*component] = value;
+            }
+        }
+        for ((target, kind, history), (order, value, track)) in groups {
+            let Known { sets, raw, .. } = known;
+            let elements = sets.elements.find(&target, &track.word)?;
+            // rigid ones are held, whatever pulls them
+            let elements: Vec<u32> = elements.into_iter().filter_map(|e| raw.tet(e)).collect();
+            if elements.is_empty() {
+                continue;
+            }
+            let densities = match kind {
+                Kind::Force => vec![1.0; elements.len()],
+                Kind::Gravity | Kind::Centrifugal(_) => known.densities(&elements, track)?,
+            };
+            let same = densities.iter().all(|d| *d == densities[0]);
+            let whole = same && elements.len() == raw.tets.len();
+            match kind {
+                Kind::Centrifugal(axis) => {
+                    let (axis, square) = (self.axes[axis], value[0]);
+                    if whole {
+                        let factor = densities[0] * square;
+                        let density = LoadDensity::body_field(move |x| scale(factor, arm(x, axis)));
+                        bodies.push((order, density, history));
+                        continue;
+                    }
+                    for (&element, density) in elements.iter().zip(densities) {
+                        let factor = density * square * raw.volume(element);
+                        let arms = raw.tet_points(element).map(|x| arm(x, axis));
+                        for (node, part) in raw.linear_shares(element, arms) {
+                            force(history, order, node, scale(factor, part));
+                        }
+                    }
+                }
+                Kind::Force | Kind::Gravity => {
+                    if whole {
+                        let density = densities[0];
+                        let density = LoadDensity::body(value.map(|v| density * v));
+                        bodies.push((order, density, history));
+                        continue;
+                    }
+                    for (&element, density) in elements.iter().zip(densities) {
+                        for (node, part) in raw.shares(element) {
+                            let share = part * density * raw.volume(element);
+                            force(history, order, node, value.map(|v| share * v));
+                        }
+                    }
+                }
+            }
+        }
+        Ok(bodies)
+    }
+}
+
+/// From an axis to a place, at right angles to the axis.
+fn arm(x: Vec3, [point, along]: Axis) -> Vec3 {
+    let from = sub(x, point);
+    sub(from, scale(dot(from, along), along))
+}
+
+impl Known<'_> {
+    /// Densities of elements, that of the material of their section.
+    fn densities(self, elements: &[u32], track: &Track) -> Result<Vec<f64>, DeckError> {
+        let Known { model, raw, sets, .. } = self;
+        let sections = sections(raw, sets)?;
+        let sections =
+            sections.ok_or_else(|| (track.word).cannot("forces of the mass need materials; give *SOLID SECTION"))?;
+        let mut of_section = Vec::with_capacity(model.sections.len());
+        for section in &model.sections {
+            of_section.push((model.material(section)?.density, &section.material.name));
+        }
+        let density = |&element: &u32| {
+            let (density, name) = of_section[sections[element as usize] as usize];
+            density.ok_or_else(|| {
+                let why = format!("forces of the mass need a density; give material {name} *DENSITY");
+                track.word.cannot(why)
+            })
+        };
+        elements.iter().map(density).collect()
+    }
+}

@@ -1,0 +1,118 @@
+//! Rigid bodies: nodes of elastic elements that they carry, and surfaces that are no planes.
+
+use std::fmt::Write as _;
+
+use signorini_contact::{
+    Analysis, Contact, DifferenceFormula, Friction, Obstacle, Scene, Settings, Simulation, Support,
+};
+use signorini_fem_mesh::vec3::{cross, norm, sub};
+use signorini_fem_mesh::{Brick, History, brick};
+
+use crate::same_bits::{compare, steel};
+use crate::write::{STEEL, cube, mesh, read};
+
+/// Nodes that a rigid body shares with elastic elements are displaced and turned with it, as those of a kinematic
+/// coupling are.
+#[test]
+fn elastic_nodes_move_with_what_is_rigid() {
+    let node = "*NODE\n900, 0.3, 0.2, 2.\n901\n*BOUNDARY\nN5, 1, 3\n";
+    let by_set = "*RIGID BODY, NSET=N6, REF NODE=900, ROT NODE=901\n";
+    let by_surface = "*COUPLING, REF NODE=900, SURFACE=S6, CONSTRAINT NAME=C\n*KINEMATIC\n";
+    let step = |moves: &str| format!("*STEP\n*STATIC\n*BOUNDARY\n{moves}*END STEP\n");
+    let turned = step("900, 1, 1, 0.1\n900, 2, 3\n901, 1, 2\n901, 3, 3, 0.02\n");
+    let coupled = step("900, 1, 1, 0.1\n900, 2, 5\n900, 6, 6, 0.02\n");
+    for deck in [by_set.to_owned() + &turned, by_surface.to_owned() + &coupled] {
+        let deck = read(&cube(&(node.to_owned() + &deck))).expect("deck");
+        let mut simulation = Simulation::new(deck.scene().expect("scene"), Settings::default()).expect("simulation");
+        let result = simulation.step().expect("solved");
+        assert!(result.report().status.converged());
+        for n in deck.mesh().nodes_on(brick::Z_MAX) {
+            let turn = cross([0.0, 0.0, 0.02], sub(deck.mesh().points()[n as usize], [0.3, 0.2, 2.0]));
+            let exact = [0.1 + turn[0], turn[1], turn[2]];
+            let found = result.displacement()[n as usize];
+            assert!(norm(sub(found, exact)) < 1e-9, "{found:?} {exact:?}");
+        }
+    }
+}
+
+/// A block on a roller of flat facets that presses it from below and turns.
+#[test]
+fn a_curved_rigid_surface_is_a_triangulated_obstacle() {
+    let block = Brick::new([1.0; 3], [4, 2, 2]).build().expect("brick");
+    let (mut points, mut triangles) = (Vec::new(), Vec::new());
+    let (mut nodes, mut facets) = (String::from("*NODE\n999, 0.5, 0., -5.\n"), String::new());
+    for k in 0..9_u32 {
+        // straight up in the middle
+        let angle = 0.1 * (f64::from(k) - 4.0);
+        for (i, y) in [-1.0, 2.0].into_iter().enumerate() {
+            let [x, z] = [0.5 + 5.0 * angle.sin(), 5.0 * angle.cos() - 5.0];
+            points.push([x, y, z]);
+            writeln!(nodes, "{}, {x:?}, {y:?}, {z:?}", 500 + 2 * k + i as u32).expect("text");
+        }
+        if k > 0 {
+            let [a, b, c, d] = [2 * k - 2, 2 * k, 2 * k + 1, 2 * k - 1];
+            let labels = [a, b, c, d].map(|n| n + 500);
+            writeln!(
+                facets,
+                "{}, {}, {}, {}, {}",
+                600 + k,
+                labels[0],
+                labels[1],
+                labels[2],
+                labels[3]
+            )
+            .expect("text");
+            triangles.extend([[a, b, c], [a, c, d]]);
+        }
+    }
+    // corner by corner, as the deck gives them
+    let corners: Vec<_> = triangles.iter().flatten().map(|n: &u32| points[*n as usize]).collect();
+    let apart: Vec<_> = (0..triangles.len() as u32)
+        .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
+        .collect();
+    let deck = mesh(&block)
+        + STEEL
+        + &nodes
+        + "*ELEMENT, TYPE=R3D4, ELSET=ROLLER\n"
+        + &facets
+        + "*RIGID BODY, REF NODE=999, ELSET=ROLLER\n*SURFACE, NAME=ROUND\nROLLER, SPOS\n\
+        *SURFACE INTERACTION, NAME=ROUGH\n*FRICTION\n0.25\n*CONTACT PAIR, INTERACTION=ROUGH\nS5, ROUND\n\
+        *BOUNDARY\nN6, PINNED\n*STEP\n*STATIC\n1., 1.\n*BOUNDARY\n999, 1, 2\n999, 3, 3, 0.001\n999, 4, 6\n*END STEP\n\
+        *STEP\n*STATIC\n1., 1.\n*BOUNDARY\n999, 5, 5, 0.0004\n*END STEP\n";
+    let table = |points: &[(f64, f64)]| History::table(points.to_vec()).expect("table");
+    let obstacle = Obstacle::surface(&corners, &apart).expect("obstacle");
+    let program = Scene::new(block, steel())
+        .with_support(Support::fixed(brick::Z_MAX))
+        .with_contact(
+            Contact::obstacle(brick::Z_MIN, obstacle)
+                .with_motion([0.0, 0.0, 0.001], table(&[(0.0, 0.0), (1.0, 1.0)]))
+                .with_rotation(
+                    [0.5, 0.0, -5.0],
+                    [0.0, 0.0004, 0.0],
+                    table(&[(1.0, 0.0), (2.0, 0.0004)]),
+                )
+                .with_friction(Friction::coulomb(0.25)),
+        )
+        .with_analysis(Analysis::quasistatic(2.0, 2).with_formula(DifferenceFormula::BACKWARD_EULER));
+    compare(&deck, program);
+}
+
+/// A plane that not all nodes lie over holds those that do.
+#[test]
+fn beside_a_rigid_plane_nothing_is_held() {
+    let plane = "*NODE\n101, -1., -1., 0.\n102, 0.7, -1., 0.\n103, 0.7, 2., 0.\n104, -1., 2., 0.\n109\n\
+        *ELEMENT, TYPE=R3D4, ELSET=FLOOR\n900, 101, 102, 103, 104\n*RIGID BODY, REF NODE=109, ELSET=FLOOR\n\
+        *SURFACE, NAME=PLANE\nFLOOR, SPOS\n*SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I\nS5, PLANE\n\
+        *BOUNDARY\n109, 1, 6\nN6, 1, 3\n*STEP\n*STATIC\n*BOUNDARY\nN6, 3, 3, -0.01\n*END STEP\n";
+    let deck = read(&cube(plane)).expect("deck");
+    let mut simulation = Simulation::new(deck.scene().expect("scene"), Settings::default()).expect("simulation");
+    let result = simulation.step().expect("solved");
+    assert!(result.report().status.converged());
+    for n in deck.mesh().nodes_on(brick::Z_MIN) {
+        let (over, down) = (
+            deck.mesh().points()[n as usize][0] < 0.7,
+            result.displacement()[n as usize][2],
+        );
+        assert!(if over { down > -1e-9 } else { down < -1e-3 }, "{over} {down}");
+    }
+}

@@ -1,0 +1,45 @@
+//! Surfaces that are given by nodes, or by elements without their faces.
+
+use crate::refusals::{behind, in_step};
+use crate::write::{cube, read};
+
+/// They are the faces of the boundary: those whose corners are in the set, and all of the elements.
+#[test]
+fn surfaces_of_nodes_and_of_elements() {
+    let deck = cube("*SURFACE, NAME=BY_NODES, TYPE=NODE\nN5\nN6,\n*SURFACE, NAME=SKIN, TYPE=ELEMENT\nALL\n");
+    let deck = read(&deck).expect("deck");
+    let facets = |name: &str| {
+        let tags = deck.surface(name).expect("a surface");
+        let with = deck.mesh().facets().iter().filter(|f| tags.contains(&f.tag));
+        with.count()
+    };
+    assert_eq!(facets("BY_NODES"), facets("S5") + facets("S6"));
+    assert_eq!(facets("SKIN"), (1..=6).map(|n| facets(&format!("S{n}"))).sum::<usize>());
+    let [ignored] = deck.ignored() else {
+        panic!("{:?}", deck.ignored());
+    };
+    assert_eq!((ignored.word.as_str(), ignored.location.line > 1), ("TYPE=NODE", true));
+    assert!(ignored.why.contains("the 16 faces"), "{ignored}");
+}
+
+/// Triangles and lines as Gmsh writes them: triangles name faces of the boundary.
+#[test]
+fn surfaces_of_triangles() {
+    let marks = "*ELEMENT, TYPE=CPS3, ELSET=LID\n501, 19, 20, 23\n502, 19, 23, 22\n*ELEMENT, TYPE=T3D2, ELSET=EDGE\n503, 1, 2\n";
+    let deck = read(&cube(&format!("{marks}*SURFACE, NAME=A\nLID\n"))).expect("deck");
+    let [tag] = deck.surface("A").expect("a surface") else {
+        panic!("{:?}", deck.surface("A"));
+    };
+    assert_eq!(deck.mesh().facets().iter().filter(|f| f.tag == *tag).count(), 2);
+    assert_eq!((deck.mesh().tets().len(), deck.ignored().len()), (40, 2));
+    assert!(deck.element_set("LID").expect("a set").is_empty());
+    let refused = |more: &str, line: &str, word: &str, part: &str| behind(&format!("{marks}{more}"), line, word, part);
+    refused("*SURFACE, NAME=A\nEDGE\n", "EDGE", "EDGE", "triangles");
+    refused("*SURFACE, NAME=A\nLID, S1\n", "LID, S1", "LID", "without a number");
+    let inside = "*ELEMENT, TYPE=CPS6\n504, 1, 2, 14, 1, 1, 1\n*SURFACE, NAME=A\n504\n";
+    refused(inside, "504", "504", "corners of triangle 504");
+    let section = "*SOLID SECTION, ELSET=LID, MATERIAL=STEEL";
+    refused(&format!("{section}\n"), section, "ELSET=LID", "solid elements only");
+    let loaded = in_step("*DLOAD\nLID, P1, 1.\n");
+    refused(&loaded, "LID, P1, 1.", "LID", "not elastic");
+}
