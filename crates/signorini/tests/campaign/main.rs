@@ -35,7 +35,7 @@ use std::sync::{Arc, Mutex};
 const SCENES: u64 = 240;
 const APART: u64 = 120;
 const ROUND: u64 = 40;
-const FIT: u64 = 60;
+const FIT: u64 = 30;
 const WARM: u64 = 40;
 const SEED: u64 = 20_240_229;
 /// Scenes of each kind that several ranks solve.
@@ -101,6 +101,20 @@ fn fitted_bodies_are_solved() {
         let outcome = run::run_apart(&scene);
         (scene.recipe, outcome)
     });
+}
+
+/// The estimate of the error moved a node that supports let move along the surface only out of a side meshed apart, by
+/// 1e8 m: it was 100 times the displacement, and steps that were solved to 1e-12 stagnated.
+#[test]
+fn estimates_know_what_supports_hold() {
+    let mut scene = generate::fit::fit(SEED, 260);
+    if let recipe::Clock::Steps { times, .. } = &mut scene.recipe.clock {
+        times.truncate(2);
+    }
+    let run::Outcome::Solved(levels) = run::run_apart(&scene) else {
+        panic!("the scene was solved");
+    };
+    assert!(levels.iter().all(|l| l.is_solved() && l.products < 1000));
 }
 
 /// The same for scenes of the first kind that are warmer or colder than without stress.
