@@ -224,11 +224,12 @@ fn other_pairs_do_not_fit() {
 
 #[test]
 fn other_rings_do_not_fit() {
-    bite(&FIT_CHANGES, 0..250, generate::fit::fit);
+    let small = |number: &u64| generate::fit::fit(crate::SEED, *number).recipe.mesh.points().len() < 130;
+    bite(&FIT_CHANGES, (0..600).filter(small), generate::fit::fit);
 }
 
 /// Of each change, enough scenes in which it is seen.
-fn bite(changes: &[ApartChange], numbers: std::ops::Range<u64>, generate: impl Fn(u64, u64) -> Apart) {
+fn bite(changes: &[ApartChange], numbers: impl Iterator<Item = u64>, generate: impl Fn(u64, u64) -> Apart) {
     let mut found = vec![0; changes.len()];
     for number in numbers {
         let scene = generate(crate::SEED, number);
