@@ -2,7 +2,8 @@
 //!
 //! Of two nodes that may touch each other one moves and the other one stays: the one moves that supports leave more
 //! freedom. Where it is not free either, both move, each where it can. Where the other side is of several nodes, which
-//! other points have too, they stay. Where the own side is, all points move together ([`shared`](super::shared)).
+//! other points have too, they stay, but for one where a support holds the node along the normal. Where the own side
+//! is, all points move together ([`shared`](super::shared)).
 
 use crate::model::{ConstrainedPoint, Model};
 use crate::result::PointState;
@@ -35,7 +36,8 @@ pub(crate) struct AdmissibleNode {
     stretch: [f64; 2],
     own: RowPart,
     still: Vec<(u32, RowPart)>,
-    /// Where supports hold both nodes in part.
+    /// Where supports hold the node in part, and the other side's, of several the freest, has to move, too: the first
+    /// of those that else stay.
     both: Option<Box<Shifts>>,
 }
 
@@ -74,12 +76,22 @@ impl AdmissibleNode {
             _ => (1..=last).fold(0, |best, k| if free(k) > free(best) { k } else { best }),
         };
         let (node, own) = parts.remove(moving);
-        let still = parts;
+        let mut still = parts;
         let taken = freedom(&own, &point.stretch) < rows.len() as f64 - FREEDOM_TAKEN;
         let both = match &still[..] {
-            [(_, still)] if taken => shifts(&own, still, rows.len()),
-            _ => None,
+            [_] => taken,
+            // free along the surface only, it cannot leave the obstacle
+            [_, ..] => dot(&own[0], &own[0]) <= FREEDOM_TAKEN,
+            [] => false,
         };
+        let freest = |parts: &[(u32, RowPart)]| {
+            let free = |k: usize| freedom(&parts[k].1, &point.stretch);
+            (0..parts.len()).reduce(|best, k| if free(k) > free(best) { k } else { best })
+        };
+        let both = freest(&still).filter(|_| both).and_then(|other| {
+            still.swap(0, other);
+            shifts(&own, &still[0].1, rows.len())
+        });
         Self {
             node,
             rows,

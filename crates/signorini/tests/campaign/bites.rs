@@ -1,10 +1,10 @@
 //! The check bites: judged by a recipe that differs by a few per cent in one thing, solved levels violate something.
 
+use crate::apart::{Apart, Bed, Rest, Shape};
 use crate::check::Judge;
 use crate::check::apart::ApartJudge;
 use crate::generate;
-use crate::generate::apart::{Apart, Shape};
-use crate::recipe::{Clock, Course, Distance, Elastic, Law, Recipe};
+use crate::recipe::{Clock, Course, Density, Distance, Elastic, Fixed, Law, Recipe};
 use crate::run::{LIMIT, each_apart_level, each_level};
 
 /// Share by which a datum is changed.
@@ -162,27 +162,87 @@ const APART_CHANGES: [ApartChange; 9] = [
         turns.for_each(|turn| turn.2 = turn.2.clone().times(1.1));
     }),
     ("foundation", |a| {
-        if let Some((_, stiffness)) = &mut a.ground {
+        if let Some((_, Bed::Components(stiffness))) = &mut a.ground {
             stiffness[0] *= MORE;
         }
     }),
 ];
 
+/// What only fitted bodies have.
+const FIT_CHANGES: [ApartChange; 8] = [
+    ("moments", |a| {
+        for push in &mut a.recipe.pushes {
+            if let Density::Moment(_, value) = &mut push.density {
+                *value = value.map(|m| MORE * m);
+            }
+        }
+    }),
+    ("forces", |a| {
+        for push in &mut a.recipe.pushes {
+            if let Density::Force(_, value) = &mut push.density {
+                *value = value.map(|f| MORE * f);
+            }
+        }
+    }),
+    ("interference", |a| {
+        for pair in &mut a.pairs {
+            if let Rest::Given(gap) = &mut pair.rest {
+                *gap *= MORE;
+            }
+        }
+    }),
+    ("growth of gaps", |a| {
+        let growths = a.pairs.iter_mut().filter_map(|p| p.growth.as_mut());
+        growths.for_each(|growth| *growth = scaled(growth));
+    }),
+    ("growth of gaps to obstacles", |a| {
+        let growths = a.rocks.iter_mut().filter_map(|r| r.growth.as_mut());
+        growths.for_each(|growth| *growth = scaled(growth));
+    }),
+    ("motions about the axis", |a| {
+        let held = a.recipe.holds.iter_mut();
+        let about = held.filter(|h| matches!(h.fixed, Fixed::About(..)));
+        let motions = about.filter_map(|h| h.motion.as_mut());
+        motions.for_each(|m| m.1 = scaled(&m.1));
+    }),
+    ("foundation along normals", |a| {
+        if let Some((_, Bed::Normal(stiffness))) = &mut a.ground {
+            *stiffness *= MORE;
+        }
+    }),
+    ("angle of what is displaced, too", |a| {
+        let both = a.rocks.iter_mut().filter(|r| r.motion.is_some());
+        let turns = both.filter_map(|r| r.turn.as_mut());
+        turns.for_each(|turn| turn.2 = turn.2.clone().times(1.1));
+    }),
+];
+
 #[test]
 fn other_pairs_do_not_fit() {
-    let mut found = [0; APART_CHANGES.len()];
-    for number in 0..250 {
-        let scene = generate::apart::apart(crate::SEED, number);
+    bite(&APART_CHANGES, 0..250, generate::apart::apart);
+}
+
+#[test]
+fn other_rings_do_not_fit() {
+    let small = |number: &u64| generate::fit::fit(crate::SEED, *number).recipe.mesh.points().len() < 130;
+    bite(&FIT_CHANGES, (0..600).filter(small), generate::fit::fit);
+}
+
+/// Of each change, enough scenes in which it is seen.
+fn bite(changes: &[ApartChange], numbers: impl Iterator<Item = u64>, generate: impl Fn(u64, u64) -> Apart) {
+    let mut found = vec![0; changes.len()];
+    for number in numbers {
+        let scene = generate(crate::SEED, number);
         if !scene.recipe.how.is_default() {
             continue;
         }
-        let mut other: Vec<Apart> = vec![scene.clone(); APART_CHANGES.len()];
+        let mut other: Vec<Apart> = vec![scene.clone(); changes.len()];
         other
             .iter_mut()
-            .zip(APART_CHANGES)
+            .zip(changes)
             .for_each(|(other, change)| change.1(other));
         let mut judges: Vec<ApartJudge<'_>> = other.iter().map(ApartJudge::new).collect();
-        let mut worst = [0.0_f64; APART_CHANGES.len()];
+        let mut worst = vec![0.0_f64; changes.len()];
         let outcome = each_apart_level(&scene, |simulation, frame| {
             let solved = frame.report().status.converged() && frame.report().unconverged_history.is_none();
             for (judge, worst) in judges.iter_mut().zip(&mut worst) {
@@ -201,6 +261,6 @@ fn other_pairs_do_not_fit() {
             return;
         }
     }
-    let list: Vec<_> = APART_CHANGES.iter().map(|c| c.0).zip(found).collect();
+    let list: Vec<_> = changes.iter().map(|c| c.0).zip(found).collect();
     panic!("{list:?}");
 }

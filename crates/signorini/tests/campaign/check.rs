@@ -271,10 +271,10 @@ impl<'a> Judge<'a> {
         let mut held: Vec<Vec<Vec3>> = vec![Vec::new(); self.mechanics.points.len()];
         let supports = self.recipe.holds.iter().zip(&report.reactions.supports);
         for (hold, reaction) in supports {
-            let vectors = hold.fixed.vectors();
             for (place, node) in hold.nodes(&self.recipe.mesh).into_iter().enumerate() {
                 let size = self.size(sizes, node);
-                let told = hold.displacement(place, report.time);
+                let x = self.mechanics.points[node as usize];
+                let told = hold.displacement(place, x, report.time);
                 let off = sub(at(&report.u, node), told);
                 let force = reaction.nodes.iter().find(|n| n.node == node);
                 let force = force.map_or([0.0; 3], |n| n.force);
@@ -283,8 +283,8 @@ impl<'a> Judge<'a> {
                 for d in earlier.iter() {
                     worst.add("reaction direction", dot(force, *d).abs(), size.forces);
                 }
-                for v in &vectors {
-                    let d = unit(*v);
+                for v in hold.fixed.vectors(place, x) {
+                    let d = unit(v);
                     worst.add("support", dot(off, d).abs(), size.displacement);
                     let rest = earlier.iter().fold(d, |d, e| across(d, *e));
                     if norm(rest) > 1e-6 {

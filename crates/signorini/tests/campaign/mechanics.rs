@@ -1,7 +1,10 @@
 //! Linear and quadratic tetrahedra and loads, computed anew: no formula, table or rule is the library's.
 
-use crate::recipe::{Density, Elastic, Poly, Recipe};
-use crate::vec3::{Vec3, add, at, cross, dot, norm, scale, sub};
+mod element;
+
+use crate::recipe::{Density, Poly, Recipe};
+use crate::vec3::{Vec3, add, at, cross, dot, norm, scale, sub, unit};
+use element::{matrix, quadratic, shape};
 use signorini::contact::StepResult;
 use signorini::fem_mesh::FacetTag;
 use std::collections::HashMap;
@@ -26,6 +29,15 @@ pub(crate) struct Side {
     mids: Option<[u32; 3]>,
     /// Outward, of the length of its area.
     pub(crate) vector: Vec3,
+}
+
+/// A point of a side that stands for an area, m², and what the functions of the nodes are there.
+struct Sample {
+    place: Vec3,
+    area: f64,
+    /// Outward, of length one.
+    normal: Vec3,
+    shares: Vec<(u32, f64)>,
 }
 
 /// The elastic bodies of a recipe.
@@ -217,6 +229,40 @@ impl Mechanics {
                     }
                 }
             }
+            Density::Force(tag, value) => {
+                let sides = self.sides.iter().filter(|s| s.tag == *tag);
+                let shares: Vec<(u32, f64)> = sides.flat_map(|s| self.shares(s)).collect();
+                let area: f64 = shares.iter().map(|s| s.1).sum();
+                shares
+                    .into_iter()
+                    .for_each(|(node, share)| put(node, scale(share / area, *value)));
+            }
+            Density::Moment(tag, value) => {
+                let sides = self.sides.iter().filter(|s| s.tag == *tag);
+                let samples: Vec<Sample> = sides.flat_map(|s| self.samples(s)).collect();
+                let area: f64 = samples.iter().map(|s| s.area).sum();
+                let centre = samples
+                    .iter()
+                    .fold([0.0; 3], |c, s| add(c, scale(s.area / area, s.place)));
+                // rows of the moments that spins of one about the axes cause
+                let mut second = [[0.0; 3]; 3];
+                for sample in &samples {
+                    let arm = sub(sample.place, centre);
+                    for (c, row) in second.iter_mut().enumerate() {
+                        row[c] += sample.area * dot(arm, arm);
+                        *row = sub(*row, scale(sample.area * arm[c], arm));
+                    }
+                }
+                let [a, b, c] = second;
+                let spin = [cross(b, c), cross(c, a), cross(a, b)].map(|v| scale(1.0 / dot(a, cross(b, c)), v));
+                let spin = (0..3).fold([0.0; 3], |w, k| add(w, scale(value[k], spin[k])));
+                for sample in &samples {
+                    let traction = cross(spin, sub(sample.place, centre));
+                    for (node, share) in &sample.shares {
+                        put(*node, scale(sample.area * share, traction));
+                    }
+                }
+            }
             Density::Nodes(forces) => forces.iter().for_each(|(node, force)| put(*node, *force)),
             Density::Traction(tag, value) => {
                 for side in self.sides.iter().filter(|s| s.tag == *tag) {
@@ -227,8 +273,17 @@ impl Mechanics {
             }
             Density::Pressure(tag, value) => {
                 for side in self.sides.iter().filter(|s| s.tag == *tag) {
-                    let share = scale(-value / 3.0, side.vector);
-                    side.loaded.iter().for_each(|n| put(*n, share));
+                    if side.mids.is_none() {
+                        let share = scale(-value / 3.0, side.vector);
+                        side.loaded.iter().for_each(|n| put(*n, share));
+                        continue;
+                    }
+                    for sample in self.samples(side) {
+                        let force = scale(-value * sample.area, sample.normal);
+                        for (node, share) in sample.shares {
+                            put(node, scale(share, force));
+                        }
+                    }
                 }
             }
             Density::TractionField(tag, field, pull) => {
@@ -247,15 +302,39 @@ impl Mechanics {
 
     /// Areas that the functions of a side have, m²: a third each of straight ones.
     fn shares(&self, side: &Side) -> Vec<(u32, f64)> {
-        let Some(mids) = side.mids else {
+        if side.mids.is_none() {
             return side.nodes.iter().map(|n| (*n, norm(side.vector) / 3.0)).collect();
-        };
-        let nodes: Vec<u32> = side.nodes.into_iter().chain(mids).collect();
-        let places: Vec<Vec3> = nodes.iter().map(|n| self.points[*n as usize]).collect();
-        let mut out: Vec<(u32, f64)> = nodes.iter().map(|n| (*n, 0.0)).collect();
+        }
+        let mut out: Vec<(u32, f64)> = Vec::new();
+        for sample in self.samples(side) {
+            out.extend(
+                sample
+                    .shares
+                    .into_iter()
+                    .map(|(node, share)| (node, share * sample.area)),
+            );
+        }
+        out
+    }
+
+    /// Points that integrate over a side.
+    fn samples(&self, side: &Side) -> Vec<Sample> {
+        let corners = side.nodes.map(|n| self.points[n as usize]);
+        let mut out = Vec::new();
         for (x, v) in GAUSS {
             for (y, w) in GAUSS {
                 let l = [1.0 - x, x * (1.0 - y), x * y];
+                let Some(mids) = side.mids else {
+                    out.push(Sample {
+                        place: (0..3).fold([0.0; 3], |p, a| add(p, scale(l[a], corners[a]))),
+                        area: 2.0 * v * w * x * norm(side.vector),
+                        normal: unit(side.vector),
+                        shares: (0..3).map(|a| (side.nodes[a], l[a])).collect(),
+                    });
+                    continue;
+                };
+                let nodes: Vec<u32> = side.nodes.into_iter().chain(mids).collect();
+                let places: Vec<Vec3> = nodes.iter().map(|n| self.points[*n as usize]).collect();
                 // derivatives of the place along the three coordinates
                 let mut tangents = [[0.0; 3]; 3];
                 for a in 0..3 {
@@ -265,11 +344,14 @@ impl Mechanics {
                     tangents[b] = add(tangents[b], scale(4.0 * l[a], places[3 + a]));
                 }
                 let [u, t] = [1, 2].map(|k| sub(tangents[k], tangents[0]));
-                let area = v * w * x * norm(cross(u, t));
-                for a in 0..3 {
-                    out[a].1 += area * l[a] * (2.0 * l[a] - 1.0);
-                    out[3 + a].1 += area * 4.0 * l[a] * l[(a + 1) % 3];
-                }
+                let at_corners = (0..3).map(|a| l[a] * (2.0 * l[a] - 1.0));
+                let functions: Vec<f64> = at_corners.chain((0..3).map(|a| 4.0 * l[a] * l[(a + 1) % 3])).collect();
+                out.push(Sample {
+                    place: (0..6).fold([0.0; 3], |p, a| add(p, scale(functions[a], places[a]))),
+                    area: v * w * x * norm(cross(u, t)),
+                    normal: scale(dot(cross(u, t), side.vector).signum(), unit(cross(u, t))),
+                    shares: nodes.into_iter().zip(functions).collect(),
+                });
             }
         }
         out
@@ -317,57 +399,6 @@ const GAUSS: [(f64, f64); 4] = [
 
 fn eval(field: &[Poly; 3], x: Vec3) -> Vec3 {
     [0, 1, 2].map(|c| field[c].value(x))
-}
-
-/// Gradients of the barycentric coordinates, and the volume.
-fn shape(x: [Vec3; 4]) -> ([Vec3; 4], f64) {
-    let mut gradients = [[0.0; 3]; 4];
-    let mut volume = 0.0;
-    for a in 0..4 {
-        // the gradient is the normal of the opposite face over the height
-        let [b, c, d] = [1, 2, 3].map(|k| x[(a + k) % 4]);
-        let normal = cross(sub(c, b), sub(d, b));
-        let height = dot(normal, sub(x[a], b));
-        gradients[a] = scale(1.0 / height, normal);
-        volume = height.abs() / 6.0;
-    }
-    (gradients, volume)
-}
-
-/// Gradients of the ten quadratic functions at the point of the rule of degree 2 that is nearest to a corner, and the
-/// quarter of the volume there.
-fn quadratic(places: &[Vec3], corner: usize) -> (f64, Vec<Vec3>) {
-    let near = (5.0 + 3.0 * 5f64.sqrt()) / 20.0;
-    let l = |k: usize| if k == corner { near } else { (1.0 - near) / 3.0 };
-    let edges = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
-    // the tetrahedron that is tangent to the element there
-    let mut tangents = [0, 1, 2, 3].map(|k| scale(4.0 * l(k) - 1.0, places[k]));
-    for ([a, b], mid) in edges.into_iter().zip(&places[4..]) {
-        tangents[a] = add(tangents[a], scale(4.0 * l(b), *mid));
-        tangents[b] = add(tangents[b], scale(4.0 * l(a), *mid));
-    }
-    let (linear, volume) = shape(tangents);
-    let corners = (0..4).map(|k| scale(4.0 * l(k) - 1.0, linear[k]));
-    let mids = edges.map(|[a, b]| add(scale(4.0 * l(b), linear[a]), scale(4.0 * l(a), linear[b])));
-    (0.25 * volume, corners.chain(mids).collect())
-}
-
-fn matrix(elastic: &Elastic) -> [[f64; 6]; 6] {
-    match elastic {
-        Elastic::Matrix(matrix) => **matrix,
-        Elastic::Isotropic(young, poisson) => {
-            // from the compliance: strain_i = (s_i - nu (s_j + s_k)) / E
-            let factor = young / (1.0 + poisson) / (1.0 - 2.0 * poisson);
-            let mut out = [[0.0; 6]; 6];
-            for i in 0..3 {
-                for j in 0..3 {
-                    out[i][j] = factor * if i == j { 1.0 - poisson } else { *poisson };
-                }
-                out[i + 3][i + 3] = 0.5 * factor * (1.0 - 2.0 * poisson);
-            }
-            out
-        }
-    }
 }
 
 /// Facets with tags, turned outward by the corner of their tetrahedron that is not on them.

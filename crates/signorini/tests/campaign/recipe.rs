@@ -1,7 +1,7 @@
 //! What a scene of the campaign says, in data of its own: the library's scene is made from it in `say`, and the check
 //! computes from it. Neither sees what the other makes of it.
 
-use crate::vec3::{Vec3, dot, sub};
+use crate::vec3::{Vec3, across, add, cross, dot, scale, sub, unit};
 use signorini::fem_mesh::{FacetTag, TetMesh};
 
 /// A polynomial of second degree of the place.
@@ -87,6 +87,10 @@ pub(crate) enum Density {
     Nodes(Vec<(u32, Vec3)>),
     /// Strain without stress, in a region or everywhere, times a factor at each node.
     Eigenstrain([f64; 6], Option<u32>, Vec<f64>),
+    /// A force, the same on each area of a tag.
+    Force(FacetTag, Vec3),
+    /// A moment without a force, as a traction that grows from the centroid of a tag.
+    Moment(FacetTag, Vec3),
 }
 
 #[derive(Debug, Clone)]
@@ -101,18 +105,34 @@ pub(crate) enum Fixed {
     All,
     Components([bool; 3]),
     Vectors(Vec<Vec3>),
+    /// Of the radial, tangential and axial direction about an axis through a point, a unit vector, along which
+    /// displacements are given, too.
+    About(Vec3, Vec3, [bool; 3]),
+    /// Vectors of each node.
+    Each(Vec<Vec<Vec3>>),
 }
 
 impl Fixed {
-    /// As vectors, not of length one.
-    pub(crate) fn vectors(&self) -> Vec<Vec3> {
+    /// As vectors, not of length one, of the node with a place in the list that is at `x`.
+    pub(crate) fn vectors(&self, place: usize, x: Vec3) -> Vec<Vec3> {
         let axes = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
         match self {
             Self::All => axes.to_vec(),
             Self::Components(on) => (0..3).filter(|&c| on[c]).map(|c| axes[c]).collect(),
             Self::Vectors(list) => list.clone(),
+            Self::About(point, axis, on) => {
+                let axes = around(*point, *axis, x);
+                (0..3).filter(|&c| on[c]).map(|c| axes[c]).collect()
+            }
+            Self::Each(lists) => lists[place].clone(),
         }
     }
+}
+
+/// The radial, tangential and axial direction at a place.
+pub(crate) fn around(point: Vec3, axis: Vec3, x: Vec3) -> [Vec3; 3] {
+    let radial = unit(across(sub(x, point), axis));
+    [radial, cross(axis, radial), axis]
 }
 
 #[derive(Debug, Clone)]
@@ -150,12 +170,19 @@ impl Hold {
     }
 
     /// Its displacement at the node with a place in the list.
-    pub(crate) fn displacement(&self, place: usize, time: f64) -> Vec3 {
+    pub(crate) fn displacement(&self, place: usize, x: Vec3, time: f64) -> Vec3 {
         let Some((values, course)) = &self.motion else {
             return [0.0; 3];
         };
         let value = if values.len() == 1 { values[0] } else { values[place] };
-        value.map(|v| v * course.value(time))
+        let value = value.map(|v| v * course.value(time));
+        match &self.fixed {
+            Fixed::About(point, axis, _) => {
+                let axes = around(*point, *axis, x);
+                (0..3).fold([0.0; 3], |sum, c| add(sum, scale(value[c], axes[c])))
+            }
+            _ => value,
+        }
     }
 }
 
@@ -281,6 +308,8 @@ pub(crate) struct How {
     pub(crate) share: bool,
     /// After so many levels the run goes on in another simulation.
     pub(crate) resume: Option<usize>,
+    /// Products after which a step fails, and how often it may be halved then.
+    pub(crate) halving: Option<(usize, u32)>,
 }
 
 impl How {
@@ -291,6 +320,7 @@ impl How {
             && self.extrapolate
             && self.share
             && self.resume.is_none()
+            && self.halving.is_none()
     }
 }
 

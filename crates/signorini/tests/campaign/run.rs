@@ -1,8 +1,8 @@
 //! Runs a scene and judges its levels.
 
+use crate::apart::Apart;
 use crate::check::apart::ApartJudge;
 use crate::check::{Judge, Violation};
-use crate::generate::apart::Apart;
 use crate::recipe::Recipe;
 use crate::say;
 use signorini::prelude::*;

@@ -27,6 +27,8 @@ fn load(density: &Density) -> Load {
         }),
         Density::Pressure(tag, value) => LoadDensity::pressure(tag, value),
         Density::Nodes(forces) => LoadDensity::nodal_forces(forces),
+        Density::Force(tag, value) => LoadDensity::force(tag, value),
+        Density::Moment(tag, value) => LoadDensity::moment(tag, value),
         Density::Eigenstrain(strain, region, factors) => {
             let strain = Eigenstrain::new(strain).with_factors(factors);
             return Load::eigenstrain(match region {
@@ -116,6 +118,8 @@ pub(crate) fn scene(recipe: &Recipe) -> Result<Scene, Error> {
             Fixed::All => Support::fixed(place),
             Fixed::Components(on) => Support::components(place, *on),
             Fixed::Vectors(list) => Support::partial(place, Directions::Vectors(list.clone())),
+            Fixed::About(point, axis, on) => Support::components(place, *on).with_axis(*point, *axis),
+            Fixed::Each(lists) => Support::partial(place, Directions::EachNode(lists.clone())),
         };
         if let Some((values, course)) = &hold.motion {
             let history = history(course)?;
@@ -162,6 +166,13 @@ pub(crate) fn settings(recipe: &Recipe) -> Settings {
     };
     if !how.share {
         settings = settings.with_share_translates(false);
+    }
+    if let Some((products, most)) = how.halving {
+        let short = signorini::qp::ActiveSetSettings::default().with_max_products(products);
+        settings = settings
+            .with_method(Method::ActiveSet(short))
+            .with_max_fallback_products(1)
+            .with_step_halving(most);
     }
     settings
 }

@@ -14,14 +14,16 @@
 //! stress. Forces between curved sides act where facets are, not where sides are, and a couple on one of them makes up for
 //! it: it is taken from the library, for moments must balance; so are gaps at the start, as far as the bumps allow them.
 
-use super::{Judge, Report, SAME, Size, Violation, Worst};
-use crate::generate::apart::{Apart, Pair, Rock};
+mod points;
+
+use super::{Judge, Report, Size, Violation, Worst};
+use crate::apart::{Apart, Pair, Rock};
 use crate::mechanics::groups;
 use crate::recipe::{Clock, Law};
-use crate::vec3::{Vec3, across, add, at, cross, dot, norm, scale, sub, unit};
+use crate::vec3::{Vec3, add, at, cross, dot, norm, scale, sub, unit};
 use signorini::contact::ConstrainedPoint;
 use signorini::prelude::*;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The judge of a run.
 pub(crate) struct ApartJudge<'a> {
@@ -30,6 +32,19 @@ pub(crate) struct ApartJudge<'a> {
     /// As in the other judge, for the points of the library.
     ways: [Vec<Vec3>; 2],
     rates: Vec<f64>,
+    /// Nodes of both sides of each pair.
+    sides: Vec<[HashSet<u32>; 2]>,
+    /// Whether these are known: what lies between levels, where steps are halved, is not.
+    known: Known,
+}
+
+/// What is known at a level: slips, and those before it.
+#[derive(Debug, Clone, Copy)]
+struct Known {
+    slips: bool,
+    rates: bool,
+    /// Whether the step was taken as a whole.
+    whole: bool,
 }
 
 /// A point at a level.
@@ -50,11 +65,23 @@ impl<'a> ApartJudge<'a> {
             .iter()
             .filter_map(|p| Some((node(p.sides[0])?, node(p.sides[1])?)));
         base.group = groups(nodes, bodies.chain(pairs));
+        let on = |tag: FacetTag| {
+            let sides = base.mechanics.sides.iter().filter(move |s| s.tag == tag);
+            sides
+                .flat_map(|s| s.nodes.into_iter().chain(s.loaded))
+                .collect::<HashSet<u32>>()
+        };
         Self {
+            sides: scene.pairs.iter().map(|p| p.sides.map(on)).collect(),
             base,
             scene,
             ways: [Vec::new(), Vec::new()],
             rates: Vec::new(),
+            known: Known {
+                slips: true,
+                rates: true,
+                whole: true,
+            },
         }
     }
 
@@ -70,6 +97,16 @@ impl<'a> ApartJudge<'a> {
             self.rates = vec![0.0; points.len()];
             self.ways = [vec![[0.0; 3]; points.len()], vec![[0.0; 3]; points.len()]];
         }
+        let whole = frame.report().counters.between == 0;
+        let one_step = match self.base.recipe.clock {
+            Clock::Static(_) => true,
+            Clock::Steps { weights, .. } => weights[2] == 0.0,
+        };
+        self.known = Known {
+            slips: whole && (one_step || self.known.whole),
+            rates: whole && self.known.slips,
+            whole,
+        };
         let mut worst = Worst::default();
         let load = self.base.mechanics.load_at(self.base.recipe, report.time);
         let torn = self.base.mechanics.torn(frame);
@@ -258,8 +295,17 @@ impl<'a> ApartJudge<'a> {
         let said = report.reactions.imbalance();
         worst.add("balance", norm(sum[0]), forces);
         worst.add("reported imbalance", norm(said.force), forces);
-        worst.add("balance", norm(sum[1]), far * forces);
-        worst.add("reported imbalance", norm(said.moment), far * forces);
+        // friction across a distance between sides is a couple, and bumps leave one where few nodes make up for them
+        let couple = |(point, state): (&ConstrainedPoint, &PointState)| {
+            let pair = self.scene.pairs.get(point.surface());
+            let most = pair.map_or(0.0, |pair| pair.apart() + self.scene.bumps);
+            let at_node = |(n, force): (u32, Vec3)| cross(sub(places[n as usize], point.position()), force);
+            let moment = point.forces(state.force()).map(at_node).fold([0.0; 3], add);
+            norm(moment).min(most * norm(state.force()))
+        };
+        let couples: f64 = points.iter().zip(report.points).map(couple).sum();
+        worst.add("balance", norm(sum[1]) - couples, far * forces);
+        worst.add("reported imbalance", norm(said.moment) - couples, far * forces);
     }
 
     /// Forces of the foundation, but for nodes that a support holds.
@@ -275,7 +321,8 @@ impl<'a> ApartJudge<'a> {
             for node in side.loaded.into_iter().filter(|n| !held.contains(n)) {
                 let u = at(&report.u, node);
                 let own = expected.entry(node).or_default();
-                (0..3).for_each(|c| own[c] -= norm(side.vector) / 3.0 * stiffness[c] * u[c]);
+                let stress = stiffness.stress(unit(side.vector), u);
+                *own = add(*own, scale(norm(side.vector) / 3.0, stress));
             }
         }
         let said = report.reactions.springs.iter().flat_map(|s| &s.nodes);
@@ -286,185 +333,6 @@ impl<'a> ApartJudge<'a> {
         }
         for (node, force) in expected {
             worst.add("foundation", norm(force), self.base.size(sizes, node).forces);
-        }
-    }
-
-    /// Weights and areas.
-    fn weights(&self, points: &[ConstrainedPoint], worst: &mut Worst) {
-        let places = &self.base.mechanics.points;
-        let mut areas = vec![0.0; self.scene.pairs.len()];
-        for point in points {
-            let (mut own, mut other, mut arm) = (0.0, 0.0, [0.0; 3]);
-            let mine = self.base.mechanics.body[point.node() as usize];
-            for (node, weight) in point.nodes() {
-                let same = self.base.mechanics.body[node as usize] == mine;
-                *(if same { &mut own } else { &mut other }) += weight;
-                arm = add(arm, scale(weight, sub(places[node as usize], point.position())));
-            }
-            worst.add("weights", (own - 1.0).abs(), 1e-6);
-            let Some(area) = areas.get_mut(point.surface()) else {
-                continue;
-            };
-            *area += point.area();
-            worst.add("weights", (other + 1.0).abs(), 1e-6);
-            // of a node that is covered by little only, weights are rounding over that part
-            let off = (norm(arm) - self.scene.bumps).max(0.0);
-            worst.add("moment of weights", off, 1e-5 * self.base.extent);
-        }
-        for (index, pair) in self.scene.pairs.iter().enumerate().filter(|p| !p.1.tied) {
-            let area = areas[index];
-            // where supports take points away there is more at their neighbours
-            if pair.whole && self.scene.bumps == 0.0 && area > (1.0 - 1e-9) * pair.common {
-                self.uniform(index, pair, points, worst);
-            }
-            let steep = 1.0 + (4.0 * self.scene.bumps / pair.common.sqrt()).powi(2);
-            worst.add("area", area - pair.common * steep, 1e-4 * pair.common);
-        }
-    }
-
-    /// What uniform pressure is at nodes of both sides, m²: their areas, outward on the side with the points.
-    fn uniform(&self, index: usize, pair: &Pair, points: &[ConstrainedPoint], worst: &mut Worst) {
-        let mut rest: HashMap<u32, f64> = HashMap::new();
-        for point in points.iter().filter(|p| p.surface() == index) {
-            for (node, weight) in point.nodes() {
-                *rest.entry(node).or_default() += weight * point.area();
-            }
-        }
-        let body = |node: u32| self.base.mechanics.body[node as usize];
-        let own = points.iter().find(|p| p.surface() == index).map(|p| body(p.node()));
-        for side in self.base.mechanics.sides.iter().filter(|s| pair.sides.contains(&s.tag)) {
-            for node in side.loaded {
-                let sign = if Some(body(node)) == own { -1.0 } else { 1.0 };
-                *rest.entry(node).or_default() += sign * norm(side.vector) / 3.0;
-            }
-        }
-        for off in rest.into_values() {
-            worst.add("uniform pressure", off.abs(), 1e-4 * pair.common);
-        }
-    }
-
-    fn at(&self, k: usize, point: &ConstrainedPoint, report: &Report<'_>) -> At {
-        let [a, b, c] = match self.base.recipe.clock {
-            Clock::Static(_) => [1.0, 0.0, 0.0],
-            Clock::Steps { weights, .. } => weights,
-        };
-        let state = &report.points[k];
-        let moved = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-            .map(|axis| point.forces(axis).map(|(n, force)| dot(force, at(&report.u, n))).sum());
-        let normal = point.frame().normal;
-        let (way, gap) = match self.rock(point) {
-            Some(rock) => {
-                let mut carried =
-                    (rock.motion.as_ref()).map_or([0.0; 3], |(v, course)| scale(course.value(report.time), *v));
-                let places = &self.base.mechanics.points;
-                let (shifted, place) = (carried, sub(self.mean(point), carried));
-                if let Some((centre, axis, course)) = &rock.turn {
-                    let (arm, angle) = (sub(place, *centre), course.value(report.time));
-                    carried = add(carried, scale(angle, cross(*axis, arm)));
-                }
-                // a quadratic point has the mean of the gaps at its nodes
-                let gaps = point.nodes().map(|(node, weight)| {
-                    let mut place = sub(places[node as usize], shifted);
-                    if let Some((centre, axis, course)) = &rock.turn {
-                        let (arm, angle) = (sub(place, *centre), course.value(report.time));
-                        let along = scale(dot(arm, *axis), *axis);
-                        let (sin, cos) = angle.sin_cos();
-                        // the place is turned back, and dragged along the surface
-                        let off = sub(arm, along);
-                        let back = add(scale(cos, off), scale(-sin, cross(*axis, off)));
-                        place = add(*centre, add(along, back));
-                    }
-                    weight * rock.shape.distance(place).0
-                });
-                (sub(moved, carried), gaps.sum::<f64>() - dot(normal, moved))
-            }
-            // plane sides touch at rest
-            None if self.scene.bumps == 0.0 => (moved, -dot(normal, moved)),
-            None => (moved, point.gap() - dot(normal, moved)),
-        };
-        // the place where it sticks
-        let along = self.compliance(point)[1] / point.area();
-        let way = add(way, scale(along, state.friction_force));
-        let sum = add(scale(a, way), add(scale(b, self.ways[0][k]), scale(c, self.ways[1][k])));
-        At {
-            way,
-            gap,
-            slip: across(sum, normal),
-        }
-    }
-
-    /// Where the force of a point acts that one body has.
-    fn mean(&self, point: &ConstrainedPoint) -> Vec3 {
-        let places = &self.base.mechanics.points;
-        (point.nodes()).fold([0.0; 3], |s, (n, w)| add(s, scale(w, places[n as usize])))
-    }
-
-    fn compliance(&self, point: &ConstrainedPoint) -> [f64; 2] {
-        match (self.rock(point), self.scene.pairs.get(point.surface())) {
-            (Some(rock), _) => rock.compliance,
-            (_, Some(pair)) => pair.compliance,
-            _ => [0.0; 2],
-        }
-    }
-
-    fn point(
-        &self,
-        (k, point): (usize, &ConstrainedPoint),
-        state: &PointState,
-        now: &At,
-        size: &Size,
-        worst: &mut Worst,
-    ) {
-        // where nothing moves, coordinates are the scale
-        let (f, u) = (size.contact, size.displacement.max(1e-11 * self.base.extent));
-        let normal = point.frame().normal;
-        let least = if self.scene.bumps > 0.0 { 0.7 } else { SAME };
-        let expected = match self.rock(point) {
-            Some(rock) => scale(-1.0, rock.shape.distance(self.mean(point)).1),
-            None => {
-                let own = |s: &&crate::mechanics::Side| {
-                    s.nodes.contains(&point.node()) && dot(unit(s.vector), normal) > least
-                };
-                self.base
-                    .mechanics
-                    .sides
-                    .iter()
-                    .find(own)
-                    .map_or([0.0; 3], |s| unit(s.vector))
-            }
-        };
-        let least = if self.rock(point).is_some() { SAME } else { least };
-        worst.add("normal", f64::from(u8::from(dot(expected, normal) < least)), 1.0);
-        let (force, friction) = (state.normal_force, state.friction_force);
-        if self.rock(point).is_none() {
-            worst.add(
-                "gap at the start",
-                (point.gap().abs() - self.scene.bumps).max(0.0),
-                1e-6 * self.base.extent,
-            );
-        }
-        worst.add("reported gap", (state.gap - now.gap).abs(), u.max(point.gap().abs()));
-        let let_in = self.compliance(point)[0] * -force / point.area();
-        let gap = now.gap + let_in;
-        worst.add("gap", -gap, u);
-        worst.add("sign", force, f);
-        worst.add("complementarity", (force * gap.max(0.0)).abs(), f * u);
-        worst.add("friction off the surface", dot(friction, normal).abs(), f);
-        let (law, axis) = self.law(point);
-        let bound = law.bound(point.position(), point.area(), (-force).max(0.0), self.rates[k]);
-        // lengths in which the ellipse is a disc
-        let (along, ratio) = axis.map_or((point.frame().tangents[0], 1.0), |(a, r)| (unit(across(a, normal)), r));
-        let other = cross(normal, along);
-        let g = [dot(friction, along), dot(friction, other) / ratio];
-        let s = [dot(now.slip, along), dot(now.slip, other) * ratio];
-        let (push, slide) = (g[0].hypot(g[1]), s[0].hypot(s[1]));
-        worst.add("cone", push - bound, f);
-        let stuck = law.is_some() && state.slip_bound == 0.0;
-        if law.is_some() && force != 0.0 && !stuck {
-            let off = [0, 1].map(|c| bound * s[c] + slide * g[c]);
-            worst.add("direction", off[0].hypot(off[1]), f.max(bound) * u * ratio.max(1.0));
-            worst.add("reported bound", (state.slip_bound - bound).abs(), f.max(bound));
-            worst.add("reported slip", norm(sub(state.difference, now.slip)), u);
         }
     }
 }

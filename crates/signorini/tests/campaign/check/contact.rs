@@ -178,8 +178,8 @@ impl Judge<'_> {
 pub(super) fn stuck(recipe: &Recipe, spots: &[Spot], nodes: usize) -> Vec<bool> {
     let mut held: Vec<Vec<Vec3>> = vec![Vec::new(); nodes];
     for hold in &recipe.holds {
-        for node in hold.nodes(&recipe.mesh) {
-            for v in hold.fixed.vectors() {
+        for (place, node) in hold.nodes(&recipe.mesh).into_iter().enumerate() {
+            for v in hold.fixed.vectors(place, recipe.mesh.points()[node as usize]) {
                 let held = &mut held[node as usize];
                 let rest = held.iter().fold(unit(v), |d, e| across(d, *e));
                 if norm(rest) > 1e-6 {

@@ -5,66 +5,11 @@
 
 use super::bodies::side;
 use super::{Frame, bare, settings};
+use crate::apart::{Apart, Bed, Pair, Rest, Rock, Shape};
 use crate::dice::Dice;
-use crate::recipe::{Course, Density, Elastic, Fixed, Hold, Law, Push, Recipe, Where};
-use crate::vec3::{Vec3, across, add, dot, norm, scale, sub, unit};
+use crate::recipe::{Density, Elastic, Fixed, Hold, Law, Push, Where};
+use crate::vec3::{Vec3, across, add, scale, unit};
 use signorini::prelude::*;
-
-/// Two sides that face each other.
-#[derive(Debug, Clone)]
-pub(crate) struct Pair {
-    pub(crate) sides: [FacetTag; 2],
-    pub(crate) tied: bool,
-    pub(crate) law: Law,
-    /// Direction of the law, and friction across it over that along it.
-    pub(crate) axis: Option<(Vec3, f64)>,
-    /// Area where both sides face each other, seen from above, m².
-    pub(crate) common: f64,
-    /// Whether that is all of both.
-    pub(crate) whole: bool,
-    pub(crate) compliance: [f64; 2],
-    /// How the first side moves against the second where they are tied.
-    pub(crate) motion: Option<(Vec3, Course)>,
-}
-
-/// The shape of a rigid obstacle.
-#[derive(Debug, Clone, Copy)]
-pub(crate) enum Shape {
-    /// A point and the normal out of it, of length one.
-    Plane(Vec3, Vec3),
-    /// Centre and radius.
-    Ball(Vec3, f64),
-    /// A point and the direction of the axis, of length one, and the radius.
-    Roll(Vec3, Vec3, f64),
-}
-
-/// A rigid obstacle.
-#[derive(Debug, Clone)]
-pub(crate) struct Rock {
-    pub(crate) side: FacetTag,
-    pub(crate) shape: Shape,
-    pub(crate) motion: Option<(Vec3, Course)>,
-    /// A point, the direction of an axis, of length one, and the angle in time.
-    pub(crate) turn: Option<(Vec3, Vec3, Course)>,
-    pub(crate) law: Law,
-    pub(crate) axis: Option<(Vec3, f64)>,
-    pub(crate) compliance: [f64; 2],
-}
-
-/// What a recipe does not say.
-#[derive(Debug, Clone)]
-pub(crate) struct Apart {
-    /// Mesh, elasticity, supports, loads, times and settings.
-    pub(crate) recipe: Recipe,
-    /// In the order of the scene's contacts.
-    pub(crate) pairs: Vec<Pair>,
-    /// Behind the pairs.
-    pub(crate) rocks: Vec<Rock>,
-    /// Height of the bumps of sides that face each other, m; zero for plane ones.
-    pub(crate) bumps: f64,
-    /// Side and stiffness of an elastic foundation, N/m³.
-    pub(crate) ground: Option<(FacetTag, Vec3)>,
-}
 
 /// A rectangle of a body seen from above: centre, angle, lengths.
 #[derive(Clone, Copy)]
@@ -237,6 +182,8 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
         pairs.push(Pair {
             sides,
             tied,
+            rest: Rest::Measured(0.0),
+            growth: None,
             law,
             axis,
             common: foot.common(&feet[below]),
@@ -269,6 +216,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
             shape: Shape::Plane(frame.turn.place([0.0; 3]), frame.turn.way([0.0, 0.0, 1.0])),
             motion: None,
             turn: None,
+            growth: None,
             axis: rough(dice, law.clone()),
             law,
             compliance: gives_way(&mut recipe.words),
@@ -301,6 +249,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
                     shape,
                     motion: Some((scale(3.0 * frame.way, down), frame.shaft.course(dice))),
                     turn: None,
+                    growth: None,
                     axis: rough(dice, law.clone()),
                     law,
                     compliance: gives_way(&mut recipe.words),
@@ -324,9 +273,9 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
             Shape::Plane(_, outward) if more.chance(0.5) => (outward, 3.0 * way),
             Shape::Plane(_, outward) => (unit(across(more.vector(), outward)), 0.3 * way),
             Shape::Ball(..) => (unit(more.vector()), 3.0 * way),
-            Shape::Roll(_, axis, _) => (axis, 3.0 * way),
+            Shape::Roll(_, axis, _) | Shape::Bore(_, axis, _) | Shape::Taper(_, axis, ..) => (axis, 3.0 * way),
         };
-        let (Shape::Plane(point, _) | Shape::Ball(point, _) | Shape::Roll(point, ..)) = rock.shape;
+        let point = rock.shape.point();
         let course = frame.shaft.course(&mut more).times(angle * more.between(0.2, 1.0));
         rock.turn = Some((point, axis, course));
         recipe.words.push("turns".into());
@@ -344,7 +293,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
         let tag = side(body, if more.chance(0.5) { brick::Y_MIN } else { brick::X_MIN });
         (
             tag,
-            [1.0, more.between(0.1, 1.0), more.between(0.1, 1.0)].map(|k| k * stiffness),
+            Bed::Components([1.0, more.between(0.1, 1.0), more.between(0.1, 1.0)].map(|k| k * stiffness)),
         )
     });
     // with a dice of its own; straight edges, and no mean volume strain
@@ -364,62 +313,5 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
         rocks,
         bumps,
         ground,
-    }
-}
-
-impl Shape {
-    /// Distance and gradient.
-    pub(crate) fn distance(&self, x: Vec3) -> (f64, Vec3) {
-        let from = |arm: Vec3, radius: f64| (norm(arm) - radius, unit(arm));
-        match *self {
-            Self::Plane(point, outward) => (dot(sub(x, point), outward), outward),
-            Self::Ball(centre, radius) => from(sub(x, centre), radius),
-            Self::Roll(point, axis, radius) => {
-                let arm = sub(x, point);
-                from(sub(arm, scale(dot(arm, axis), axis)), radius)
-            }
-        }
-    }
-}
-
-impl Apart {
-    /// The contacts in the words of the library.
-    pub(crate) fn scene(&self, mut scene: Scene) -> Result<Scene, Error> {
-        if let Some((tag, stiffness)) = self.ground {
-            scene = scene.with_spring(Spring::components(tag, stiffness));
-        }
-        let rough = |contact: Contact, law: &Law, axis: &Option<(Vec3, f64)>, [normal, along]: [f64; 2]| {
-            let contact = contact.with_friction(crate::say::friction(law));
-            let contact = contact.with_normal_compliance(normal).with_tangential_compliance(along);
-            axis.map_or(contact.clone(), |(axis, ratio)| contact.with_friction_axis(axis, ratio))
-        };
-        for pair in &self.pairs {
-            let [a, b] = pair.sides;
-            scene = scene.with_contact(if pair.tied {
-                let tie = Contact::tied(a, b);
-                match &pair.motion {
-                    Some((way, course)) => tie.with_motion(*way, crate::say::history(course)?),
-                    None => tie,
-                }
-            } else {
-                rough(Contact::between(a, b), &pair.law, &pair.axis, pair.compliance)
-            });
-        }
-        for rock in &self.rocks {
-            let shape = match rock.shape {
-                Shape::Plane(point, outward) => Obstacle::half_space(point, outward),
-                Shape::Ball(centre, radius) => Obstacle::sphere(centre, radius),
-                Shape::Roll(point, axis, radius) => Obstacle::cylinder(point, axis, radius),
-            };
-            let mut contact = Contact::obstacle(rock.side, shape);
-            if let Some((way, course)) = &rock.motion {
-                contact = contact.with_motion(*way, crate::say::history(course)?);
-            }
-            if let Some((point, axis, course)) = &rock.turn {
-                contact = contact.with_rotation(*point, *axis, crate::say::history(course)?);
-            }
-            scene = scene.with_contact(rough(contact, &rock.law, &rock.axis, rock.compliance));
-        }
-        Ok(scene)
     }
 }

@@ -57,7 +57,7 @@ pub(crate) fn materials(dice: &mut Dice, world: &World) -> (TetMesh, Vec<Elastic
 }
 
 /// An isotropic law and some stiffness along a few directions of strain.
-fn anisotropic(dice: &mut Dice, young: f64, poisson: f64) -> [[f64; 6]; 6] {
+pub(super) fn anisotropic(dice: &mut Dice, young: f64, poisson: f64) -> [[f64; 6]; 6] {
     let shear = young / (2.0 * (1.0 + poisson));
     let lambda = 2.0 * shear * poisson / (1.0 - 2.0 * poisson);
     let mut c = [[0.0; 6]; 6];

@@ -5,6 +5,7 @@
 pub(crate) mod apart;
 mod bodies;
 mod contacts;
+pub(crate) mod fit;
 mod laws;
 mod loads;
 mod material;

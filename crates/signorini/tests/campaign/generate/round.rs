@@ -2,9 +2,9 @@
 //! around one another, whose sides are curved out of their plane. They are tied or touch, and may be carried along or
 //! turned as a whole.
 
-use super::apart::{Apart, Pair, Rock, Shape};
 use super::bodies::side;
 use super::{Frame, bare, settings};
+use crate::apart::{Apart, Pair, Rest, Rock, Shape};
 use crate::dice::Dice;
 use crate::recipe::{Fixed, Hold, Law, Where};
 use crate::vec3::{Vec3, add, cross, scale};
@@ -47,7 +47,7 @@ impl Round {
 }
 
 /// Makes a ring of a bent bar: nodes at both ends are the same ones.
-fn close(mesh: &TetMesh, place: impl Fn(Vec3) -> Vec3, near: f64) -> TetMesh {
+pub(super) fn close(mesh: &TetMesh, place: impl Fn(Vec3) -> Vec3, near: f64) -> TetMesh {
     let open = |f: &&Facet| f.tag != brick::Y_MIN && f.tag != brick::Y_MAX;
     let mut facets: Vec<Facet> = mesh.facets().iter().filter(open).copied().collect();
     let mut points: Vec<Vec3> = mesh.points().iter().map(|p| place(*p)).collect();
@@ -64,7 +64,7 @@ fn close(mesh: &TetMesh, place: impl Fn(Vec3) -> Vec3, near: f64) -> TetMesh {
 }
 
 /// Area of a side, of straight facets.
-fn area(mesh: &TetMesh, tag: FacetTag) -> f64 {
+pub(super) fn area(mesh: &TetMesh, tag: FacetTag) -> f64 {
     let facets = (0..mesh.facets().len()).filter(|k| mesh.facets()[*k].tag == tag);
     let one = |k| {
         let [a, b, c] = mesh.facet_points(k);
@@ -187,6 +187,8 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
         pairs.push(Pair {
             sides,
             tied,
+            rest: Rest::Measured(0.0),
+            growth: None,
             law,
             axis: None,
             // edges that are bent outward hold more
@@ -256,6 +258,7 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
             shape: Shape::Plane(frame.turn.place([0.0; 3]), frame.turn.way([0.0, 0.0, 1.0])),
             motion: None,
             turn: None,
+            growth: None,
             axis: None,
             law,
             compliance: gives_way(dice, &mut recipe.words),
@@ -276,6 +279,7 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
                 shape: Shape::Plane(place, frame.turn.way([0.0, 0.0, -1.0])),
                 motion: Some((scale(frame.way, down), frame.shaft.course(dice))),
                 turn: None,
+                growth: None,
                 axis: None,
                 law: frame.law(dice),
                 compliance: gives_way(dice, &mut recipe.words),

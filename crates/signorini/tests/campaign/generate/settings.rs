@@ -82,6 +82,7 @@ pub(crate) fn how(dice: &mut Dice, levels: usize) -> How {
         extrapolate: true,
         share: true,
         resume: None,
+        halving: None,
     };
     if dice.chance(0.55) {
         return how;
@@ -135,6 +136,7 @@ pub(crate) fn describe(recipe: &mut Recipe) {
             ("no extrapolation", !how.extrapolate),
             ("no sharing", !how.share),
             ("resumed", how.resume.is_some()),
+            ("halved", how.halving.is_some()),
         ] {
             if on {
                 words.push(word.into());

@@ -62,10 +62,14 @@ fn loose(recipe: &Recipe) -> usize {
         // rows of work on the six motions, made orthogonal one by one
         let mut basis: Vec<[f64; 6]> = Vec::new();
         for hold in &recipe.holds {
-            let nodes = hold.nodes(mesh).into_iter().filter(|n| own.contains(n));
-            for node in nodes {
+            let nodes = hold
+                .nodes(mesh)
+                .into_iter()
+                .enumerate()
+                .filter(|(_, n)| own.contains(n));
+            for (place, node) in nodes {
                 let arm = scale(1.0 / radius, sub(mesh.points()[node as usize], centre));
-                for v in hold.fixed.vectors() {
+                for v in hold.fixed.vectors(place, mesh.points()[node as usize]) {
                     let (d, m) = (unit(v), cross(arm, unit(v)));
                     let mut row = [d[0], d[1], d[2], m[0], m[1], m[2]];
                     for e in &basis {
@@ -207,7 +211,7 @@ fn tidy(dice: &mut Dice, recipe: &mut Recipe) {
         for (place, &node) in nodes.iter().enumerate() {
             let (mut basis, moved) = held.get(&node).cloned().unwrap_or_default();
             let contradict = !basis.is_empty() && (moves || moved);
-            for v in hold.fixed.vectors() {
+            for v in hold.fixed.vectors(place, recipe.mesh.points()[node as usize]) {
                 let rest = basis.iter().fold(unit(v), |d, e| across(d, *e));
                 if norm(rest) > 1e-6 {
                     basis.push(unit(rest));
