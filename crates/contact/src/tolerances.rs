@@ -47,8 +47,8 @@ pub(crate) const RAY: f64 = 1e-13;
 /// have nine digits.
 pub(crate) const RIM: f64 = 1e-9;
 
-/// Distance left on the way to an obstacle, over the shortest one, below which it is rounding where it falls no further:
-/// that of coordinates, whatever the gap.
+/// Distance that is left of the way to an obstacle, over the shortest one, up to which the way that led there is better
+/// than the shortest distance: rounding of coordinates may leave more than [`RAY`] of a small gap.
 pub(crate) const RAY_END: f64 = 0.01;
 
 /// Part of the way along a normal that must lead towards an obstacle to reach it.

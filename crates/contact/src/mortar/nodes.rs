@@ -1,6 +1,6 @@
 //! The other side of each node of a surface.
 
-use super::search::{covers, in_order};
+use super::search::{Triangle, covers, in_order};
 use crate::tolerances::{COVERED, NO_WEIGHT, SAME_NORMAL};
 use rayon::prelude::*;
 use signorini_fem_mesh::vec3::{add, dot, norm, scale};
@@ -57,6 +57,7 @@ pub(crate) fn mortar_nodes(
     // tied sides need no normal, and means of displacements have their own
     let bends = !tied && mesh.order() == 1;
     let crease = crease.to_radians().cos();
+    let of = |facets: &[(u32, u8)]| -> Vec<&Triangle> { facets.iter().map(|f| &triangles[f.0 as usize]).collect() };
     let is_tip = |node: u32| other.local(node).is_some();
     let node = |(local, facets): (usize, &Vec<(u32, u8)>)| {
         let own = surface.nodes()[local];
@@ -132,7 +133,7 @@ pub(crate) fn mortar_nodes(
             partner,
             way: way / area,
             area,
-            frame: match bends && is_bent(facets.iter().map(|f| triangles[f.0 as usize].vector(mesh)), crease) {
+            frame: match bends && is_bent(mesh, &of(facets), crease) {
                 true => surface.frames()[local],
                 false => SurfaceFrame::from_normal(normal)?,
             },
@@ -141,11 +142,16 @@ pub(crate) fn mortar_nodes(
     around.par_iter().enumerate().map(node).collect()
 }
 
-/// Whether facets, as vectors, are not in one plane and no two of them meet at a crease, which is given by its cosine.
-fn is_bent(facets: impl Iterator<Item = [f64; 3]>, crease: f64) -> bool {
-    let vectors: Vec<[f64; 3]> = facets.collect();
-    let pairs = vectors.iter().flat_map(|v| vectors.iter().map(move |w| (v, w)));
-    let least = pairs.map(|(v, w)| dot(*v, *w) / (norm(*v) * norm(*w)));
+/// Whether facets around a node are not in one plane, and none meets its neighbour at a crease, which is given by its
+/// cosine.
+fn is_bent(mesh: &TetMesh, facets: &[&Triangle], crease: f64) -> bool {
+    let least = facets.iter().enumerate().flat_map(|(k, first)| {
+        let neighbours = facets[..k].iter().filter(move |other| first.meets(other));
+        neighbours.map(move |other| {
+            let [v, w] = [first, other].map(|t| t.vector(mesh));
+            dot(v, w) / (norm(v) * norm(w))
+        })
+    });
     let least = least.fold(1.0, f64::min);
     least > crease && least < SAME_NORMAL
 }

@@ -35,6 +35,11 @@ impl Triangle {
         area_vector(&self.corners(mesh))
     }
 
+    /// Whether it shares an edge with another one.
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        self.nodes.iter().filter(|n| other.nodes.contains(n)).count() == 2
+    }
+
     /// All nodes in a mesh of order 2.
     fn quadratic(&self) -> Option<[u32; 6]> {
         let ([a, b, c], [ab, bc, ca]) = (self.nodes, self.mids?);

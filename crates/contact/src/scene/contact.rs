@@ -175,9 +175,9 @@ impl Contact {
         self
     }
 
-    /// Of the gaps measured between two bodies those of at most `reach` (m, not negative) are closed: there the sides touch
-    /// without stress, as if nodes had been moved onto each other. Overlaps are, too. For facets that deviate from the
-    /// curves that they stand for.
+    /// Of the gaps measured between two bodies, with quadratic elements node by node, those of at most `reach` (m, not
+    /// negative) are closed: there the sides touch without stress, as if nodes had been moved onto each other. Overlaps
+    /// are, too. For facets that deviate from the curves that they stand for.
     pub fn with_closed_gaps(mut self, reach: f64) -> Self {
         self.closed = Some(reach);
         self

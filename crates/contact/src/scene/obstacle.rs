@@ -132,23 +132,27 @@ impl Obstacle {
     /// direction does not lead there.
     pub(super) fn along(&self, place: [f64; 3], direction: [f64; 3]) -> f64 {
         let (start, _) = self.distance(place);
-        let (mut way, mut least) = (0.0, f64::INFINITY);
+        // what was left at least, and the way there
+        let (mut way, mut best) = (0.0, (f64::INFINITY, 0.0));
         for _ in 0..NEWTON {
             let (distance, gradient) = self.distance(add(place, scale(way, direction)));
             let slope = -dot(gradient, direction);
             if slope.is_nan() || slope < STEEP {
                 return start;
             }
-            if distance.abs() >= least && least <= RAY_END * start.abs() {
-                return way;
+            let left = distance.abs();
+            if left < best.0 {
+                best = (left, way);
+            } else if best.0 <= RAY * (norm(place) + way.abs()) {
+                // rounding of coordinates
+                break;
             }
-            least = least.min(distance.abs());
             way += distance / slope;
-            if distance.abs() <= RAY * (start.abs() + way.abs()) {
+            if left <= RAY * (start.abs() + way.abs()) {
                 return way;
             }
         }
-        start
+        if best.0 <= RAY_END * start.abs() { best.1 } else { start }
     }
 
     /// A size that is not finite and positive.

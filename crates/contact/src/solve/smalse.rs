@@ -22,7 +22,8 @@ const MAX_TIGHTENINGS: usize = 3;
 /// Most evaluations of the Coulomb map in a step.
 const MAX_EVALUATIONS: usize = 200;
 
-/// Looks at which forces were no nearer to balance, while friction could hold the bodies, before a step is given up.
+/// Looks at which forces were no nearer to balance, while friction could hold the bodies, in all, before a step is given
+/// up.
 const MAX_STALLS: usize = 3;
 
 pub(crate) struct SmalseSolver {
