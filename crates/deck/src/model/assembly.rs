@@ -16,8 +16,11 @@ use crate::lexer::{Card, LARGEST, Named, label};
 /// Most things that instances copy from their parts, see [`weight`].
 const COPIES: u64 = 5_000_000;
 
-/// Bytes of a name that count as one more thing.
-const PIECE: usize = 64;
+/// Bytes that count as one thing.
+const THING: usize = 64;
+
+/// Bytes that a name takes beside its letters, in tables and with its place.
+const NAME: usize = 256;
 
 const NESTED: &str = "the part, instance or assembly before has not ended; end it first";
 
@@ -245,10 +248,10 @@ impl Assembly {
     }
 }
 
-/// How much an instance copies from its part: nodes, elements, members of sets and faces, and names, long ones as more,
-/// with so many bytes before each.
+/// How many things an instance copies from its part: nodes, elements, members of sets and faces, and names, each as
+/// several, with so many bytes before it.
 fn weight(part: &Model, prefix: usize) -> u64 {
-    let named = |name: &str| 1 + (prefix + name.len()) / PIECE;
+    let named = |name: &str| (NAME + prefix + name.len()) / THING;
     let sets = part.nsets.iter().chain(part.elsets.iter()).map(|(name, set)| {
         let members = set.iter().map(|(member, _)| match member {
             Member::Set(name) => named(name),
