@@ -132,7 +132,10 @@
 //! Names of a part are those of an instance behind its name and a dot: `ROD-1.TIP` is the set `TIP` of the instance
 //! `ROD-1`. The first instance keeps the numbers of its nodes and elements; each later one adds to them once more the
 //! power of ten above all numbers of parts, so that node 12 of the third instance is 2012 if parts have numbers up to
-//! 999. Nodes and elements of the assembly count as one instance.
+//! 999. Nodes and elements of the assembly have the numbers of one more instance, the last one, wherever they stand.
+//!
+//! Numbers inside a part, or with `INSTANCE`, are those of the part, and without it inside the assembly those of the
+//! assembly. Reference nodes inside the assembly are named by sets; supports and steps stand behind it.
 //!
 //! # Surfaces and tags
 //!

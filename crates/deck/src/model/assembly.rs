@@ -2,37 +2,51 @@
 //!
 //! Each instance has the nodes, elements, sets, surfaces and sections of its part: numbers of the first one as they
 //! are, of each later one with one more time the power of ten above all numbers of parts, and names with the name of
-//! the instance and a dot before them. Nodes and elements of the assembly itself count as one more instance, with names
-//! as they are.
+//! the instance and a dot before them. Nodes and elements of the assembly itself have the numbers of one more instance
+//! behind all others, with names as they are.
+
+use std::borrow::Cow;
 
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, norm, scale, sub};
 
-use super::{Faces, Member, Model, Names, Section, Set, Target, mesh, property};
-use crate::error::{DeckError, Fault, Word};
-use crate::lexer::{Card, LARGEST, Named};
+use super::{Faces, Member, Model, Names, Section, Set, Side, Target, mesh, property};
+use crate::error::{DeckError, Fault, Location, Word};
+use crate::lexer::{Card, LARGEST, Named, label};
 
-/// Most nodes, elements and members of sets of all instances together.
+/// Most things that instances copy from their parts, see [`weight`].
 const COPIES: u64 = 5_000_000;
+
+/// Bytes that count as one thing.
+const THING: usize = 64;
+
+/// Bytes that a name takes beside its letters, in tables and with its place.
+const NAME: usize = 256;
 
 const NESTED: &str = "the part, instance or assembly before has not ended; end it first";
 
 const OUTSIDE: &str = "between *PART and *END PART only nodes, elements, sets, surfaces and *SOLID SECTION are read; \
 put this behind *END PART";
 
+const BEHIND: &str = "this is not a part of the assembly; put it behind *END ASSEMBLY";
+
+const ANY: &str = "in the assembly a number does not tell of which instance the node is; name it by a set";
+
 /// What is open, and what has been read of parts.
 #[derive(Default)]
 pub(super) struct Assembly {
     parts: Names<Model>,
+    /// The largest number in parts.
+    largest: u32,
     /// The part that is being read.
     part: Option<(Named, Model)>,
     /// *ASSEMBLY and *INSTANCE that have not ended.
     assembly: Option<Word>,
     instance: Option<Word>,
-    /// What each instance adds to the numbers of its part.
-    instances: Names<u32>,
-    /// The same of nodes and elements of the assembly.
-    own: Option<u32>,
-    slots: u32,
+    /// Whether an assembly has ended.
+    ended: bool,
+    instances: Names<()>,
+    /// How many instances the deck has, also those to come.
+    count: usize,
     copies: u64,
 }
 
@@ -45,11 +59,23 @@ struct Scope<'a> {
     own: &'a str,
     /// Before names that are used.
     used: &'a str,
-    offset: u32,
+    /// Added to numbers.
+    offset: u64,
+    /// No number beyond is there.
+    largest: u32,
     moved: Moved,
+    /// The card that asks.
+    word: &'a Word,
 }
 
 impl Assembly {
+    pub(super) fn new(cards: &[Card]) -> Self {
+        Self {
+            count: cards.iter().filter(|card| card.key == "INSTANCE").count(),
+            ..Self::default()
+        }
+    }
+
     /// Reads a card if it belongs to a part, an instance or the assembly; whether it does.
     pub(super) fn take(&mut self, model: &mut Model, card: &Card) -> Result<bool, DeckError> {
         let closed = self.part.is_none() && self.instance.is_none();
@@ -58,7 +84,7 @@ impl Assembly {
                 if !closed || self.assembly.is_some() {
                     return Err(card.word.cannot(NESTED));
                 }
-                card.allow(&["NAME"])?;
+                bare(card, &["NAME"])?;
                 let named = card.need("NAME")?;
                 if self.parts.position(&named.name).is_some() {
                     return Err(named
@@ -68,15 +94,19 @@ impl Assembly {
                 self.part = Some((named, Model::default()));
             }
             "ENDPART" => {
+                bare(card, &[])?;
                 let (named, mut part) = self
                     .part
                     .take()
                     .ok_or_else(|| card.word.cannot("no *PART is open; remove it"))?;
                 model.ignored.append(&mut part.ignored);
+                let labels = part.nodes.iter().map(|node| node.label);
+                let labels = labels.chain(part.elements.iter().map(|element| element.label));
+                self.largest = labels.fold(self.largest, u32::max);
                 self.parts.add(named.name, part);
             }
-            "ASSEMBLY" if closed && self.assembly.is_none() => {
-                card.allow(&["NAME"])?;
+            "ASSEMBLY" if closed && self.assembly.is_none() && !self.ended => {
+                bare(card, &["NAME"])?;
                 self.assembly = Some(card.word.clone());
             }
             "INSTANCE" if closed && self.assembly.is_some() => self.add(model, card)?,
@@ -88,15 +118,18 @@ impl Assembly {
                     .cannot("this belongs to the assembly; put *ASSEMBLY before it"));
             }
             "ENDINSTANCE" => {
+                bare(card, &[])?;
                 let open = self.instance.take();
                 open.ok_or_else(|| card.word.cannot("no *INSTANCE is open; remove it"))?;
             }
             "ENDASSEMBLY" => {
+                bare(card, &[])?;
                 if !closed {
                     return Err(card.word.cannot(NESTED));
                 }
                 let open = self.assembly.take();
                 open.ok_or_else(|| card.word.cannot("no *ASSEMBLY is open; remove it"))?;
+                self.ended = true;
             }
             key => {
                 if self.instance.is_some() {
@@ -107,8 +140,13 @@ impl Assembly {
                     let read = reader(key).ok_or_else(|| card.word.cannot(OUTSIDE))?;
                     return read(part, card).map(|()| true);
                 }
-                return match (&self.assembly, reader(key)) {
-                    (Some(_), Some(read)) if key != "SOLIDSECTION" => self.own(model, card, read).map(|()| true),
+                if self.assembly.is_none() {
+                    return Ok(false);
+                }
+                return match (key, reader(key)) {
+                    ("BOUNDARY" | "INITIALCONDITIONS" | "STEP", _) => Err(card.word.cannot(BEHIND)),
+                    ("RIGIDBODY" | "COUPLING", _) => no_numbers(card).map(|()| false),
+                    (_, Some(read)) if key != "SOLIDSECTION" => self.own(model, card, read).map(|()| true),
                     _ => Ok(false),
                 };
             }
@@ -130,23 +168,22 @@ impl Assembly {
         }
     }
 
-    /// What the next instance adds to numbers.
-    fn slot(&mut self, word: &Word) -> Result<u32, DeckError> {
-        let parts = self.parts.iter().map(|(_, part)| part);
-        let labels = parts.flat_map(|p| {
-            p.nodes
-                .iter()
-                .map(|n| n.label)
-                .chain(p.elements.iter().map(|e| e.label))
-        });
-        let largest = labels.max().unwrap_or(0);
-        let unit = 10_u32.checked_pow(largest.checked_ilog10().map_or(0, |digits| digits + 1));
-        let offset = unit.and_then(|unit| unit.checked_mul(self.slots));
-        // the first one needs no unit
-        let offset = offset.or((self.slots == 0).then_some(0));
-        self.slots += 1;
-        let fits = offset.filter(|offset| offset.checked_add(largest).is_some_and(|sum| sum <= LARGEST));
-        fits.ok_or_else(|| too_many(word))
+    /// What is added to numbers behind so many instances.
+    fn offset(&self, instances: usize) -> u64 {
+        let digits = self.largest.checked_ilog10().map_or(0, |digits| digits + 1);
+        10_u64.pow(digits).saturating_mul(instances as u64)
+    }
+
+    /// Refuses too much that is copied.
+    fn few(&self, word: &Word) -> Result<(), DeckError> {
+        match self.copies {
+            0..=COPIES => Ok(()),
+            _ => Err(word.fault(Fault::TooMany {
+                what: "nodes, elements, members of sets, faces and names in all instances",
+                most: COPIES,
+                remedy: "write a deck without parts",
+            })),
+        }
     }
 
     /// Adds an instance of a part.
@@ -159,61 +196,97 @@ impl Assembly {
                 .cannot("an instance of this name is there already; give it another one"));
         }
         let moved = placed(card)?;
-        let offset = self.slot(&card.word)?;
-        let part = self.parts.at(self.parts.find("part", &part.name, &part.word)?);
-        let sets = part.nsets.iter().chain(part.elsets.iter());
-        let members = sets.map(|(_, set)| set.len()).sum::<usize>();
-        self.copies += (part.nodes.len() + part.elements.len() + members) as u64;
-        if self.copies > COPIES {
-            return Err(card.word.fault(Fault::TooMany {
-                what: "nodes, elements and members of sets in all instances",
-                most: COPIES,
-                remedy: "write a deck without parts",
-            }));
-        }
         let prefix = format!("{}.", named.name);
+        let part = self.parts.find("part", &part.name, &part.word)?;
+        self.copies += weight(self.parts.at(part), prefix.len());
+        self.few(&card.word)?;
         let scope = Scope {
             own: &prefix,
             used: &prefix,
-            offset,
+            offset: self.offset(self.instances.len()),
+            largest: self.largest,
             moved,
+            word: &card.word,
         };
-        scope.add(part, model, &card.word)?;
-        self.instances.add(named.name, offset);
+        scope.add(self.parts.at(part), model)?;
+        self.instances.add(named.name, ());
         self.instance = Some(card.word.clone());
         Ok(())
     }
 
     /// Reads nodes, elements, sets and surfaces of the assembly; sets may be of an instance.
     fn own(&mut self, model: &mut Model, card: &Card, read: Reader) -> Result<(), DeckError> {
-        let of = match card.key.as_str() {
-            "NSET" | "ELSET" => card.value("INSTANCE")?,
-            _ => None,
+        let is_set = matches!(card.key.as_str(), "NSET" | "ELSET");
+        let (of, plain) = if is_set {
+            card.allow(&[&card.key, "GENERATE", "INTERNAL", "INSTANCE"])?;
+            (card.value("INSTANCE")?, Cow::Owned(card.without("INSTANCE")))
+        } else {
+            (None, Cow::Borrowed(card))
         };
         let mut one = Model::default();
-        read(&mut one, &card.without("INSTANCE"))?;
-        let (used, offset) = match of {
+        read(&mut one, &plain)?;
+        model.ignored.append(&mut one.ignored);
+        let (used, instances, largest) = match of {
             Some(named) => {
                 let found = self.instances.find("instance", &named.name, &named.word)?;
-                (format!("{}.", named.name), *self.instances.at(found))
+                let prefix = format!("{}.", named.name);
+                self.copies += weight(&one, prefix.len());
+                self.few(&card.word)?;
+                (prefix, found, self.largest)
             }
-            None => {
-                let offset = match self.own {
-                    Some(offset) => offset,
-                    None => self.slot(&card.word)?,
-                };
-                self.own = Some(offset);
-                (String::new(), offset)
-            }
+            None => (String::new(), self.count, LARGEST),
         };
         let scope = Scope {
             own: "",
             used: &used,
-            offset,
+            offset: self.offset(instances),
+            largest,
             moved: ([0.0; 3], None),
+            word: &card.word,
         };
-        scope.add(&one, model, &card.word)
+        scope.add(&one, model)
     }
+}
+
+/// How many things an instance copies from its part: nodes, elements, members of sets and faces, and names, each as
+/// several, with so many bytes before it.
+fn weight(part: &Model, prefix: usize) -> u64 {
+    let named = |name: &str| (NAME + prefix + name.len()) / THING;
+    let sets = part.nsets.iter().chain(part.elsets.iter()).map(|(name, set)| {
+        let members = set.iter().map(|(member, _)| match member {
+            Member::Set(name) => named(name),
+            Member::One(_) | Member::Range { .. } => 1,
+        });
+        named(name) + members.sum::<usize>()
+    });
+    let surfaces = part.surfaces.iter().map(|(name, faces)| {
+        let faces = faces.iter().map(|faces| match &faces.target {
+            Target::Name(name) => named(name),
+            Target::Number(_) | Target::All => 1,
+        });
+        named(name) + faces.sum::<usize>()
+    });
+    let sections = part.sections.iter();
+    let sections = sections.map(|section| named(&section.elset.name) + named(&section.material.name));
+    let all = sets.chain(surfaces).chain(sections).sum::<usize>();
+    (part.nodes.len() + part.elements.len() + all) as u64
+}
+
+/// Refuses other parameters than these, and data.
+fn bare(card: &Card, known: &[&str]) -> Result<(), DeckError> {
+    card.allow(known)?;
+    card.lines_at_most(0, "no data")
+}
+
+/// Refuses nodes by number.
+fn no_numbers(card: &Card) -> Result<(), DeckError> {
+    for key in ["REFNODE", "ROTNODE"] {
+        match card.value(key)? {
+            Some(node) if label(&node.name).is_some() => return Err(node.word.cannot(ANY)),
+            Some(_) | None => {}
+        }
+    }
+    Ok(())
 }
 
 type Reader = fn(&mut Model, &Card) -> Result<(), DeckError>;
@@ -261,35 +334,39 @@ fn placed(card: &Card) -> Result<Moved, DeckError> {
 
 impl Scope<'_> {
     /// Adds nodes, elements, sets, surfaces and sections to a model.
-    fn add(&self, part: &Model, model: &mut Model, word: &Word) -> Result<(), DeckError> {
-        let number = |n: u32| {
-            let sum = n.checked_add(self.offset).filter(|sum| *sum <= LARGEST);
-            sum.ok_or_else(|| too_many(word))
-        };
+    fn add(&self, part: &Model, model: &mut Model) -> Result<(), DeckError> {
         for node in &part.nodes {
             let mut node = node.clone();
-            (node.label, node.point) = (number(node.label)?, self.place(node.point));
+            (node.label, node.point) = (self.sum(node.label)?, self.place(node.point));
             model.nodes.push(node);
         }
         for element in &part.elements {
             let mut element = element.clone();
-            element.label = number(element.label)?;
+            element.label = self.sum(element.label)?;
             for n in element.nodes.iter_mut().chain(&mut element.mids) {
                 // zeros are none
-                *n = if *n == 0 { 0 } else { number(*n)? };
+                *n = if *n == 0 {
+                    0
+                } else {
+                    self.number(*n, "node", &element.location)?
+                };
             }
             model.elements.push(element);
         }
-        let pairs = [(&part.nsets, &mut model.nsets), (&part.elsets, &mut model.elsets)];
-        for (sets, all) in pairs {
+        let pairs = [
+            ("node", &part.nsets, &mut model.nsets),
+            ("element", &part.elsets, &mut model.elsets),
+        ];
+        for (what, sets, all) in pairs {
             for (name, set) in sets.iter() {
                 let mut members: Set = Vec::with_capacity(set.len());
                 for (member, location) in set {
                     let member = match member {
-                        Member::One(n) => Member::One(number(*n)?),
+                        Member::One(n) => Member::One(self.number(*n, what, location)?),
                         Member::Range { from, to, step } => Member::Range {
-                            from: number(*from)?,
-                            to: number(*to)?,
+                            from: self.number(*from, what, location)?,
+                            // a range takes what is there
+                            to: self.shifted(*to.min(&self.largest)).min(u64::from(LARGEST)) as u32,
                             step: *step,
                         },
                         Member::Set(name) => Member::Set(format!("{}{name}", self.used)),
@@ -302,12 +379,15 @@ impl Scope<'_> {
         for (name, lines) in part.surfaces.iter() {
             let name = format!("{}{name}", self.own);
             if model.surfaces.position(&name).is_some() {
-                return Err(word.cannot(mesh::TWICE));
+                return Err(self.word.cannot(mesh::TWICE));
             }
             let mut faces = Vec::with_capacity(lines.len());
             for line in lines {
                 let target = match &line.target {
-                    Target::Number(n) => Target::Number(number(*n)?),
+                    Target::Number(n) => {
+                        let what = if line.side == Side::Nodes { "node" } else { "element" };
+                        Target::Number(self.number(*n, what, &line.word.location)?)
+                    }
                     Target::Name(name) => Target::Name(format!("{}{name}", self.used)),
                     Target::All => Target::All,
                 };
@@ -327,6 +407,24 @@ impl Scope<'_> {
             model.sections.push(Section { elset, material });
         }
         Ok(())
+    }
+
+    fn shifted(&self, n: u32) -> u64 {
+        self.offset.saturating_add(u64::from(n))
+    }
+
+    /// The number of what is defined.
+    fn sum(&self, n: u32) -> Result<u32, DeckError> {
+        let sum = u32::try_from(self.shifted(n)).ok().filter(|sum| *sum <= LARGEST);
+        sum.ok_or_else(|| too_many(self.word))
+    }
+
+    /// The number of what is used. Beyond all numbers of parts begin those of the next instance.
+    fn number(&self, n: u32, what: &'static str, location: &Location) -> Result<u32, DeckError> {
+        match n <= self.largest {
+            true => self.sum(n),
+            false => Err(Word::new(location, n.to_string()).fault(Fault::UnknownNumber(what))),
+        }
     }
 
     fn place(&self, point: Vec3) -> Vec3 {

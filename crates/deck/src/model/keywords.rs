@@ -101,10 +101,11 @@ const INSIDE: &str = "this belongs to a step; put it between *STEP and *END STEP
 pub(crate) fn read(cards: &[Card]) -> Result<Model, DeckError> {
     let mut model = Model::default();
     let mut step: Option<Step> = None;
-    let mut assembly = Assembly::default();
+    let mut assembly = Assembly::new(cards);
     for card in cards {
         let card = &*without_idle(&mut model, card);
-        if step.is_some() || !assembly.take(&mut model, card)? {
+        let begun = step.is_some() || !model.steps.is_empty();
+        if begun || !assembly.take(&mut model, card)? {
             read_card(&mut model, &mut step, card)?;
         }
     }
@@ -159,6 +160,10 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         "DISTRIBUTING" => Some(|model, card| coupling::law(model, card, false)),
         "KINEMATIC" => Some(|model, card| coupling::law(model, card, true)),
         "TRANSFORM" => Some(transform::transform),
+        // they come here only after a step has begun
+        "PART" | "ENDPART" | "ASSEMBLY" | "ENDASSEMBLY" | "INSTANCE" | "ENDINSTANCE" => {
+            return Err(card.word.cannot(BEFORE));
+        }
         _ => None,
     };
     if let Some(read) = of_model {

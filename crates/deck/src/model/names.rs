@@ -25,6 +25,10 @@ impl<T> Names<T> {
         self.places.get(name).copied()
     }
 
+    pub(crate) fn len(&self) -> usize {
+        self.list.len()
+    }
+
     pub(crate) fn at(&self, position: usize) -> &T {
         &self.list[position].1
     }

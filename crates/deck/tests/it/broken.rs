@@ -67,6 +67,9 @@ fn survive(path: &std::path::Path, bytes: &[u8]) -> bool {
 /// the dearest.
 const MEMORY: u64 = 100_000_000;
 
+/// The same of files whose instances copy most.
+const COPIED: u64 = 1_000_000_000;
+
 /// SplitMix64.
 struct Dice(u64);
 
@@ -132,6 +135,17 @@ fn lines_are_repeated_lost_and_swapped() {
     }
 }
 
+/// Reads what instances make too large.
+fn too_much(path: &std::path::Path, text: &str) {
+    std::fs::write(path, text).expect("written");
+    let start = Instant::now();
+    let mut error = String::new();
+    let used = measure(|| error = Deck::read(path).expect_err("too many").to_string());
+    assert!(used.bytes_max < COPIED, "{} bytes", used.bytes_max);
+    assert!(error.contains("in all instances"), "{}", &error[..error.len().min(500)]);
+    assert!(start.elapsed() < Duration::from_secs(10));
+}
+
 /// Small files that ask for much.
 #[test]
 fn bombs() {
@@ -167,13 +181,40 @@ fn bombs() {
     );
     // a part, many times
     let nodes: String = (1..50_000).map(|n| format!("{n}\n")).collect();
-    let instances: String = (0..20_000)
-        .map(|n| format!("*INSTANCE, NAME={n}, PART=P\n*END INSTANCE\n"))
+    let nodes = format!("*NODE\n{nodes}");
+    let faces = format!(
+        "*ELEMENT, TYPE=T3D2\n1, 1, 1\n*NODE\n1\n*SURFACE, NAME=S\n{}",
+        "1, S1\n".repeat(50_000)
+    );
+    let sets: String = (0..50_000).map(|n| format!("*NSET, NSET={n}\n")).collect();
+    let sections = "*SOLID SECTION, ELSET=E, MATERIAL=M\n".repeat(50_000);
+    let long = format!("*NSET, NSET={}\n", "N".repeat(1_000_000));
+    for part in [nodes, faces, sets, sections, long] {
+        let instances: String = (0..20_000)
+            .map(|n| format!("*INSTANCE, NAME={n}, PART=P\n*END INSTANCE\n"))
+            .collect();
+        let many = format!("*PART, NAME=P\n{part}*END PART\n*ASSEMBLY\n{instances}");
+        too_much(&path, &many);
+    }
+    // a long name before many
+    let long = "A".repeat(500_000);
+    let many = format!(
+        "*PART, NAME=P\n*END PART\n*ASSEMBLY\n*INSTANCE, NAME={long}, PART=P\n*END INSTANCE\n\
+        *NSET, NSET=S, INSTANCE={long}\n{}",
+        "B\n".repeat(100_000)
+    );
+    too_much(&path, &many);
+    // many parts and instances
+    let parts: String = (0..20_000)
+        .map(|n| format!("*PART, NAME={n}\n*NODE\n1\n*END PART\n"))
         .collect();
-    let many = format!("*PART, NAME=P\n*NODE\n{nodes}*END PART\n*ASSEMBLY\n{instances}");
-    std::fs::write(&path, many).expect("written");
-    let error = Deck::read(&path).expect_err("too many").to_string();
-    assert!(error.contains("in all instances"), "{error}");
+    let instances: String = (0..20_000)
+        .map(|n| format!("*INSTANCE, NAME={n}, PART={n}\n*END INSTANCE\n"))
+        .collect();
+    survive(
+        &path,
+        format!("{parts}*ASSEMBLY\n{instances}*END ASSEMBLY\n").as_bytes(),
+    );
     survive(&path, ",".repeat(1_000_000).as_bytes());
     survive(&path, format!("*NODE{}", ",\n".repeat(200_000)).as_bytes());
     survive(&path, &[0; 100_000]);
