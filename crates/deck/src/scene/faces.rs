@@ -114,10 +114,12 @@ impl FaceTable {
                 let word = &faces.word;
                 let (mut solids, mut flat) = (Vec::new(), Vec::new());
                 for element in known.sets.elements.find(&faces.target, word)? {
-                    match known.raw.tet(element) {
-                        Some(tet) => solids.push(tet),
-                        None if known.bodies.of_element(element).is_none() => flat.push(element),
-                        None => rigid.push(known.bodies.face(known.sets, (element, faces.side), word)?),
+                    match (known.raw.tet(element), known.bodies.of_element(element)) {
+                        (Some(tet), _) => solids.push(tet),
+                        (None, None) => flat.push(element),
+                        (None, Some(body)) => {
+                            rigid.push(RigidFace::new(known.sets, (body, element), faces.side, word)?);
+                        }
                     }
                 }
                 let chosen = match faces.side {
