@@ -102,8 +102,8 @@ fn sets_and_surfaces() {
     behind(&format!("{of_nodes}N5, 27\n"), "N5, 27", "27", "a node or node set");
     behind(
         &format!("{of_nodes}N5\n27\n"),
-        "N5",
-        "N5",
+        "27",
+        "27",
         "node 27 is on no face of the boundary",
     );
     let unused = format!("*NODE\n900\n{of_nodes}N5\n900\n");
