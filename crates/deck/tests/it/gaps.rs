@@ -8,17 +8,21 @@ use signorini_fem_mesh::{Brick, FacetTag};
 
 use crate::write::{STEEL, mesh, read};
 
-/// Two cubes that rest, one this high above the floor of the other.
-fn cubes(height: f64, pair: &str, more: &str) -> (Deck, Arc<StepResult>) {
+/// Two cubes, one this high above the floor of the other.
+fn text(height: f64, pair: &str, more: &str) -> String {
     let below = Brick::new([1.0; 3], [2, 2, 2]).build().expect("brick");
     let above = below.map_points(|[x, y, z]| [x, y, z + height]).expect("lifted");
     let both = below.append(&above.map_tags(|tag| FacetTag(tag.0 + 10))).expect("two");
-    let deck = format!(
+    format!(
         "{}{STEEL}*SURFACE INTERACTION, NAME=I\n*CONTACT PAIR, INTERACTION=I{pair}\nS15, S6\n{more}\
         *BOUNDARY\nN5, 1, 3\nN16, 1, 3\n*STEP\n*STATIC\n*END STEP\n",
         mesh(&both)
-    );
-    let deck = read(&deck).expect("deck");
+    )
+}
+
+/// The same, read and solved.
+fn cubes(height: f64, pair: &str, more: &str) -> (Deck, Arc<StepResult>) {
+    let deck = read(&text(height, pair, more)).expect("deck");
     let mut simulation = Simulation::new(deck.scene().expect("scene"), Settings::default()).expect("simulation");
     let result = simulation.step().expect("solved");
     (deck, result)
@@ -53,6 +57,23 @@ fn gaps_are_measured_prescribed_or_closed() {
         let told = deck.ignored().iter().any(|ignored| ignored.to_string().contains(why));
         assert_eq!(told, !pair.is_empty() && !more.is_empty(), "{:?}", deck.ignored());
     }
+}
+
+/// The clearance of a contact pair is not that of a tie of the same surfaces.
+#[test]
+fn ties_have_no_clearance() {
+    let tie = "*TIE, ADJUST=NO, POSITION TOLERANCE=0.1\nS15, S6\n";
+    let both = |more: &str| {
+        read(&text(1.01, "", &format!("{tie}{more}")))
+            .expect("deck")
+            .scene()
+            .expect("scene")
+    };
+    let plain = both("");
+    let clear = both("*CLEARANCE, SLAVE=S15, MASTER=S6, VALUE=0.03\n");
+    let told = |contact| format!("{contact:?}");
+    let [plain, clear] = [plain.contacts(), clear.contacts()].map(|c| [told(&c[0]), told(&c[1])]);
+    assert!(plain[0] != clear[0] && plain[1] == clear[1], "{clear:?}");
 }
 
 /// A negative clearance is a press fit: the sides part by it, wherever they are.
