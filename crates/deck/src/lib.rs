@@ -77,9 +77,9 @@
 //! | `*SURFACE BEHAVIOR` | `PRESSURE-OVERCLOSURE=HARD`, `LINEAR` | contact is hard and exact, or has a normal compliance, the inverse of the slope; other laws are refused |
 //! | `*FRICTION` | `SLIP TOLERANCE`, `ELASTIC SLIP` | Coulomb's coefficient, and elastic slip where a stick slope stands beside it; both parameters are ignored: friction is exact |
 //! | `*CONTACT PAIR` | `INTERACTION`, `TYPE`, `SMALL SLIDING`, `ADJUST` | the first (dependent) surface touches the second, whether their meshes match or not; sliding is small; with `ADJUST` gaps up to that length and overlaps are none |
-//! | `*CLEARANCE` | `SLAVE`, `MASTER`, `VALUE` | the gap of a contact pair, in place of the measured one; negative for a press fit |
+//! | `*CLEARANCE` | `SLAVE`, `MASTER`, `VALUE` | the gap of a contact pair, in place of the measured one; negative for a press fit; of rigid surfaces only to a half-space |
 //! | `*TIE` | `NAME`, `ADJUST`, `POSITION TOLERANCE` | bonded surfaces, whether their meshes match or not; nodes are not moved, which is reported where they would be; nodes beyond the tolerance, which CalculiX leaves free, are refused |
-//! | `*RIGID BODY` | `ELSET`, `NSET`, `REF NODE`, `ROT NODE` | an obstacle, or nodes of elastic elements that it carries, see below |
+//! | `*RIGID BODY` | `ELSET`, `NSET` or `TIE NSET`, `REF NODE`, `ROT NODE` | an obstacle, or nodes of elastic elements that it carries, see below |
 //! | `*COUPLING` | `CONSTRAINT NAME`, `REF NODE`, `SURFACE` | a node that stands for a surface, as the card behind it says |
 //! | `*DISTRIBUTING` | `COUPLING=CONTINUUM`, `WEIGHTING METHOD=UNIFORM` | forces and moments of the node are spread over the surface by areas (of flat faces), growing linearly from its centroid; it stays elastic |
 //! | `*KINEMATIC` | | the surface has the displacement and the small rotation of the node, whose components 1 to 6 are held or moved |
@@ -124,8 +124,8 @@
 //! displacement of the body, for small rotations.
 //!
 //! All six components of the reference node must be held or moved (rotations are 4 to 6, `ENCASTRE` is all, or the
-//! components 1 to 3 of the rotation node); displacement and rotation have one history each. A body that is free or
-//! loaded is refused.
+//! components 1 to 3 of the rotation node; the same if both). Of an obstacle, and of what turns, displacement and
+//! rotation have one history each. A body that is free or loaded is refused.
 //!
 //! # Parts and instances
 //!

@@ -279,7 +279,12 @@ pub(super) fn rigid(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["ELSET", "NSET", "TIE NSET", "REF NODE", "ROT NODE"])?;
     card.lines_at_most(0, "no data")?;
     let elset = card.value("ELSET")?;
-    let nset = card.value("NSET")?.or(card.value("TIENSET")?);
+    let (pins, ties) = (card.value("NSET")?, card.value("TIENSET")?);
+    if let (Some(_), Some(ties)) = (&pins, &ties) {
+        let why = "the body has nodes by NSET already; put all into one set, since both move in the same way here";
+        return Err(ties.word.cannot(why));
+    }
+    let nset = pins.or(ties);
     if elset.is_none() && nset.is_none() {
         return Err(card.word.fault(Fault::MissingParameter("ELSET or NSET")));
     }

@@ -37,10 +37,13 @@ impl Boundary {
         self.of_corners.get(&corners).copied()
     }
 
-    /// Those of some tetrahedra, ascending.
+    /// Those of some tetrahedra, ascending as these.
     pub(super) fn of_tets(&self, tets: &[u32]) -> Vec<(u32, u8)> {
-        let with = self.faces.iter().filter(|(tet, _)| tets.binary_search(tet).is_ok());
-        with.copied().collect()
+        let of = |&tet: &u32| {
+            let start = self.faces.partition_point(|face| face.0 < tet);
+            self.faces[start..].iter().take_while(move |face| face.0 == tet)
+        };
+        tets.iter().flat_map(of).copied().collect()
     }
 
     /// Those whose corners are all among some nodes, ascending, and a node, if there is one, that none of them uses.

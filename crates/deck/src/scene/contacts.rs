@@ -1,24 +1,27 @@
 //! Contact pairs and ties.
 
+use std::collections::BTreeMap;
+
 use signorini_contact::{Contact, Friction};
 use signorini_fem_mesh::FacetTag;
 
 use super::faces::{FaceTable, Known};
-use super::rigid::{Motion, obstacle};
+use super::rigid::{Lead, obstacle};
 use super::ties;
-use crate::error::DeckError;
+use crate::error::{DeckError, Fault};
 use crate::lexer::Named;
-use crate::model::{Clearance, Ignored, Law, Names, Pair, Touch};
+use crate::model::{Clearance, Ignored, Law, Model, Names, Pair, Touch};
 
 /// One contact for each pair: nodes of the dependent surface touch nodes of the other one, or an obstacle.
 pub(super) fn contacts(
     known: Known,
     faces: &FaceTable,
     surfaces: &Names<Vec<FacetTag>>,
-    motions: &[Motion],
+    leads: &[Lead],
     ignored: &mut Vec<Ignored>,
 ) -> Result<Vec<Contact>, DeckError> {
     let model = known.model;
+    check_clearances(model)?;
     let mut out = Vec::with_capacity(model.pairs.len());
     for pair in &model.pairs {
         let interaction = match &pair.law {
@@ -45,6 +48,8 @@ pub(super) fn contacts(
         if let (Law::Tied(tie), false) = (&pair.law, master.is_empty()) {
             ignored.extend(ties::check(known, faces, (pair, tie), [dependent, other])?);
         }
+        // a gap is that to a plane or along measured normals; the rim of another rigid surface has none
+        let mut takes_gap = true;
         let mut contact = match (&master[..], interaction) {
             ([], None) => {
                 let why = "a rigid surface cannot be tied; hold the nodes with *BOUNDARY, or use *CONTACT PAIR";
@@ -52,8 +57,10 @@ pub(super) fn contacts(
             }
             ([], Some(_)) => {
                 let nodes = faces.places_of(known.raw, dependent as u32);
-                let rigid = obstacle(&faces.rigid[other], motions, slave[0], &nodes);
-                rigid.map_err(|why| partner.cannot(why))?
+                let moves = (known.timeline, leads);
+                let rigid = obstacle(&faces.rigid[other], moves, (slave[0], &nodes), partner)?;
+                takes_gap = rigid.1;
+                rigid.0
             }
             ([first, more @ ..], interaction) => {
                 let between = match interaction {
@@ -75,39 +82,60 @@ pub(super) fn contacts(
                 contact = contact.with_friction(Friction::coulomb(coefficient));
             }
         }
-        let given = model
-            .clearances
-            .iter()
-            .rfind(|c| c.slave.name == pair.slave.name && c.master.name == pair.master.name);
-        let adjust = match &pair.law {
-            Law::Contact(Touch { adjust, .. }) => adjust.as_ref(),
-            Law::Tied(_) => None,
-        };
-        contact = match (given, adjust) {
-            (Some(given), _) => contact.with_gap(given.value),
-            (None, Some((word, _))) if master.is_empty() => {
-                return Err(
-                    word.cannot("gaps to a rigid surface are not closed; put the nodes on it, and remove ADJUST")
-                );
-            }
-            (None, Some((word, reach))) => {
-                let why = "nodes are not moved; where a gap is not larger than this, the sides touch without stress";
-                ignored.push(Ignored::new(word, why));
-                contact.with_closed_gaps(*reach)
-            }
-            (None, None) => contact,
-        };
+        if let Law::Contact(Touch { adjust, .. }) = &pair.law {
+            contact = match (model.clearances.iter().find(|c| c.is_of(pair)), adjust) {
+                (Some(given), _) if !takes_gap => {
+                    return Err(given.word.cannot(
+                        "the gap to a rigid surface is prescribed only where that is a half-space: flat, below all \
+                        nodes of the first surface, and not turning; remove this and put the nodes where they are",
+                    ));
+                }
+                (Some(given), adjust) => {
+                    let why = "the gap of this pair is that of its *CLEARANCE";
+                    ignored.extend(adjust.iter().map(|(word, _)| Ignored::new(word, why)));
+                    contact.with_gap(given.value)
+                }
+                (None, Some((word, _))) if master.is_empty() => {
+                    let why = "gaps to a rigid surface are not closed; put the nodes on it, and remove ADJUST";
+                    return Err(word.cannot(why));
+                }
+                (None, Some((word, reach))) => {
+                    let why =
+                        "nodes are not moved; where a gap is not larger than this, the sides touch without stress";
+                    ignored.push(Ignored::new(word, why));
+                    contact.with_closed_gaps(*reach)
+                }
+                (None, None) => contact,
+            };
+        }
         out.push(contact);
     }
-    for Clearance {
-        word, slave, master, ..
-    } in &model.clearances
-    {
-        let touch = |pair: &&Pair| matches!(pair.law, Law::Contact(_));
-        let mut pairs = model.pairs.iter().filter(touch);
-        if !pairs.any(|pair| pair.slave.name == slave.name && pair.master.name == master.name) {
-            return Err(word.cannot("no *CONTACT PAIR has these surfaces in this order; name those of one"));
+    Ok(out)
+}
+
+impl Clearance {
+    /// Whether it is given for a pair.
+    fn is_of(&self, pair: &Pair) -> bool {
+        let surfaces = [&pair.slave.name, &pair.master.name];
+        matches!(pair.law, Law::Contact(_)) && [&self.slave.name, &self.master.name] == surfaces
+    }
+}
+
+/// Refuses those of no pair, and second ones of a pair.
+fn check_clearances(model: &Model) -> Result<(), DeckError> {
+    let mut known = BTreeMap::new();
+    for given in &model.clearances {
+        let surfaces = [&given.slave.name, &given.master.name];
+        if let Some(before) = known.insert(surfaces, &given.word) {
+            return Err(given.word.fault(Fault::Repeated {
+                first: before.location.clone(),
+                remedy: "keep one of them",
+            }));
+        }
+        if !model.pairs.iter().any(|pair| given.is_of(pair)) {
+            let why = "no *CONTACT PAIR has these surfaces in this order; name those of one";
+            return Err(given.word.cannot(why));
         }
     }
-    Ok(out)
+    Ok(())
 }

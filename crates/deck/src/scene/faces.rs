@@ -110,14 +110,18 @@ impl FaceTable {
                 self.rigid.push(rigid);
                 continue;
             }
+            // the first line that names elements without their faces
+            let mut whole = None;
             for faces in faces {
                 let word = &faces.word;
                 let (mut solids, mut flat) = (Vec::new(), Vec::new());
                 for element in known.sets.elements.find(&faces.target, word)? {
-                    match known.raw.tet(element) {
-                        Some(tet) => solids.push(tet),
-                        None if known.bodies.of_element(element).is_none() => flat.push(element),
-                        None => rigid.push(known.bodies.face(known.sets, (element, faces.side), word)?),
+                    match (known.raw.tet(element), known.bodies.of_element(element)) {
+                        (Some(tet), _) => solids.push(tet),
+                        (None, None) => flat.push(element),
+                        (None, Some(body)) => {
+                            rigid.push(RigidFace::new(known.sets, (body, element), faces.side, word)?);
+                        }
                     }
                 }
                 let chosen = match faces.side {
@@ -125,11 +129,8 @@ impl FaceTable {
                     _ if solids.is_empty() => Vec::new(),
                     Side::Outside => {
                         let boundary = boundary.get_or_insert_with(|| Boundary::new(known.raw));
-                        let chosen = boundary.of_tets(&solids);
-                        if chosen.is_empty() {
-                            return Err(word.cannot("none of these elements is at the boundary"));
-                        }
-                        chosen
+                        whole.get_or_insert(word);
+                        boundary.of_tets(&solids)
                     }
                     Side::Facet { .. } | Side::Nodes => return Err(word.expected("faces S1 to S4 of solid elements")),
                 };
@@ -144,6 +145,9 @@ impl FaceTable {
                 if !all.is_empty() && !rigid.is_empty() {
                     return Err(word.cannot("the surface has rigid and elastic faces; make two surfaces of them"));
                 }
+            }
+            if let (Some(word), []) = (whole, &all[..]) {
+                return Err(word.cannot("none of these elements is at the boundary"));
             }
             out.push(all);
             self.rigid.push(rigid);
@@ -239,6 +243,8 @@ fn of_nodes(
 ) -> Result<Vec<(u32, u8)>, DeckError> {
     let word = &lines[0].word;
     let mut nodes = Vec::new();
+    // how many they are behind each line
+    let mut ends = Vec::with_capacity(lines.len());
     for line in lines {
         for node in known.sets.nodes.find(&line.target, &line.word)? {
             nodes.push(known.raw.in_mesh(node).ok_or_else(|| {
@@ -248,10 +254,13 @@ fn of_nodes(
                 ))
             })?);
         }
+        ends.push(nodes.len());
     }
-    let (faces, alone) = boundary.of_nodes(known.raw, &distinct(nodes));
+    let (faces, alone) = boundary.of_nodes(known.raw, &distinct(nodes.clone()));
     if let Some(node) = alone {
-        return Err(word.cannot(format!(
+        let named = nodes.iter().take_while(|n| **n != node).count();
+        let line = &lines[ends.partition_point(|end| *end <= named)];
+        return Err(line.word.cannot(format!(
             "node {} is on no face of the boundary whose corners are all in this surface of nodes, and forces act on \
             faces here; add its neighbours, or leave it out",
             known.raw.node_labels[node as usize]

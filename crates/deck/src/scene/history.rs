@@ -51,6 +51,30 @@ impl Track {
         }
     }
 
+    /// Tracks of which this is the sum at the ends of increments: one for each value, and one for the base. The factor
+    /// of each depends on steps and amplitudes alone.
+    pub(super) fn parts(&self) -> impl Iterator<Item = Self> {
+        let only = |kept: Option<usize>| {
+            let part = |(at, (step, given)): (usize, &(usize, Option<Given>))| {
+                let value = |given: Given| if kept == Some(at) { given.value } else { 0.0 };
+                let given = given.map(|given| Given {
+                    value: value(given),
+                    ..given
+                });
+                (*step, given)
+            };
+            Self {
+                events: self.events.iter().enumerate().map(part).collect(),
+                base: if kept.is_none() { self.base } else { 0.0 },
+                order: self.order,
+                word: self.word.clone(),
+                course: self.course.clone(),
+            }
+        };
+        let kept = (0..self.events.len()).map(Some).chain([None]);
+        kept.map(only)
+    }
+
     /// The value that this step gives, if it does.
     pub(super) fn given_in(&self, step: usize) -> Option<Given> {
         self.event(step).flatten()
@@ -268,7 +292,8 @@ impl Histories {
             // factors of the base become those of the first rise
             points.iter_mut().for_each(|p| p.1 -= 1.0);
             let first = points.iter().map(|p| p.1).find(|rise| *rise != 0.0).unwrap_or(1.0);
-            points.iter_mut().for_each(|p| p.1 /= first);
+            // without negative zeros
+            points.iter_mut().for_each(|p| p.1 = p.1 / first + 0.0);
             reference *= first;
         }
         if points.iter().all(|p| p.1 == 0.0) {

@@ -49,7 +49,7 @@ impl Loads {
     pub(super) fn new(known: Known, surfaces: &[Vec<u32>], faces: &mut FaceTable) -> Result<Self, DeckError> {
         let mut forces = Tracks::default();
         let mut pressures = Tracks::default();
-        let mut bodies = Volume::default();
+        let mut bodies = Volume::new(&known.raw.points);
         let mut loads = Self::default();
         for (step, given) in known.model.steps.iter().enumerate() {
             known.forces(&mut forces, step, &given.forces, &mut loads.words)?;

@@ -81,7 +81,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
 
     let mut supports = supports::supports(known, &faces)?;
     supports.ignored.append(&mut notes);
-    let contacts = contacts::contacts(known, &faces, &surfaces, &supports.motions, &mut supports.ignored)?;
+    let contacts = contacts::contacts(known, &faces, &surfaces, &supports.leads, &mut supports.ignored)?;
     let warm = temperatures::temperatures(known, &mut supports.ignored)?;
     let loads = loads.lower(&faces, &tags).into_iter().chain(warm);
     let (loads, words): (Vec<_>, Vec<_>) = loads.unzip();

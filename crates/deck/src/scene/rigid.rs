@@ -15,7 +15,7 @@ use super::numbers::Sets;
 use super::timeline::Timeline;
 use crate::error::{DeckError, Word};
 use crate::lexer::Named;
-use crate::model::{FACES, Kind, Side, Target};
+use crate::model::{FACES, Kind, Model, Side, Target};
 
 /// Deviation from a plane, and of a node from the rim of a surface, over its size, that is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -48,38 +48,59 @@ pub(super) struct RigidFace {
 /// A vector and its history; `None` if it is zero at all times.
 type Course = Option<(Vec3, History)>;
 
+/// What moves a body: its components 1 to 6 in time, the place of its node, and the word that names that.
+#[derive(Debug)]
+pub(super) struct Lead {
+    pub(super) tracks: [Track; 6],
+    pub(super) about: Vec3,
+    pub(super) word: Word,
+}
+
 /// How a body moves: the displacement of a point, and its rotation about it, radians.
 #[derive(Debug)]
 pub(super) struct Motion {
-    pub(super) shift: Course,
-    pub(super) turn: Course,
-    pub(super) about: Vec3,
+    shift: Course,
+    turn: Course,
+    about: Vec3,
+}
+
+impl Lead {
+    /// Three components as one vector.
+    fn course(&self, timeline: &Timeline, tracks: &[Track]) -> Result<Course, DeckError> {
+        let mut histories = Histories::default();
+        let mut value = [0.0; 3];
+        for (component, track) in value.iter_mut().zip(tracks) {
+            let Some((size, history)) = histories.add(timeline, track)? else {
+                continue;
+            };
+            if history > 0 {
+                let why = "the components of a rigid motion have different histories, and displacement and rotation \
+                have one each; give their components one amplitude";
+                return Err(self.word.cannot(why));
+            }
+            *component = size;
+        }
+        let moves = value.iter().any(|v| *v != 0.0);
+        Ok(moves.then(|| (value, histories.at(0))))
+    }
+
+    /// The motion of an obstacle.
+    pub(super) fn motion(&self, timeline: &Timeline) -> Result<Motion, DeckError> {
+        Ok(Motion {
+            shift: self.course(timeline, &self.tracks[..3])?,
+            turn: self.course(timeline, &self.tracks[3..])?,
+            about: self.about,
+        })
+    }
+
+    /// The motion of what turns; where nothing turns, each component may have a history of its own.
+    pub(super) fn turning(&self, timeline: &Timeline) -> Result<Option<Motion>, DeckError> {
+        let turns = self.course(timeline, &self.tracks[3..])?.is_some();
+        turns.then(|| self.motion(timeline)).transpose()
+    }
 }
 
 impl Motion {
-    /// Of the node with some components 1 to 6 in time; `word` names it.
-    pub(super) fn new(timeline: &Timeline, tracks: [&Track; 6], about: Vec3, word: &Word) -> Result<Self, DeckError> {
-        let course = |tracks: &[&Track]| -> Result<Course, DeckError> {
-            let mut histories = Histories::default();
-            let mut value = [0.0; 3];
-            for (component, track) in value.iter_mut().zip(tracks) {
-                let Some((size, history)) = histories.add(timeline, track)? else {
-                    continue;
-                };
-                if history > 0 {
-                    let why = "the components of a rigid motion have different histories, and displacement and \
-                    rotation have one each; give their components one amplitude";
-                    return Err(word.cannot(why));
-                }
-                *component = size;
-            }
-            let moves = value.iter().any(|v| *v != 0.0);
-            Ok(moves.then(|| (value, histories.at(0))))
-        };
-        let (shift, turn) = (course(&tracks[..3])?, course(&tracks[3..])?);
-        Ok(Self { shift, turn, about })
-    }
-
     /// A component of the displacement of a place, for small rotations, and its history; `None` if it is zero, the
     /// error if there are two.
     pub(super) fn at(&self, place: Vec3, component: usize) -> Result<Option<(f64, History)>, &'static str> {
@@ -137,6 +158,18 @@ impl RigidBodies {
                 nodes: distinct(nodes),
             });
         }
+        let references: Vec<u32> = list.iter().map(|body| body.reference).collect();
+        for (body, said) in list.iter().zip(&model.rigid) {
+            if let (Some(node), Some((_, word))) = (body.rotation, &said.rotation)
+                && references.contains(&node)
+            {
+                let label = model.nodes[node as usize].label;
+                return Err(word.cannot(format!(
+                    "node {label} is a REF NODE, too, and its components 1 to 3 would be displacements and rotations; \
+                    give the rotation a node of its own, or remove ROT NODE and hold 4 to 6 of REF NODE"
+                )));
+            }
+        }
         Ok(Self { list, of_element })
     }
 
@@ -164,14 +197,63 @@ impl RigidBodies {
         Ok(())
     }
 
+    /// Refuses rotations that REF NODE and ROT NODE hold in two ways; `held` are the components of nodes that are held.
+    pub(super) fn check_rotations<'a>(
+        &self,
+        timeline: &Timeline,
+        held: impl Fn(u32, usize) -> Option<&'a Track>,
+    ) -> Result<(), DeckError> {
+        for (body, said) in self.list.iter().zip(&timeline.model.rigid) {
+            let (Some(node), Some((_, word))) = (body.rotation, &said.rotation) else {
+                continue;
+            };
+            for component in 0..3 {
+                let (Some(one), Some(other)) = (held(node, component), held(body.reference, component + 3)) else {
+                    continue;
+                };
+                let mut histories = Histories::default();
+                if histories.add(timeline, one)? != histories.add(timeline, other)? {
+                    return Err(word.cannot(format!(
+                        "component {} of this node and component {} of REF NODE are the same rotation, and they differ; \
+                        keep one of them",
+                        component + 1,
+                        component + 4
+                    )));
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Nodes of the deck that move with a body, its reference node and the node of its rotation.
     pub(super) fn nodes(&self) -> impl Iterator<Item = (&[u32], u32, Option<u32>)> {
         self.list.iter().map(|b| (&*b.nodes, b.reference, b.rotation))
     }
 
-    /// A side of a rigid element, by its position.
-    pub(super) fn face(&self, sets: &Sets, (element, side): (u32, Side), word: &Word) -> Result<RigidFace, DeckError> {
-        let body = self.of_element(element).unwrap_or(0);
+    /// What moves each body; `held` are the components 0 to 5 of its nodes that supports hold.
+    pub(super) fn leads(&self, model: &Model, held: &BTreeMap<(u32, usize), Track>) -> Result<Vec<Lead>, DeckError> {
+        let mut out = Vec::with_capacity(self.list.len());
+        for (body, said) in self.list.iter().zip(&model.rigid) {
+            let word = &said.reference.1;
+            let tracks = rigid_components(held, (body.reference, body.rotation)).map_err(|component| {
+                word.cannot(format!(
+                    "the rigid body is not held along component {component} (of 6, rotations are 4 to 6); give its \
+                    node *BOUNDARY, since what is rigid is held or moved here, not loaded"
+                ))
+            })?;
+            out.push(Lead {
+                tracks,
+                about: model.nodes[body.reference as usize].point,
+                word: word.clone(),
+            });
+        }
+        Ok(out)
+    }
+}
+
+impl RigidFace {
+    /// A side of an element of a body, both by position.
+    pub(super) fn new(sets: &Sets, (body, element): (u32, u32), side: Side, word: &Word) -> Result<Self, DeckError> {
         let element = &sets.model.elements[element as usize];
         let nodes = sets.corners(element)?;
         let p = nodes.map(|n| sets.model.nodes[n as usize].point);
@@ -180,10 +262,12 @@ impl RigidBodies {
             (Kind::Solid, Side::Face(number)) => {
                 let [a, b, c] = FACES[usize::from(number) - 1];
                 if let Some(mids) = sets.mids(element)? {
-                    let mid = |i: usize, j: usize| {
-                        let edge = EDGES.iter().position(|edge| edge.contains(&i) && edge.contains(&j));
-                        sets.model.nodes[mids[edge.unwrap_or(0)] as usize].point
-                    };
+                    let mut between = [[0; 4]; 4];
+                    for ([i, j], mid) in EDGES.into_iter().zip(mids) {
+                        between[i][j] = mid;
+                        between[j][i] = mid;
+                    }
+                    let mid = |i: usize, j: usize| sets.model.nodes[between[i][j] as usize].point;
                     let [ab, bc, ca] = [mid(a, b), mid(b, c), mid(c, a)];
                     triangles = vec![[p[a], ca, ab], [ab, bc, p[b]], [ca, p[c], bc], [ab, ca, bc]];
                 }
@@ -212,59 +296,35 @@ impl RigidBodies {
             body,
         })
     }
-
-    /// How each body moves; `held` are the components 0 to 5 of its nodes that supports hold.
-    pub(super) fn motions(
-        &self,
-        timeline: &Timeline,
-        held: &BTreeMap<(u32, usize), Track>,
-    ) -> Result<Vec<Motion>, DeckError> {
-        let mut out = Vec::with_capacity(self.list.len());
-        for (body, said) in self.list.iter().zip(&timeline.model.rigid) {
-            let word = &said.reference.1;
-            let mut tracks = Vec::with_capacity(6);
-            for component in 0..6 {
-                let track = rigid_component(held, (body.reference, body.rotation), component);
-                tracks.push(track.ok_or_else(|| {
-                    word.cannot(format!(
-                        "the rigid body is not held along component {} (of 6, rotations are 4 to 6); give its node \
-                        *BOUNDARY, since what is rigid is held or moved here, not loaded",
-                        component + 1
-                    ))
-                })?);
-            }
-            let about = timeline.model.nodes[body.reference as usize].point;
-            let tracks = [0, 1, 2, 3, 4, 5].map(|c| tracks[c]);
-            out.push(Motion::new(timeline, tracks, about, word)?);
-        }
-        Ok(out)
-    }
 }
 
-/// What the steps say about a component 0 to 5 of what is rigid: of its reference node, or of the node whose
-/// displacement is its rotation.
-pub(super) fn rigid_component<T>(
+/// What the steps say about the six components of what is rigid: of its reference node, or of the node whose
+/// displacement is its rotation. The error is the first that is free, from 1.
+pub(super) fn rigid_components<T: Clone>(
     held: &BTreeMap<(u32, usize), T>,
     (reference, rotation): (u32, Option<u32>),
-    component: usize,
-) -> Option<&T> {
-    let own = held.get(&(reference, component));
-    let other = rotation.filter(|_| component >= 3);
-    own.or_else(|| held.get(&(other?, component - 3)))
+) -> Result<[T; 6], usize> {
+    let find = |component: usize| {
+        let own = held.get(&(reference, component));
+        let other = || held.get(&(rotation?, component.checked_sub(3)?));
+        own.or_else(other).cloned().ok_or(component + 1)
+    };
+    Ok([find(0)?, find(1)?, find(2)?, find(3)?, find(4)?, find(5)?])
 }
 
-/// The contact of the facets with a tag with a rigid surface. `over` are the places that may touch it.
+/// The contact of the facets with a tag with a rigid surface that `word` names, and whether it is a half-space. `over`
+/// are the places that may touch it.
 pub(super) fn obstacle(
     faces: &[RigidFace],
-    motions: &[Motion],
-    tag: FacetTag,
-    over: &[Vec3],
-) -> Result<Contact, String> {
+    (timeline, leads): (&Timeline, &[Lead]),
+    (tag, over): (FacetTag, &[Vec3]),
+    word: &Word,
+) -> Result<(Contact, bool), DeckError> {
     let body = faces[0].body;
     if faces.iter().any(|face| face.body != body) {
-        return Err("the surface is on several rigid bodies; give a pair for each".into());
+        return Err(word.cannot("the surface is on several rigid bodies; give a pair for each"));
     }
-    let motion = &motions[body as usize];
+    let motion = leads[body as usize].motion(timeline)?;
     let plane = if motion.turn.is_none() {
         plane(faces, over)
     } else {
@@ -281,7 +341,7 @@ pub(super) fn obstacle(
             let surface = Obstacle::surface(&points, &triangles);
             Contact::obstacle(
                 tag,
-                surface.map_err(|error| format!("the rigid surface is no obstacle: {error}"))?,
+                surface.map_err(|error| word.cannot(format!("the rigid surface is no obstacle: {error}")))?,
             )
         }
     };
@@ -295,10 +355,11 @@ pub(super) fn obstacle(
             .iter()
             .map(|(time, factor)| (*time, factor * angle))
             .collect();
-        let angle = History::table(points).map_err(|error| format!("the rotation of the rigid body: {error}"))?;
+        let angle =
+            History::table(points).map_err(|error| word.cannot(format!("the rotation of the rigid body: {error}")))?;
         contact = contact.with_rotation(motion.about, *by, angle);
     }
-    Ok(contact)
+    Ok((contact, plane.is_some()))
 }
 
 /// A point and the outward normal of the plane of a surface, if it is flat and all places lie over it.

@@ -7,7 +7,7 @@ use signorini_fem_mesh::History;
 
 use super::faces::{FaceTable, Known};
 use super::history::{Histories, Track};
-use super::rigid::{Motion, rigid_component};
+use super::rigid::{Lead, rigid_components};
 use super::spread::coupled_nodes;
 use crate::error::{DeckError, Word};
 use crate::model::{COMPONENT, Components, Condition, Given, Ignored, Target};
@@ -36,11 +36,11 @@ struct Table {
     ignored: Vec<Ignored>,
 }
 
-/// Supports with the names of their targets, and the motions of rigid bodies.
+/// Supports with the names of their targets, and what moves rigid bodies.
 pub(super) struct Supports {
     pub(super) list: Vec<Support>,
     pub(super) names: Vec<Owner>,
-    pub(super) motions: Vec<Motion>,
+    pub(super) leads: Vec<Lead>,
     /// Rotations that are held where there are none.
     pub(super) ignored: Vec<Ignored>,
 }
@@ -75,16 +75,18 @@ pub(super) fn supports(known: Known, faces: &FaceTable) -> Result<Supports, Deck
             )));
         }
     }
+    let track = |node, component| table.rigid.get(&(node, component)).map(|held| &held.track);
+    known.bodies.check_rotations(known.timeline, track)?;
     table.couple(known, faces)?;
     let rigid = std::mem::take(&mut table.rigid);
     let rigid = rigid.into_iter().map(|(key, held)| (key, held.track)).collect();
-    let motions = known.bodies.motions(known.timeline, &rigid)?;
+    let leads = known.bodies.leads(known.model, &rigid)?;
     let ignored = std::mem::take(&mut table.ignored);
     let (list, names) = table.lower(known)?;
     Ok(Supports {
         list,
         names,
-        motions,
+        leads,
         ignored,
     })
 }
@@ -181,51 +183,54 @@ impl Table {
     fn couple(&mut self, known: Known, faces: &FaceTable) -> Result<(), DeckError> {
         for coupling in known.couplings.0.iter().filter(|c| known.couplings.moves(c.node)) {
             let nodes = coupled_nodes(coupling, known, faces)?;
-            self.move_rigidly(known, nodes.into_keys(), (coupling.node, None), &coupling.word)?;
+            self.move_rigidly(
+                known,
+                nodes.into_keys(),
+                (coupling.node, None),
+                ("surface", &coupling.word),
+            )?;
             (0..6).for_each(|c| drop(self.rigid.remove(&(coupling.node, c))));
         }
         for ((nodes, reference, rotation), said) in known.bodies.nodes().zip(&known.model.rigid) {
             let elastic = nodes.iter().filter_map(|n| known.raw.in_mesh(*n));
-            self.move_rigidly(known, elastic, (reference, rotation), &said.word)?;
+            self.move_rigidly(known, elastic, (reference, rotation), ("rigid body", &said.word))?;
         }
         Ok(())
     }
 
-    /// Gives nodes of the mesh the displacement of a reference node and its rotation.
+    /// Gives nodes of the mesh the displacement of a reference node and its rotation; `what` they are, and its word.
     fn move_rigidly(
         &mut self,
         known: Known,
         nodes: impl Iterator<Item = u32>,
         leads: (u32, Option<u32>),
-        word: &Word,
+        (what, word): (&str, &Word),
     ) -> Result<(), DeckError> {
         let mut nodes = nodes.peekable();
         if nodes.peek().is_none() {
             return Ok(());
         }
-        let mut held = Vec::with_capacity(6);
-        for component in 0..6 {
-            let found = rigid_component(&self.rigid, leads, component).cloned();
-            held.push(found.ok_or_else(|| {
-                word.cannot(format!(
-                    "component {} (of 6, rotations are 4 to 6) of the node of this surface is free, and a surface that \
-                    keeps its shape and moves freely is not here; hold it with *BOUNDARY",
-                    component + 1
-                ))
-            })?);
-        }
-        let tracks = [0, 1, 2, 3, 4, 5].map(|c: usize| &held[c].track);
-        let about = known.model.nodes[leads.0 as usize].point;
-        let motion = Motion::new(known.timeline, tracks, about, word)?;
+        let held = rigid_components(&self.rigid, leads).map_err(|component| {
+            word.cannot(format!(
+                "component {component} (of 6, rotations are 4 to 6) of the node of this {what} is free, and what keeps \
+                its shape and moves freely is not here; hold it with *BOUNDARY"
+            ))
+        })?;
+        let lead = Lead {
+            tracks: held.each_ref().map(|held| held.track.clone()),
+            about: known.model.nodes[leads.0 as usize].point,
+            word: word.clone(),
+        };
+        let motion = lead.turning(known.timeline)?;
         for node in nodes {
             let label = known.raw.node_labels[node as usize];
             if known.transforms.of(node).is_some() {
-                let why = format!("node {label} of this surface has axes of its own; take it out of *TRANSFORM");
+                let why = format!("node {label} of this {what} has axes of its own; take it out of *TRANSFORM");
                 return Err(word.cannot(why));
             }
             for (component, lead) in held[..3].iter().enumerate() {
                 let mut held = lead.clone();
-                if motion.turn.is_some() {
+                if let Some(motion) = &motion {
                     let at = motion.at(known.raw.points[node as usize], component);
                     let (value, history) = at
                         .map_err(|why| word.cannot(why))?
@@ -233,7 +238,7 @@ impl Table {
                     held.track = held.track.with_course(value, history);
                 }
                 if self.held.insert((node, component), held).is_some() {
-                    let why = format!("node {label} of this surface is held by itself, too; keep one of them");
+                    let why = format!("node {label} of this {what} is held by itself, too; keep one of them");
                     return Err(word.cannot(why));
                 }
             }

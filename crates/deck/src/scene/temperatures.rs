@@ -11,6 +11,31 @@ use super::history::{Histories, Track};
 use crate::error::{DeckError, Word};
 use crate::model::{Given, Ignored};
 
+/// Rises by history: the first track that asks for them, and nodes.
+#[derive(Default)]
+struct Fields {
+    histories: Histories,
+    groups: BTreeMap<usize, (Track, Vec<(u32, f64)>)>,
+}
+
+impl Fields {
+    fn new(known: Known, tracks: impl Iterator<Item = (u32, Track)>) -> Result<Self, DeckError> {
+        let mut fields = Self::default();
+        for (node, track) in tracks {
+            let Some((rise, history)) = fields.histories.add(known.timeline, &track)? else {
+                continue;
+            };
+            let group = fields.groups.entry(history);
+            let (first, nodes) = group.or_insert_with(|| (track.clone(), Vec::new()));
+            nodes.push((node, rise));
+            if track.order < first.order {
+                *first = track;
+            }
+        }
+        Ok(fields)
+    }
+}
+
 /// The loads, each with the first word that asks for it.
 pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<Vec<(Load, Word)>, DeckError> {
     let Known { model, sets, raw, .. } = known;
@@ -49,16 +74,12 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
             }
         }
     }
-    let mut histories = Histories::default();
-    let mut groups: BTreeMap<usize, (&Track, Vec<f64>)> = BTreeMap::new();
-    for (&node, track) in &tracks {
-        if let Some((rise, history)) = histories.add(known.timeline, track)? {
-            let group = groups.entry(history).or_insert_with(|| (track, vec![0.0; nodes]));
-            group.1[node as usize] = rise;
-            if track.order < group.0.order {
-                group.0 = track;
-            }
-        }
+    let mut fields = Fields::new(known, tracks.iter().map(|(node, track)| (*node, track.clone())))?;
+    // nodes that do not change in proportion would have a load each; what the steps give makes a few for all
+    if fields.groups.len() > model.steps.len() + 1 {
+        let all = tracks.iter();
+        let parts = all.flat_map(|(node, track)| track.parts().map(move |part| (*node, part)));
+        fields = Fields::new(known, parts)?;
     }
     let mut laws = Vec::with_capacity(model.sections.len());
     for section in &model.sections {
@@ -66,10 +87,12 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
     }
     if laws.iter().all(Option::is_none) {
         let why = "no material of a section has *EXPANSION";
-        ignored.extend(groups.values().map(|(track, _)| Ignored::new(&track.word, why)));
+        ignored.extend(fields.groups.values().map(|(track, _)| Ignored::new(&track.word, why)));
     }
     let mut out = Vec::new();
-    for (history, (track, rises)) in groups {
+    for (history, (track, nodes_of)) in &fields.groups {
+        let mut rises = vec![0.0; nodes];
+        nodes_of.iter().for_each(|(node, rise)| rises[*node as usize] += rise);
         let warm = |[x, y, z]: [f64; 3]| Eigenstrain::new([x, y, z, 0.0, 0.0, 0.0]).with_factors(rises.clone());
         let strains: Vec<Eigenstrain> = match laws[..] {
             [Some(law), ref others @ ..] if others.iter().all(|other| *other == Some(law)) => vec![warm(law)],
@@ -79,7 +102,7 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
                     .collect()
             }
         };
-        let load = |strain| Load::eigenstrain(strain).with_history(histories.at(history));
+        let load = |strain| Load::eigenstrain(strain).with_history(fields.histories.at(*history));
         out.extend(strains.into_iter().map(|strain| (load(strain), track.word.clone())));
     }
     Ok(out)

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use signorini_fem_mesh::LoadDensity;
-use signorini_fem_mesh::vec3::{Vec3, dot, norm, scale, sub};
+use signorini_fem_mesh::vec3::{Vec3, cross, dot, norm, scale, sub};
 
 use super::faces::Known;
 use super::history::{Histories, Track, Tracks};
@@ -11,7 +11,7 @@ use super::materials::sections;
 use crate::error::{DeckError, Word};
 use crate::model::{Given, Target, VolumeLaw};
 
-/// Difference of unit vectors that is rounding of what a deck writes.
+/// Difference of unit vectors, and of places over their distance from the origin, that is rounding of what a deck writes.
 const TURNED: f64 = 1e-5;
 
 /// A point of an axis, and its direction, of length 1.
@@ -27,8 +27,9 @@ enum Kind {
 }
 
 /// Loads of the volume by elements, what they are, and the component.
-#[derive(Default)]
 pub(super) struct Volume {
+    /// The largest distance of a node from the origin.
+    reach: f64,
     tracks: Tracks<(Target, Kind, usize)>,
     axes: Vec<Axis>,
     /// Directions of gravity and axes that stand.
@@ -37,6 +38,22 @@ pub(super) struct Volume {
 }
 
 impl Volume {
+    pub(super) fn new(points: &[Vec3]) -> Self {
+        Self {
+            reach: points.iter().map(|x| norm(*x)).fold(0.0, f64::max),
+            tracks: Tracks::default(),
+            axes: Vec::new(),
+            gravity: BTreeMap::new(),
+            turns: BTreeMap::new(),
+        }
+    }
+
+    /// Whether two axes are one line, in either direction.
+    fn is_same(&self, [point, along]: Axis, [other, direction]: Axis) -> bool {
+        let reach = self.reach.max(norm(point)).max(norm(other));
+        norm(cross(along, direction)) <= TURNED && norm(arm(other, [point, along])) <= TURNED * reach
+    }
+
     pub(super) fn remove(&mut self, step: usize) {
         self.tracks.remove(step);
         self.gravity.clear();
@@ -77,7 +94,7 @@ impl Volume {
             }
             VolumeLaw::Centrifugal([point, along]) => {
                 let axis = [*point, scale(1.0 / norm(*along), *along)];
-                let index = self.axes.iter().position(|known| *known == axis);
+                let index = self.axes.iter().position(|known| self.is_same(*known, axis));
                 let index = index.unwrap_or(self.axes.len());
                 if index == self.axes.len() {
                     self.axes.push(axis);

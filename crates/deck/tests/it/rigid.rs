@@ -35,6 +35,29 @@ fn elastic_nodes_move_with_what_is_rigid() {
     }
 }
 
+/// Without a rotation each component has a history of its own.
+#[test]
+fn what_does_not_turn_moves_along_each_axis_by_itself() {
+    let node = "*NODE\n900, 0.3, 0.2, 2.\n*AMPLITUDE, NAME=A\n0., 0., 0.5, 1., 1., 0.5\n*AMPLITUDE, NAME=B\n0., 0., \
+        0.5, 0.25, 1., 1.\n*BOUNDARY\nN5, 1, 3\n";
+    let step = "*STEP\n*STATIC\n0.5, 1.\n*BOUNDARY\n900, 3, 6\n*BOUNDARY, AMPLITUDE=A\n900, 1, 1, 0.1\n\
+        *BOUNDARY, AMPLITUDE=B\n900, 2, 2, 0.2\n*END STEP\n";
+    for what in [
+        "*RIGID BODY, NSET=N6, REF NODE=900\n",
+        "*COUPLING, REF NODE=900, SURFACE=S6, CONSTRAINT NAME=C\n*KINEMATIC\n",
+    ] {
+        let deck = read(&cube(&format!("{node}{what}{step}"))).expect("deck");
+        let mut simulation = Simulation::new(deck.scene().expect("scene"), Settings::default()).expect("simulation");
+        for exact in [[0.1, 0.05, 0.0], [0.05, 0.2, 0.0]] {
+            let result = simulation.step().expect("solved");
+            for n in deck.mesh().nodes_on(brick::Z_MAX) {
+                let found = result.displacement()[n as usize];
+                assert!(norm(sub(found, exact)) < 1e-9, "{found:?} {exact:?}");
+            }
+        }
+    }
+}
+
 /// A block on a roller of flat facets that presses it from below and turns.
 #[test]
 fn a_curved_rigid_surface_is_a_triangulated_obstacle() {

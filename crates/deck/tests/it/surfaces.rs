@@ -22,6 +22,17 @@ fn surfaces_of_nodes_and_of_elements() {
     assert!(ignored.why.contains("the 16 faces"), "{ignored}");
 }
 
+/// Elements line by line are what their set is: those inside add nothing.
+#[test]
+fn surfaces_of_elements_line_by_line() {
+    let deck = cube("*ELSET, ELSET=SOME\n1, 5, 40\n*SURFACE, NAME=A\nSOME\n*SURFACE, NAME=B\n1\n5\n40\n");
+    let deck = read(&deck).expect("deck");
+    assert_eq!(
+        deck.surface("A").expect("a surface"),
+        deck.surface("B").expect("a surface")
+    );
+}
+
 /// Triangles and lines as Gmsh writes them: triangles name faces of the boundary.
 #[test]
 fn surfaces_of_triangles() {

@@ -93,6 +93,56 @@ fn an_amplitude_multiplies_the_temperature() {
     }
 }
 
+/// Temperatures that differ from node to node, and not in proportion, are a few loads; at each time they strain as a deck
+/// does that says the rises of that time, without amplitudes and initial temperatures.
+#[test]
+fn fields_are_a_few_loads() {
+    let law = "*EXPANSION\n12e-6\n*AMPLITUDE, NAME=A\n0., 0.2, 0.5, 1., 1., 0.4\n";
+    let lines = |of: &dyn Fn(f64) -> f64| -> String {
+        let nodes = 1..=27;
+        nodes.map(|n| format!("{n}, {:?}\n", of(f64::from(n)))).collect()
+    };
+    let step = |heat: &str, lines: &str| format!("*STEP\n*STATIC\n0.5, 1.\n{heat}\n{lines}*END STEP\n");
+    let deck = |first: &str, steps: &str| {
+        let first = format!("*INITIAL CONDITIONS, TYPE=TEMPERATURE\n{first}");
+        cube(&format!("{law}{first}{PLANES}{steps}"))
+    };
+    let (first, hot, cool) = (|n| 20.0 + 0.5 * n, |n| 100.0 + n, |n| 40.0 + 0.1 * n * n);
+    let (heat, amplitude) = ("*TEMPERATURE", "*TEMPERATURE, AMPLITUDE=A");
+    type Factors = &'static [[f64; 3]];
+    // factors of the initial, the first and the second temperatures in the rises at the end of each increment
+    let by_amplitude: Factors = &[[-1.0, 1.0, 0.0], [-1.0, 0.4, 0.0]];
+    let two_steps: Factors = &[[-0.5, 0.5, 0.0], [-1.0, 1.0, 0.0], [-1.0, 0.5, 0.5], [-1.0, 0.0, 1.0]];
+    let then: Factors = &[[-1.0, 1.0, 0.0], [-1.0, 0.4, 0.0], [-1.0, 0.2, 0.5], [-1.0, 0.0, 1.0]];
+    let back: Factors = &[[-1.0, 1.0, 0.0], [-1.0, 0.4, 0.0], [-0.5, 0.2, 0.0], [0.0; 3]];
+    for (steps, factors, loads) in [
+        (step(amplitude, &lines(&hot)), by_amplitude, 2),
+        (step(heat, &lines(&hot)) + &step(heat, &lines(&cool)), two_steps, 2),
+        (step(amplitude, &lines(&hot)) + &step(heat, &lines(&cool)), then, 3),
+        (
+            step(amplitude, &lines(&hot)) + &step("*TEMPERATURE, OP=NEW", ""),
+            back,
+            2,
+        ),
+    ] {
+        let deck_of_all = deck(&lines(&first), &steps);
+        let scene = read(&deck_of_all).expect("deck").scene().expect("scene");
+        assert_eq!(scene.loads().len(), loads);
+        let found = corner(&deck_of_all);
+        assert_eq!(found.len(), factors.len());
+        for (u, [a, b, c]) in found.iter().zip(factors) {
+            let rise = lines(&|n| a * first(n) + b * hot(n) + c * cool(n));
+            let alone = corner(
+                &deck("EVERY, 0.\n", &step(heat, &rise))
+                    .replace("*INITIAL", "*NSET, NSET=EVERY, GENERATE\n1, 27\n*INITIAL"),
+            );
+            let exact = alone.last().expect("an increment");
+            // the solution is in single steps of a linear system, displacements are some 1e-3
+            (0..3).for_each(|i| assert!((u[i] - exact[i]).abs() < 1e-12, "{u:?} {exact:?}"));
+        }
+    }
+}
+
 #[test]
 fn what_a_temperature_cannot_say() {
     let heat = "*STEP\n*STATIC\n*TEMPERATURE\nEVERY, 100.\n*END STEP\n";

@@ -62,3 +62,17 @@ fn centrifugal_forces_of_parts_add_up_to_those_of_the_whole() {
         assert!((along - exact).abs() < 1e-12 * exact, "{along} {exact}");
     }
 }
+
+/// The same line as the axis in another step, by another point and the other way round, is the same load.
+#[test]
+fn an_axis_is_a_line() {
+    let bar = bar(1);
+    let next = |spin: &str| {
+        let more = format!("ALL, {SPIN}\n*END STEP\n*STEP\n*STATIC\n*DLOAD\nALL, {spin}\n");
+        scene(&bar, "", &more).loads().to_vec()
+    };
+    let loads = next("CENTRIF, 1.E6, 0.25, -0.5, -3., 0., 0., 1.");
+    assert_eq!(loads.len(), 1);
+    let [one, two] = [1.0, 2.0].map(|t| loads[0].history().value(t));
+    assert!((two / one - 0.25).abs() < 1e-15, "{one} {two}");
+}

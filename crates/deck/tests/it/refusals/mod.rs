@@ -70,6 +70,10 @@ fn keywords() {
     );
     behind("*RESTART, READ\n", "*RESTART, READ", "*RESTART", "resumed");
     inside("*DYNAMIC\n", "*DYNAMIC", "*DYNAMIC", "only *STATIC");
+    for line in ["*PART, NAME=P", "*INSTANCE, NAME=I, PART=P"] {
+        let (word, _) = line.split_once(',').expect("a parameter");
+        inside(&format!("{line}\n"), line, word, "before the first *STEP");
+    }
     inside("*NODE\n1\n", "*NODE", "*NODE", "before the first *STEP");
     behind("*CLOAD\n1, 1, 1.\n", "*CLOAD", "*CLOAD", "between *STEP and *END STEP");
     behind("*STEP\n*STATIC\n", "*STEP", "*STEP", "*END STEP");

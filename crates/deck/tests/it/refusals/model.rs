@@ -102,8 +102,8 @@ fn sets_and_surfaces() {
     behind(&format!("{of_nodes}N5, 27\n"), "N5, 27", "27", "a node or node set");
     behind(
         &format!("{of_nodes}N5\n27\n"),
-        "N5",
-        "N5",
+        "27",
+        "27",
         "node 27 is on no face of the boundary",
     );
     let unused = format!("*NODE\n900\n{of_nodes}N5\n900\n");
@@ -222,6 +222,20 @@ fn contact() {
         "*CLEARANCE",
         "in this order",
     );
+    let again = "*CLEARANCE, MASTER=S2, SLAVE=S1, VALUE=0.1";
+    behind(
+        &format!("{law}{pair}\nS1, S2\n*CLEARANCE, SLAVE=S1, MASTER=S2, VALUE=0.1\n{again}\n"),
+        again,
+        "*CLEARANCE",
+        "keep one of them",
+    );
+    let tied = "*CLEARANCE, SLAVE=S1, MASTER=S2, VALUE=0.1";
+    behind(
+        &format!("*TIE\nS1, S2\n{tied}\n"),
+        tied,
+        "*CLEARANCE",
+        "no *CONTACT PAIR",
+    );
     let wide = "*CLEARANCE, SLAVE=S1, MASTER=S2, VALUE=wide";
     behind(&format!("{wide}\n"), wide, "VALUE=wide", "negative for an interference");
     let odd = "*CONTACT PAIR, INTERACTION=I, TYPE=SIDEWAYS";
@@ -275,6 +289,12 @@ fn rigid_bodies() {
     let adjusted = held.replace("INTERACTION=I", "INTERACTION=I, ADJUST=0.");
     let line = "*CONTACT PAIR, INTERACTION=I, ADJUST=0.";
     try_one(plane, &adjusted, line, "ADJUST=0.", "to a rigid surface");
+    let line = "*CLEARANCE, SLAVE=S5, MASTER=PLANE, VALUE=0.1";
+    let clear = format!("{held}{line}\n");
+    assert!(read(&on_a_floor(plane, &clear)).is_ok());
+    let small = plane.replace("2., ", "0.7, ");
+    assert!(read(&on_a_floor(&small, &held)).is_ok());
+    try_one(&small, &clear, line, "*CLEARANCE", "half-space");
     let swapped = held.replace("S5, PLANE", "PLANE, S5");
     try_one(plane, &swapped, "PLANE, S5", "PLANE", "swap them");
     let side = "*SURFACE, NAME=B\n900, S1\n";
@@ -324,10 +344,21 @@ fn rigid_bodies() {
         &format!("*NODE\n109\n*BOUNDARY\n109, 1, 6\n{own}"),
         line,
         "*RIGID BODY",
-        "held by itself",
+        "of this rigid body is held by itself",
     );
     let free = "*NODE\n109\n*BOUNDARY\n109, 1, 5\n*RIGID BODY, NSET=N6, REF NODE=109\n";
     behind(free, line, "*RIGID BODY", "component 6");
+    let line = "*RIGID BODY, NSET=N6, REF NODE=109, ROT NODE=109";
+    let one = format!("*NODE\n109\n*BOUNDARY\n109, 1, 6\n{line}\n");
+    behind(&one, line, "ROT NODE=109", "node 109 is a REF NODE, too");
+    let line = "*RIGID BODY, NSET=N6, REF NODE=109, ROT NODE=110";
+    let both = format!(
+        "*NODE\n109\n110\n*BOUNDARY\n109, 1, 6\n110, 1, 3\n{line}\n*STEP\n*STATIC\n*BOUNDARY\n110, 2, 2, 0.1\n*END STEP\n"
+    );
+    let part = "component 2 of this node and component 5 of REF NODE";
+    behind(&both, line, "ROT NODE=110", part);
+    let line = "*RIGID BODY, NSET=N6, REF NODE=109, TIE NSET=N5";
+    behind(&format!("{line}\n"), line, "TIE NSET=N5", "into one set");
     let loose = "*ELEMENT, TYPE=R3D3\n901, 101, 102, 103\n";
     try_one(
         plane,
