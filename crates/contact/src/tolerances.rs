@@ -83,6 +83,9 @@ pub(crate) const COARSER: f64 = 1.1;
 /// Part of the area of a facet or node below which what covers it counts as nothing.
 pub(crate) const COVERED: f64 = 1e-10;
 
+/// How much the pieces that cover a facet may overlap, over its area: those of a curved surface do a little.
+pub(crate) const OVERLAP: f64 = 0.05;
+
 /// Second moment of a covered part below which it has no extent, over that along it.
 pub(crate) const FLAT: f64 = 1e-13;
 
@@ -170,6 +173,9 @@ pub(crate) const ROUNDS: usize = 8;
 
 /// What is missing is exceeded by this factor there, so that one more round is usually enough.
 pub(crate) const MARGIN: f64 = 0.5;
+
+/// Range of the factor by which a tolerance is tightened there.
+pub(crate) const TIGHTENING: [f64; 2] = [1e-3, 0.3];
 
 /// A smaller discretisation error, relative, counts as this.
 pub(crate) const EXACT_MESH: f64 = 1e-6;

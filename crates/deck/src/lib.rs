@@ -159,6 +159,7 @@ mod error;
 mod lexer;
 mod model;
 mod scene;
+mod tolerances;
 
 pub use deck::Deck;
 pub use error::{DeckError, Fault, Location};

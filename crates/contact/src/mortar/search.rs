@@ -1,7 +1,7 @@
 //! Which facets of the other side cover a facet.
 
 use super::cover::{Cover, Flat, Laid, Piece, Way, barycentric};
-use crate::tolerances::{BENT, FACING};
+use crate::tolerances::{BENT, FACING, OVERLAP};
 use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
@@ -330,6 +330,3 @@ impl OtherSide {
         (distance.abs() <= reach).then_some((piece, distance))
     }
 }
-
-/// How much pieces may overlap, over the area of a facet: those of a curved surface do a little.
-const OVERLAP: f64 = 0.05;

@@ -1,7 +1,7 @@
 //! What chooses the tolerance of the next step by estimates of its error.
 
 use crate::report::AccumulatedError;
-use crate::tolerances::{CHANGED, CONTACT_LIMIT, CONTACT_LIMITS, EXACT_MESH, LOOSEST, MARGIN, TIGHTEST};
+use crate::tolerances::{CHANGED, CONTACT_LIMIT, CONTACT_LIMITS, EXACT_MESH, LOOSEST, MARGIN, TIGHTENING, TIGHTEST};
 
 /// An estimate of the discretisation error.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -77,7 +77,7 @@ impl Controller {
         if self.tolerance <= TIGHTEST {
             return false;
         }
-        let factor = slack(targets).clamp(1e-3, 0.3);
+        let factor = slack(targets).clamp(TIGHTENING[0], TIGHTENING[1]);
         self.tolerance = (factor * self.tolerance).max(TIGHTEST);
         true
     }

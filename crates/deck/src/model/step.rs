@@ -6,6 +6,7 @@ use super::mesh::target;
 use super::{Ignored, Model};
 use crate::error::{DeckError, Fault, Word};
 use crate::lexer::{Card, label, name};
+use crate::tolerances::ROUNDING;
 
 /// Why some settings are ignored.
 pub(super) const SOLVER: &str = "a setting of another solver";
@@ -128,15 +129,12 @@ pub(crate) struct Increments {
 }
 
 impl Increments {
-    /// Relative difference of increments that is rounding.
-    const ROUNDING: f64 = 1e-9;
-
     /// Time of the end of an increment (from 1) after the beginning of the step.
     pub(crate) fn time(&self, i: usize) -> f64 {
         let all = self.count as f64 * self.size;
         if i >= self.count {
             self.period
-        } else if (all - self.period).abs() <= Self::ROUNDING * self.period {
+        } else if (all - self.period).abs() <= ROUNDING * self.period {
             self.period * i as f64 / self.count as f64
         } else {
             self.size * i as f64
@@ -224,7 +222,7 @@ impl Step {
         let period = values[1].unwrap_or(1.0);
         let largest = values[3].filter(|&v| v > 0.0).unwrap_or(period);
         let increment = values[0].unwrap_or(period).min(largest).min(period);
-        let count = (period / increment * (1.0 - Increments::ROUNDING)).ceil();
+        let count = (period / increment * (1.0 - ROUNDING)).ceil();
         if count > INCREMENTS {
             return Err(card.lines.first().unwrap_or(&card.word).fault(Fault::TooMany {
                 what: "increments",

@@ -16,9 +16,7 @@ use super::timeline::Timeline;
 use crate::error::{DeckError, Word};
 use crate::lexer::Named;
 use crate::model::{FACES, Kind, Model, Side, Target};
-
-/// Deviation from a plane, and of a node from the rim of a surface, over its size, that is rounding.
-const ROUNDING: f64 = 1e-9;
+use crate::tolerances::ROUNDING;
 
 /// The nodes that say how a body moves, by position.
 #[derive(Debug)]
@@ -197,7 +195,7 @@ impl RigidBodies {
         Ok(())
     }
 
-    /// Refuses rotations that REF NODE and ROT NODE hold in two ways; `held` are the components of nodes that are held.
+    /// Refuses rotations of a ROT NODE itself, and those that it and REF NODE hold in two ways; `held` are the components of nodes that are held.
     pub(super) fn check_rotations<'a>(
         &self,
         timeline: &Timeline,
@@ -207,6 +205,17 @@ impl RigidBodies {
             let (Some(node), Some((_, word))) = (body.rotation, &said.rotation) else {
                 continue;
             };
+            for component in 3..6 {
+                let Some(track) = held(node, component) else {
+                    continue;
+                };
+                if Histories::default().add(timeline, track)?.is_some() {
+                    return Err(track.word.cannot(format!(
+                        "component {} of a ROT NODE means nothing, its components 1 to 3 are the rotation; give these",
+                        component + 1
+                    )));
+                }
+            }
             for component in 0..3 {
                 let (Some(one), Some(other)) = (held(node, component), held(body.reference, component + 3)) else {
                     continue;

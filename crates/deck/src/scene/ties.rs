@@ -12,19 +12,7 @@ use signorini_fem_mesh::vec3::{add, area_vector, dot, norm, sub};
 use super::faces::{FaceTable, Known};
 use crate::error::DeckError;
 use crate::model::{Ignored, Pair, Tie};
-
-/// The tolerance where a deck has none, over the mean radius of the circles in the faces of the second surface: what
-/// CalculiX takes for its 2.5 % of a typical element size, to within 15 %.
-const TOLERANCE: f64 = 0.025;
-
-/// Smaller tolerances are none, as in CalculiX.
-const NO_TOLERANCE: f64 = 1e-10;
-
-/// Distance over the same radius that is rounding of what a deck writes.
-const ROUNDING: f64 = 1e-3;
-
-/// Cosine from which on a node lies before the other surface and not beside it.
-const BEFORE: f64 = 0.7;
+use crate::tolerances::{BEFORE, NO_TIE, TIE, TOGETHER};
 
 /// Refuses a tie whose nodes are too far from the other surface; `surfaces` are the positions of both.
 pub(super) fn check(
@@ -54,8 +42,8 @@ pub(super) fn check(
             *sum = add(*sum, area);
         }
     }
-    let given = tie.tolerance.filter(|t| *t >= NO_TOLERANCE);
-    let tolerance = given.unwrap_or(TOLERANCE * size);
+    let given = tie.tolerance.filter(|t| *t >= NO_TIE);
+    let tolerance = given.unwrap_or(TIE * size);
     let mut farthest = (0.0, 0);
     for (node, normal) in normals {
         let (distance, gradient) = surface.distance(raw.points[node as usize]);
@@ -76,7 +64,7 @@ pub(super) fn check(
         }
     }
     let (distance, label) = farthest;
-    Ok((tie.adjust && distance > ROUNDING * size).then(|| {
+    Ok((tie.adjust && distance > TOGETHER * size).then(|| {
         let why = format!(
             "nodes are not moved onto {}: node {label} stays {distance:.3e} away from it and is tied there; move it, or write \
             ADJUST=NO",

@@ -10,9 +10,7 @@ use super::history::{Histories, Track, Tracks};
 use super::materials::sections;
 use crate::error::{DeckError, Word};
 use crate::model::{Given, Target, VolumeLaw};
-
-/// Difference of unit vectors, and of places over their distance from the origin, that is rounding of what a deck writes.
-const TURNED: f64 = 1e-5;
+use crate::tolerances::TURNED;
 
 /// A point of an axis, and its direction, of length 1.
 type Axis = [Vec3; 2];

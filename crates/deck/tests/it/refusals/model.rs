@@ -357,6 +357,14 @@ fn rigid_bodies() {
     );
     let part = "component 2 of this node and component 5 of REF NODE";
     behind(&both, line, "ROT NODE=110", part);
+    let step = "*STEP\n*STATIC\n*BOUNDARY\n110, 5, 5, 0.1\n*END STEP\n";
+    let moved = format!("*NODE\n109\n110\n*BOUNDARY\n109, 1, 3\n110, 1, 3\n{line}\n{step}");
+    behind(
+        &moved,
+        "110, 5, 5, 0.1",
+        "110",
+        "component 5 of a ROT NODE means nothing",
+    );
     let line = "*RIGID BODY, NSET=N6, REF NODE=109, TIE NSET=N5";
     behind(&format!("{line}\n"), line, "TIE NSET=N5", "into one set");
     let loose = "*ELEMENT, TYPE=R3D3\n901, 101, 102, 103\n";

@@ -1,0 +1,21 @@
+//! The numerical judgements of the crate, in one table: what each is relative to, and why.
+
+/// Difference of increments, over the period, that is rounding; and deviation from a plane, and of a node from the rim of
+/// a surface, over its size.
+pub(crate) const ROUNDING: f64 = 1e-9;
+
+/// Difference of unit vectors, and of places over their distance from the origin, that is rounding of what a deck writes.
+pub(crate) const TURNED: f64 = 1e-5;
+
+/// The tolerance of a tie where a deck has none, over the mean radius of the circles in the faces of the second surface:
+/// what CalculiX takes for its 2.5 % of a typical element size, to within 15 %.
+pub(crate) const TIE: f64 = 0.025;
+
+/// Smaller tolerances of ties are none, as in CalculiX.
+pub(crate) const NO_TIE: f64 = 1e-10;
+
+/// Distance of tied sides, over the same radius, that is rounding of what a deck writes.
+pub(crate) const TOGETHER: f64 = 1e-3;
+
+/// Cosine from which on a node lies before the other surface and not beside it.
+pub(crate) const BEFORE: f64 = 0.7;
