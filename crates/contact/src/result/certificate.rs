@@ -38,7 +38,8 @@ impl Violation {
 pub struct Certificate {
     /// Equilibrium of every subdomain, N.
     pub equilibrium: Violation,
-    /// Gluing and supports, m.
+    /// Gluing and supports, m. Rows of springs count with the length that they have in the solver, which is a thousandth
+    /// for the softest: what such a spring misses may be that much more.
     pub continuity: Violation,
     /// Penetration, m.
     pub gap: Violation,
