@@ -10,7 +10,7 @@ use crate::linalg::entry;
 use crate::rows::gluing::{CopyEntry, Gluing};
 use crate::subdomain::kernel::{Kernel, displacement, mean};
 use crate::subdomain::matrices::Subdomains;
-use crate::tolerances::{FREE, MOVING};
+use crate::tolerances::{FREE, MOVING, NO_ACTION};
 use nalgebra::{DMatrix, SymmetricEigen};
 use signorini_fem_mesh::internal::DisjointSets;
 use signorini_fem_mesh::vec3::{dot, sub};
@@ -222,7 +222,7 @@ impl Mobility {
             let eigen = SymmetricEigen::new(group.gram);
             let largest = eigen.eigenvalues.iter().fold(0.0_f64, |m, v| m.max(*v));
             for (k, value) in eigen.eigenvalues.iter().enumerate() {
-                if *value <= FREE * largest {
+                if *value <= (FREE * largest).max(NO_ACTION) {
                     let mut vector = vec![0.0; 6 * self.bodies.len()];
                     for (c, v) in eigen.eigenvectors.column(k).iter().enumerate() {
                         vector[6 * group.bodies[c / 6] + c % 6] = *v;

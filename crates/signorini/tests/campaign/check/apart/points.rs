@@ -210,7 +210,22 @@ impl ApartJudge<'_> {
         if !self.known.rates && matches!(law, Law::Exponential { .. } | Law::Table(_) | Law::RateField(..)) {
             return;
         }
-        worst.add("cone", push - bound, f);
+        let recipe = &self.base.recipe;
+        let held = || {
+            recipe
+                .holds
+                .iter()
+                .any(|h| h.nodes(&recipe.mesh).contains(&point.node()))
+        };
+        let excess = match axis.is_some() && push > bound && held() {
+            // what the ellipse has across the way of the node is a support's, which stops it there
+            true => {
+                let way = unit(friction);
+                norm(friction) - bound * dot(way, along).hypot(ratio * dot(way, other))
+            }
+            false => push - bound,
+        };
+        worst.add("cone", excess, f);
         let stuck = law.is_some() && state.slip_bound == 0.0;
         if law.is_some() && force != 0.0 && !stuck {
             let off = [0, 1].map(|c| bound * s[c] + slide * g[c]);
