@@ -34,8 +34,8 @@ pub(crate) const SINGULAR: f64 = 1e-14;
 /// Eigenvalues of free motions, relative to the largest: a support of extent `h` on a body of length `L` gives
 /// `(h/L)^2`.
 pub(crate) const FREE: f64 = 1e-11;
-/// The same of bodies whose rows, of length about one, cancel: contact of a body with itself leaves the squares of rounding,
-/// up to 1e-28.
+/// The same of bodies whose rows, of length about one, cancel: contact of a body with itself leaves the squares of
+/// rounding, up to 1e-28.
 pub(crate) const NO_ACTION: f64 = 1e-20;
 /// Layers of a grid: largest difference of positions within one, relative to the extent.
 pub(crate) const LAYER: f64 = 1e-6;

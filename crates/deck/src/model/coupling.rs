@@ -1,7 +1,7 @@
 //! `*COUPLING`: nodes that stand for a surface.
 
 use super::Model;
-use super::mesh::target;
+use super::mesh::node_of;
 use super::step::Target;
 use crate::error::{DeckError, Word};
 use crate::lexer::{Card, Named};
@@ -33,10 +33,9 @@ pub(super) fn coupling(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         "no data; *DISTRIBUTING or *KINEMATIC follows as a keyword of its own",
     )?;
     card.value("CONSTRAINTNAME")?;
-    let node = card.need("REFNODE")?;
     model.couplings.push(Coupling {
         word: card.word.clone(),
-        reference: (target(&node.word, &node.name)?, node.word),
+        reference: node_of(card.need("REFNODE")?),
         surface: card.need("SURFACE")?,
         law: None,
     });

@@ -183,9 +183,6 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
             let why = "the step before has not ended; put *END STEP before this one";
             Err(card.word.cannot(why))
         }
-        ("PART" | "ENDPART" | "ASSEMBLY" | "ENDASSEMBLY" | "INSTANCE" | "ENDINSTANCE", Some(_)) => {
-            Err(card.word.cannot(BEFORE))
-        }
         ("STATIC" | "CLOAD" | "DLOAD" | "DSLOAD" | "TEMPERATURE" | "ENDSTEP", None) => Err(card.word.cannot(INSIDE)),
         ("STATIC", Some(step)) => step.procedure(model, card),
         ("CLOAD", Some(step)) => step::forces(model, step, card),

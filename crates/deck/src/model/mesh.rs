@@ -2,7 +2,7 @@
 
 use super::{Element, Faces, Ignored, Kind, Member, Model, Node, Side, Target};
 use crate::error::{DeckError, Fault, Word};
-use crate::lexer::{Card, label, name};
+use crate::lexer::{Card, Named, label, name};
 
 /// Most members of one generated range.
 const RANGE: u64 = 100_000_000;
@@ -179,6 +179,15 @@ pub(super) fn target(line: &Word, field: &str) -> Result<Target, DeckError> {
         Some(number) => Ok(Target::Number(number)),
         None => set_name(line, field).map(Target::Name),
     }
+}
+
+/// The node by its number, or the set of one by its name, that a parameter gives, and its word.
+pub(super) fn node_of(value: Named) -> (Target, Word) {
+    let target = match label(&value.name) {
+        Some(number) => Target::Number(number),
+        None => Target::Name(value.name),
+    };
+    (target, value.word)
 }
 
 fn set_name(line: &Word, field: &str) -> Result<String, DeckError> {

@@ -1,10 +1,9 @@
 //! Materials, sections, amplitudes, contact pairs and their interactions.
 
-use super::{
-    Amplitude, Clearance, Ignored, Interaction, Law, Material, Model, Pair, RigidBody, Section, Target, Tie, Touch,
-};
+use super::mesh::node_of;
+use super::{Amplitude, Clearance, Ignored, Interaction, Law, Material, Model, Pair, RigidBody, Section, Tie, Touch};
 use crate::error::{DeckError, Fault, Location, Word};
-use crate::lexer::{Card, Named, label, name};
+use crate::lexer::{Card, Named, name};
 use signorini_fem_mesh::History;
 
 /// The material that a card belongs to: the last one.
@@ -288,16 +287,12 @@ pub(super) fn rigid(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     if elset.is_none() && nset.is_none() {
         return Err(card.word.fault(Fault::MissingParameter("ELSET or NSET")));
     }
-    let node = |value: Named| match label(&value.name) {
-        Some(number) => (Target::Number(number), value.word),
-        None => (Target::Name(value.name), value.word),
-    };
     model.rigid.push(RigidBody {
         word: card.word.clone(),
         elset,
         nset,
-        reference: node(card.need("REFNODE")?),
-        rotation: card.value("ROTNODE")?.map(node),
+        reference: node_of(card.need("REFNODE")?),
+        rotation: card.value("ROTNODE")?.map(node_of),
     });
     Ok(())
 }

@@ -49,19 +49,13 @@ impl Boundary {
     /// Those whose corners are all among some nodes, ascending, and a node, if there is one, that none of them uses.
     pub(super) fn of_nodes(&self, raw: &Raw, nodes: &[u32]) -> (Vec<(u32, u8)>, Option<u32>) {
         let among = |node: &u32| nodes.binary_search(node).is_ok();
-        let corners = |&(tet, number): &(u32, u8)| {
-            let tet = raw.tets[tet as usize];
-            FACES[usize::from(number) - 1].map(|i| tet[i])
-        };
-        let faces: Vec<_> = self
-            .faces
-            .iter()
-            .filter(|face| corners(face).iter().all(among))
-            .copied()
+        let all = self.faces.iter().copied();
+        let faces: Vec<_> = all
+            .filter(|&(tet, number)| raw.face(tet, number).iter().all(among))
             .collect();
         let mut used: Vec<u32> = Vec::new();
         for &(tet, number) in &faces {
-            let corners = corners(&(tet, number));
+            let corners = raw.face(tet, number);
             used.extend(corners.into_iter().chain(raw.loaded(tet, corners)));
         }
         used.sort_unstable();

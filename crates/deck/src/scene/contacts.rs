@@ -1,6 +1,6 @@
 //! Contact pairs and ties.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use signorini_contact::{Contact, Friction};
 use signorini_fem_mesh::FacetTag;
@@ -21,7 +21,7 @@ pub(super) fn contacts(
     ignored: &mut Vec<Ignored>,
 ) -> Result<Vec<Contact>, DeckError> {
     let model = known.model;
-    check_clearances(model)?;
+    let clearances = clearances(model)?;
     let mut out = Vec::with_capacity(model.pairs.len());
     for pair in &model.pairs {
         let interaction = match &pair.law {
@@ -49,8 +49,7 @@ pub(super) fn contacts(
             ignored.extend(ties::check(known, faces, (pair, tie), [dependent, other])?);
         }
         // a gap is that to a plane or along measured normals; the rim of another rigid surface has none
-        let mut takes_gap = true;
-        let mut contact = match (&master[..], interaction) {
+        let (mut contact, takes_gap) = match (&master[..], interaction) {
             ([], None) => {
                 let why = "a rigid surface cannot be tied; hold the nodes with *BOUNDARY, or use *CONTACT PAIR";
                 return Err(partner.cannot(why));
@@ -58,16 +57,14 @@ pub(super) fn contacts(
             ([], Some(_)) => {
                 let nodes = faces.places_of(known.raw, dependent as u32);
                 let moves = (known.timeline, leads);
-                let rigid = obstacle(&faces.rigid[other], moves, (slave[0], &nodes), partner)?;
-                takes_gap = rigid.1;
-                rigid.0
+                obstacle(&faces.rigid[other], moves, (slave[0], &nodes), partner)?
             }
             ([first, more @ ..], interaction) => {
                 let between = match interaction {
                     Some(_) => Contact::between(slave[0], *first),
                     None => Contact::tied(slave[0], *first),
                 };
-                more.iter().fold(between, |c, tag| c.with_partner(*tag))
+                (more.iter().fold(between, |c, tag| c.with_partner(*tag)), true)
             }
         };
         for &tag in &slave[1..] {
@@ -83,7 +80,7 @@ pub(super) fn contacts(
             }
         }
         if let Law::Contact(Touch { adjust, .. }) = &pair.law {
-            contact = match (model.clearances.iter().find(|c| c.is_of(pair)), adjust) {
+            contact = match (clearances.get(&surfaces_of(pair)), adjust) {
                 (Some(given), _) if !takes_gap => {
                     return Err(given.word.cannot(
                         "the gap to a rigid surface is prescribed only where that is a half-space: flat, below all \
@@ -113,29 +110,28 @@ pub(super) fn contacts(
     Ok(out)
 }
 
-impl Clearance {
-    /// Whether it is given for a pair.
-    fn is_of(&self, pair: &Pair) -> bool {
-        let surfaces = [&pair.slave.name, &pair.master.name];
-        matches!(pair.law, Law::Contact(_)) && [&self.slave.name, &self.master.name] == surfaces
-    }
+/// The names of both surfaces.
+fn surfaces_of(pair: &Pair) -> [&str; 2] {
+    [&pair.slave.name, &pair.master.name]
 }
 
-/// Refuses those of no pair, and second ones of a pair.
-fn check_clearances(model: &Model) -> Result<(), DeckError> {
-    let mut known = BTreeMap::new();
+/// The clearances of contact pairs, by their surfaces. Refuses those of no pair, and second ones of a pair.
+fn clearances(model: &Model) -> Result<BTreeMap<[&str; 2], &Clearance>, DeckError> {
+    let contacts = model.pairs.iter().filter(|pair| matches!(pair.law, Law::Contact(_)));
+    let pairs: BTreeSet<[&str; 2]> = contacts.map(surfaces_of).collect();
+    let mut known: BTreeMap<[&str; 2], &Clearance> = BTreeMap::new();
     for given in &model.clearances {
-        let surfaces = [&given.slave.name, &given.master.name];
-        if let Some(before) = known.insert(surfaces, &given.word) {
+        let surfaces = [given.slave.name.as_str(), given.master.name.as_str()];
+        if let Some(before) = known.insert(surfaces, given) {
             return Err(given.word.fault(Fault::Repeated {
-                first: before.location.clone(),
+                first: before.word.location.clone(),
                 remedy: "keep one of them",
             }));
         }
-        if !model.pairs.iter().any(|pair| given.is_of(pair)) {
+        if !pairs.contains(&surfaces) {
             let why = "no *CONTACT PAIR has these surfaces in this order; name those of one";
             return Err(given.word.cannot(why));
         }
     }
-    Ok(())
+    Ok(known)
 }

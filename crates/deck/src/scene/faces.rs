@@ -61,8 +61,7 @@ fn key(mut nodes: [u32; 3]) -> [u32; 3] {
 impl FaceTable {
     /// The position of a face (1 to 4) of a tetrahedron, noted at its first appearance.
     fn face(&mut self, raw: &Raw, tet: u32, number: u8, word: &Word) -> u32 {
-        let corners = raw.tets[tet as usize];
-        let nodes = FACES[usize::from(number) - 1].map(|i| corners[i]);
+        let nodes = raw.face(tet, number);
         let next = self.list.len() as u32;
         let position = *self.places.entry(key(nodes)).or_insert(next);
         if position == next {

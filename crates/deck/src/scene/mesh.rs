@@ -10,7 +10,7 @@ use signorini_fem_mesh::{Facet, TetMesh};
 use super::numbers::{Numbers, Sets};
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Fault, Word};
-use crate::model::{Kind, Model};
+use crate::model::{FACES, Kind, Model};
 
 /// The mesh before its facets are known: elastic tetrahedra, without nodes that none of them uses.
 #[derive(Debug)]
@@ -107,6 +107,12 @@ impl Raw {
 
     pub(super) fn tet_points(&self, tet: u32) -> [[f64; 3]; 4] {
         self.tets[tet as usize].map(|n| self.points[n as usize])
+    }
+
+    /// The corners of a face (1 to 4) of a tetrahedron.
+    pub(super) fn face(&self, tet: u32, number: u8) -> [u32; 3] {
+        let corners = self.tets[tet as usize];
+        FACES[usize::from(number) - 1].map(|i| corners[i])
     }
 
     /// The number of a node of the mesh in the deck, where it is defined.

@@ -195,7 +195,8 @@ impl RigidBodies {
         Ok(())
     }
 
-    /// Refuses rotations of a ROT NODE itself, and those that it and REF NODE hold in two ways; `held` are the components of nodes that are held.
+    /// Refuses rotations of a ROT NODE itself, and those that it and REF NODE hold in two ways; `held` are the components
+    /// of nodes that are held.
     pub(super) fn check_rotations<'a>(
         &self,
         timeline: &Timeline,
@@ -296,7 +297,7 @@ impl RigidFace {
         }
         if triangles.is_empty() {
             let fan = (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]);
-            // the second one of a triangle has no area, since its last corner is there twice
+            // a quadrilateral whose last corner is there twice is a triangle
             triangles.extend(fan.filter(|t| t[1] != t[2]));
         }
         Ok(RigidFace {

@@ -143,36 +143,36 @@ impl Volume {
             };
             let same = densities.iter().all(|d| *d == densities[0]);
             let whole = same && elements.len() == raw.tets.len();
-            match kind {
-                Kind::Centrifugal(axis) => {
-                    let (axis, square) = (self.axes[axis], value[0]);
-                    if whole {
-                        let factor = densities[0] * square;
-                        let density = LoadDensity::body_field(move |x| scale(factor, arm(x, axis)));
-                        bodies.push((order, density, history));
-                        continue;
+            if whole {
+                let density = densities[0];
+                let density = match kind {
+                    Kind::Centrifugal(axis) => {
+                        let (axis, factor) = (self.axes[axis], density * value[0]);
+                        LoadDensity::body_field(move |x| scale(factor, arm(x, axis)))
                     }
-                    for (&element, density) in elements.iter().zip(densities) {
-                        let factor = density * square * raw.volume(element);
-                        let arms = raw.tet_points(element).map(|x| arm(x, axis));
-                        for (node, part) in raw.linear_shares(element, arms) {
-                            force(history, order, node, scale(factor, part));
-                        }
+                    Kind::Force | Kind::Gravity => LoadDensity::body(value.map(|v| density * v)),
+                };
+                bodies.push((order, density, history));
+                continue;
+            }
+            for (&element, density) in elements.iter().zip(densities) {
+                let parts: Vec<(u32, Vec3)> = match kind {
+                    Kind::Centrifugal(axis) => {
+                        let factor = density * value[0] * raw.volume(element);
+                        let arms = raw.tet_points(element).map(|x| arm(x, self.axes[axis]));
+                        let parts = raw.linear_shares(element, arms).into_iter();
+                        parts.map(|(node, part)| (node, scale(factor, part))).collect()
                     }
-                }
-                Kind::Force | Kind::Gravity => {
-                    if whole {
-                        let density = densities[0];
-                        let density = LoadDensity::body(value.map(|v| density * v));
-                        bodies.push((order, density, history));
-                        continue;
+                    Kind::Force | Kind::Gravity => {
+                        let share = |part: f64| part * density * raw.volume(element);
+                        let parts = raw.shares(element).into_iter();
+                        parts
+                            .map(|(node, part)| (node, value.map(|v| share(part) * v)))
+                            .collect()
                     }
-                    for (&element, density) in elements.iter().zip(densities) {
-                        for (node, part) in raw.shares(element) {
-                            let share = part * density * raw.volume(element);
-                            force(history, order, node, value.map(|v| share * v));
-                        }
-                    }
+                };
+                for (node, part) in parts {
+                    force(history, order, node, part);
                 }
             }
         }
