@@ -17,6 +17,9 @@ signorini_fem_mesh::errors! {
         Spring { node: u32, stiffness: f64 } =
             "spring at node {node}: its stiffness is {stiffness}; it must be positive, and neither so small nor so \
             large that its inverse overflows or vanishes";
+        RigidSupport { subdomain: usize } =
+            "subdomain {subdomain}: what of its rigid motion is held must be a component 0 to 5 of a subdomain without \
+            elements, about a finite point, with finite values";
         UnknownNode { place: String, node: u32, nodes: usize } =
             "{place}: node {node} does not exist, the mesh has nodes 0..{nodes}";
         EmptySupport { support: usize, what: &'static str } =

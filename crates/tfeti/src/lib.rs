@@ -77,6 +77,7 @@ pub use projector::factor::CoarseFactor;
 pub use projector::orthonormal::OrthonormalCoarse;
 pub use rows::gluing::{ContactRows, Gluing, SpringRow, TangentialRows, TiedRows};
 pub use rows::ranges::RowRanges;
+pub use rows::rigid::RigidSupport;
 pub use rows::side::{ContactConstraint, Side};
 pub use rows::supports::{Directions, Motion, NodalSpring, NodeSupport};
 pub use subdomain::cost::InverseSettings;
@@ -98,6 +99,7 @@ pub mod internal {
     pub use crate::projector::forecast::forecast_levels;
     pub use crate::rows::contact::{PrescribedPoint, prescribed_points};
     pub use crate::rows::dependencies::Dependency;
+    pub use crate::rows::rigid::forces_at_three;
     pub use crate::rows::supports::{PrescribedDirection, prescribed_directions};
     pub use crate::subdomain::class::{Class, Classes};
     pub use crate::subdomain::copy_stiffness::CopyStiffness;

@@ -6,7 +6,7 @@ use crate::tolerances::TABLES;
 use rayon::prelude::*;
 
 /// A part of the mesh with its own numbering of nodes and tetrahedra.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub struct Subdomain {
     /// Global number of each local node, ascending. Local numbers therefore follow the global
@@ -31,6 +31,11 @@ impl Subdomain {
         quadratic_tets(&self.tets, &self.mids)
     }
 
+    /// Whether it has no elements: it then moves as a rigid body.
+    pub fn is_rigid(&self) -> bool {
+        self.elements.is_empty()
+    }
+
     /// Local number of a global node, if it is here.
     pub fn local(&self, node: u32) -> Option<usize> {
         self.nodes.binary_search(&node).ok()
@@ -40,6 +45,17 @@ impl Subdomain {
     pub fn points(&self, mesh: &TetMesh) -> Vec<[f64; 3]> {
         self.nodes.iter().map(|&n| mesh.points()[n as usize]).collect()
     }
+}
+
+/// The copies of each of so many nodes, by ascending subdomain.
+fn copies_of(subdomains: &[Subdomain], nodes: usize) -> Lists<NodeCopy> {
+    let (mut torn, mut node_of) = (Vec::new(), Vec::new());
+    for (subdomain, own) in (0..).zip(subdomains) {
+        let copies = (0..own.nodes.len() as u32).map(|local| NodeCopy { subdomain, local });
+        torn.extend(copies);
+        node_of.extend_from_slice(&own.nodes);
+    }
+    Lists::by_key(nodes, &node_of).map(|k| torn[k as usize])
 }
 
 /// A copy of a global node in a subdomain.
@@ -60,6 +76,8 @@ errors! {
         NoParts = "a mesh cannot be cut into 0 parts; ask for 1 at least";
         NoBoxes { boxes: [usize; 3], axis: &'static str } =
             "the grid of boxes {boxes:?} has none along {axis}; give at least 1 each";
+        RigidNode { node: u32, nodes: usize } =
+            "node {node} of a rigid subdomain does not exist, the mesh has {nodes} nodes, numbered from 0";
         EmptyPart { part: usize, parts: usize } =
             "part {part} of {parts} has no tetrahedron; number the parts without gaps from 0, or use fewer of them";
         DisconnectedPart { part: usize, pieces: usize, first: usize, second: usize } =
@@ -70,7 +88,8 @@ errors! {
 
 /// The subdomains of a mesh, and where each node went.
 ///
-/// Every subdomain is connected through faces, so that its rigid motions are the six of a body.
+/// Every subdomain is connected through faces, or [rigid](Self::with_rigid), so that its rigid motions are the six of a
+/// body.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Decomposition {
     subdomains: Vec<Subdomain>,
@@ -117,18 +136,32 @@ impl Decomposition {
                 },
             )
             .collect();
-        let (mut torn, mut node_of) = (Vec::new(), Vec::new());
-        for (subdomain, own) in (0..).zip(&subdomains) {
-            let copies = (0..own.nodes.len() as u32).map(|local| NodeCopy { subdomain, local });
-            torn.extend(copies);
-            node_of.extend_from_slice(&own.nodes);
-        }
-        let copies = Lists::by_key(nodes, &node_of).map(|k| torn[k as usize]);
+        let copies = copies_of(&subdomains, nodes);
         Self {
             subdomains,
             part_of,
             copies,
         }
+    }
+
+    /// Adds subdomains without elements behind the others, one for each list of nodes. They are rigid: nothing but their
+    /// six motions moves them, and the nodes, which stay those of elements too, move with them.
+    ///
+    /// # Errors
+    /// [`DecompositionError::RigidNode`] for a node that does not exist.
+    pub fn with_rigid(mut self, rigid: Vec<Vec<u32>>) -> Result<Self, DecompositionError> {
+        let nodes = self.nodes();
+        for list in rigid {
+            if let Some(&node) = list.iter().find(|&&n| n as usize >= nodes) {
+                return Err(DecompositionError::RigidNode { node, nodes });
+            }
+            self.subdomains.push(Subdomain {
+                nodes: distinct(list),
+                ..Subdomain::default()
+            });
+        }
+        self.copies = copies_of(&self.subdomains, nodes);
+        Ok(self)
     }
 
     /// The subdomains, by part number.

@@ -303,6 +303,16 @@ fn decompositions() {
     assert_eq!(parts(&gap), DecompositionError::EmptyPart { part: 1, parts: 3 });
     let huge = [0, 0, 0, 0, 0, 0, 0, 0, 0, u32::MAX];
     assert!(matches!(parts(&huge), DecompositionError::EmptyPart { part: 1, .. }));
+    let rigid = |nodes: Vec<u32>| Decomposition::whole(&mesh).with_rigid(vec![nodes]);
+    let nodes = mesh.points().len();
+    let error = rigid(vec![0, nodes as u32]).unwrap_err();
+    assert!(matches!(error, DecompositionError::RigidNode { node, nodes: n } if n == nodes && node as usize == n));
+    let whole = Decomposition::whole(&mesh);
+    let with = rigid(vec![3, 1, 3]).unwrap();
+    let [elastic, rigid] = with.subdomains() else { panic!() };
+    assert!(elastic == &whole.subdomains()[0] && rigid.is_rigid() && rigid.nodes == [1, 3]);
+    assert!(with.copies(3).len() == 2 && with.copies(2).len() == 1 && with.parts() == whole.parts());
+    assert_eq!(with.torn_dofs(), whole.torn_dofs() + 6);
     // The four corners of a cube touch only along edges.
     let corners = [1, 1, 1, 1, 0, 0, 0, 0, 0, 0];
     let error = parts(&corners);

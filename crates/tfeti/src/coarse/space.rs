@@ -123,6 +123,11 @@ impl Coarse {
         self.0.map.rows()
     }
 
+    /// Mean of the nodes of a subdomain.
+    pub(crate) fn centre(&self, subdomain: usize) -> [f64; 3] {
+        self.0.mobility.centres()[subdomain]
+    }
+
     /// Number of bodies: sets of subdomains that interface rows join, be it by a hinge.
     pub fn bodies(&self) -> usize {
         self.0.mobility.bodies()
@@ -275,7 +280,8 @@ impl CoarseData {
         let gluing = &self.gluing;
         // The usual case needs no look at the contact rows.
         let supported = |w: &RowWeights| {
-            let mut rows = gluing.ranges().dirichlet.clone();
+            let ranges = gluing.ranges();
+            let mut rows = ranges.rigid.start..ranges.dirichlet.end;
             rows.all(|row| w.of(row) >= SUPPORTED)
         };
         if self.supports_suffice && weights.is_none_or(supported) {

@@ -48,11 +48,14 @@ pub(crate) fn invert(
     let ownership = &subdomains.ownership;
     let pieces = (0..factors.len()).map(|k| (ownership.rank_of(k, 0), k..k + 1));
     ownership.exchange.complete(&mut factors, &pieces.collect::<Vec<_>>());
-    let size = |k: usize| Size {
-        dim: 3 * classes[k].nodes,
-        boundary: 3 * map.classes[k].nodes.len(),
-        members: classes[k].members.len(),
-        factor: factors[k] as usize,
+    let size = |k: usize| match bases[k].is_rigid() {
+        true => Size::rigid(classes[k].members.len()),
+        false => Size {
+            dim: 3 * classes[k].nodes,
+            boundary: 3 * map.classes[k].nodes.len(),
+            members: classes[k].members.len(),
+            factor: factors[k] as usize,
+        },
     };
     let sizes: Vec<Size> = (0..bases.len()).map(size).collect();
     let dense = choose(&sizes, settings)?;

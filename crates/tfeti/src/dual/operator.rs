@@ -114,7 +114,8 @@ impl SymmetricOperator for DualOperator {
             .by_panels(x, y, self.parallel, s, &|panel, x, y, full, memory| {
                 let (columns, class) = (panel.columns.len(), panel.class);
                 let Some(inverse) = &self.inverses[class] else {
-                    return;
+                    // rigid
+                    return y.fill(0.0);
                 };
                 if let Some(matrix) = &inverse.boundary {
                     multiply_members(y, x, matrix, columns, x.len() / columns);

@@ -18,12 +18,14 @@ use signorini_qp::vector;
 /// with a Schur complement, which leaves eigenvalues near one, and those that another rank holds.
 pub(super) fn even_out(system: &Tfeti, map: &BoundaryMap, mut classes: Vec<Option<&mut BlockRows>>) {
     let subdomains = &system.parts.subdomains;
-    let ranges: Vec<[f64; 2]> = subdomains.bases.iter().map(|base| base.moduli).collect();
-    let [soft, stiff] = [1, 0].map(|k| ranges.iter().map(move |r| r[k]));
+    let moduli = || subdomains.bases.iter().map(|base| base.moduli);
+    let [soft, stiff] = [1, 0].map(|k| moduli().flatten().map(move |r| r[k]));
     let (softest, stiffest) = (soft.fold(f64::INFINITY, f64::min), stiff.fold(0.0, f64::max));
     if stiffest <= STIFFER * softest {
         return;
     }
+    // rigid ones come last, and have no block
+    let ranges: Vec<[f64; 2]> = moduli().map(|r| r.unwrap_or([f64::INFINITY; 2])).collect();
     let mut largest: Vec<f64> = (0..classes.len())
         .into_par_iter()
         .map(|k| {

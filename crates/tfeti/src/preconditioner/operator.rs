@@ -139,8 +139,10 @@ impl DualPreconditioner {
                 let columns = panel.columns.len();
                 let weights = divide.map(|w| &w[panel.copies.clone()]);
                 scale_nodes(weights, x, columns);
-                if let Some(class) = &self.classes[panel.class] {
-                    class.apply(x, y, columns, factors.get(&panel.class), (interior, memory));
+                match &self.classes[panel.class] {
+                    Some(class) => class.apply(x, y, columns, factors.get(&panel.class), (interior, memory)),
+                    // rigid: a force without displacement
+                    None => y.fill(0.0),
                 }
                 scale_nodes(weights, y, columns);
             });

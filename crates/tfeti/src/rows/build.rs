@@ -6,6 +6,7 @@ use super::gluing::{
 use crate::error::TfetiError;
 use crate::rows::contact::{AllRows, ContactRow, PointRows, contact_rows};
 use crate::rows::dependencies::{are_independent, not_alone};
+use crate::rows::rigid::RigidRow;
 use crate::rows::side::ContactConstraint;
 use crate::rows::supports::{MergedSupports, NodalSpring, NodeSupport, check_node};
 use crate::subdomain::copy_stiffness::CopyStiffness;
@@ -15,15 +16,16 @@ use signorini_fem_mesh::decomposition::NodeCopy;
 use signorini_fem_mesh::vec3::dot;
 
 impl Gluing {
-    /// Builds the rows. `stiffness` weighs the copies of a node in contact and support rows. The rows of springs to the
-    /// ground are the last of the support rows; with them comes the stiffness of all copies, with which they are
-    /// compared: the row of a soft one is as much smaller as it is softer.
+    /// Builds the rows. `stiffness` weighs the copies of a node in contact and support rows. Those that hold rigid
+    /// subdomains come as they stand. The rows of springs to the ground are the last of the support rows; with them comes
+    /// the stiffness of all copies, with which they are compared: the row of a soft one is as much smaller as it is
+    /// softer.
     ///
     /// # Errors
     /// [`TfetiError`] for bad supports, contact points or springs.
     pub(crate) fn new(
         decomposition: &Decomposition,
-        supports: &[NodeSupport],
+        (supports, rigid): (&[NodeSupport], &[RigidRow]),
         contact: &[ContactConstraint],
         stiffness: &CopyStiffness,
         springs: (&[NodalSpring], &CopyStiffness),
@@ -32,9 +34,10 @@ impl Gluing {
         let merged = MergedSupports::new(supports, nodes)?;
         let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
         let found = contact_rows(contact, &merged, nodes, squares)?;
+        let cases = rigid.iter().flat_map(|row| &row.values).map(|v| v.0 as usize + 1);
         let mut gluing = Self {
-            prescribed: vec![Vec::new(); merged.cases],
-            is_aligned: stiffness.is_plain(),
+            prescribed: vec![Vec::new(); cases.fold(merged.cases, usize::max)],
+            is_aligned: stiffness.is_plain() && rigid.is_empty(),
             ..Self::default()
         };
         let mut builder = Builder {
@@ -49,6 +52,7 @@ impl Gluing {
         builder.interface(nodes);
         builder.tied(contact, &found.tied);
         let tied = builder.gluing.nodal_rows() - builder.gluing.ranges.contact().len();
+        builder.rigid(rigid);
         builder.dirichlet(&merged);
         builder.springs(springs)?;
         let behind = gluing.nodal_rows() - gluing.ranges.contact().len();
@@ -56,7 +60,8 @@ impl Gluing {
         let supports = interface + 3 * gluing.blocks();
         gluing.ranges.interface.end = supports;
         gluing.ranges.tied = supports..supports + tied;
-        gluing.ranges.dirichlet = supports + tied..supports + behind;
+        gluing.ranges.rigid = supports + tied..supports + tied + rigid.len();
+        gluing.ranges.dirichlet = gluing.ranges.rigid.end..supports + behind;
         for tied in &mut gluing.tied {
             tied.rows.start += supports - interface;
             tied.rows.end += supports - interface;
@@ -296,6 +301,16 @@ impl Builder<'_> {
             });
         }
         Ok(())
+    }
+
+    fn rigid(&mut self, rows: &[RigidRow]) {
+        for row in rows {
+            self.entries.extend(&row.entries);
+            let number = self.close(row.node);
+            for &(case, value) in &row.values {
+                self.gluing.prescribed[case as usize].push((number as u32, row.scale * value));
+            }
+        }
     }
 
     fn dirichlet(&mut self, merged: &MergedSupports) {

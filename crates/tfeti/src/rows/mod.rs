@@ -6,7 +6,7 @@
 //!
 //! `supports` merges what is prescribed at a node, `contact` reduces each constraint to the directions that are left,
 //! `build` spreads all over the copies, `dependencies` finds rows whose forces may replace one another,
-//! `part` takes some of the rows.
+//! `rigid` holds motions of rigid subdomains, `part` takes some of the rows.
 
 pub(crate) mod build;
 pub(crate) mod contact;
@@ -14,5 +14,6 @@ pub(crate) mod dependencies;
 pub(crate) mod gluing;
 pub(crate) mod part;
 pub(crate) mod ranges;
+pub(crate) mod rigid;
 pub(crate) mod side;
 pub(crate) mod supports;

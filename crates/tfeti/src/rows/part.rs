@@ -20,12 +20,15 @@ impl Gluing {
         }
         let (own, contact) = (&self.ranges, self.ranges.interface.start);
         let end = contact + 3 * out.blocks();
-        let tied = nodal[contact..contact + own.tied.len()].iter().filter(|kept| **kept);
-        let tied = end..end + tied.count();
+        let kept = |rows: std::ops::Range<usize>| nodal[rows].iter().filter(|kept| **kept).count();
+        let tied = end..end + kept(contact..contact + own.tied.len());
+        let behind = contact + own.tied.len();
+        let rigid = tied.end..tied.end + kept(behind..behind + own.rigid.len());
         out.ranges = RowRanges {
             interface: contact..end,
-            dirichlet: tied.end..end + out.nodal_rows() - contact,
+            dirichlet: rigid.end..end + out.nodal_rows() - contact,
             tied,
+            rigid,
             ..own.clone()
         };
         out

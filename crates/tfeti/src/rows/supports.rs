@@ -94,6 +94,31 @@ impl NodeSupport {
         }
     }
 
+    /// Takes a node out, with what is said of it alone.
+    pub fn release(&mut self, node: u32) {
+        let count = self.nodes.len();
+        let mut kept = self
+            .nodes
+            .iter()
+            .map(|n| *n != node)
+            .collect::<Vec<bool>>()
+            .into_iter()
+            .cycle();
+        self.nodes.retain(|n| *n != node);
+        let mut keep = || kept.next().unwrap_or(true);
+        if let Directions::EachNode(lists) = &mut self.directions
+            && lists.len() == count
+        {
+            lists.retain(|_| keep());
+        }
+        if let Some(motion) = &mut self.motion
+            && motion.values.len() == count
+            && count > 1
+        {
+            motion.values.retain(|_| keep());
+        }
+    }
+
     /// The same support, moved.
     #[must_use]
     pub fn with_motion(mut self, motion: Motion) -> Self {

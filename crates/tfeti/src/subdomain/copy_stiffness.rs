@@ -1,7 +1,7 @@
 //! Stiffness of the copies of a node, where they differ: in a body of several materials, and in ragged cuts.
 
 use crate::subdomain::matrices::{ClassBase, Subdomains};
-use crate::tolerances::ALIKE;
+use crate::tolerances::{ALIKE, RIGID};
 use signorini_fem_mesh::Decomposition;
 use signorini_fem_mesh::decomposition::NodeCopy;
 
@@ -28,7 +28,15 @@ impl CopyStiffness {
             };
             (0..base.diagonal.len() / 3).map(mean).collect()
         };
-        let by_class: Vec<Vec<f64>> = subdomains.bases.iter().map(by_class).collect();
+        let mut by_class: Vec<Vec<f64>> = subdomains.bases.iter().map(by_class).collect();
+        if subdomains.bases.iter().any(ClassBase::is_rigid) {
+            let largest = by_class.iter().flatten().fold(0.0_f64, |m, v| m.max(*v));
+            let rigid = by_class
+                .iter_mut()
+                .zip(&subdomains.bases)
+                .filter(|(_, base)| base.is_rigid());
+            rigid.for_each(|(values, _)| values.fill(RIGID * largest));
+        }
         let copies = (0..subdomains.count())
             .map(|s| by_class[subdomains.class(s)].len())
             .sum();

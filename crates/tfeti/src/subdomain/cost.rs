@@ -89,6 +89,17 @@ pub(crate) struct Size {
 }
 
 impl Size {
+    /// Of a class without matrices.
+    pub(crate) fn rigid(members: usize) -> Self {
+        let [dim, boundary, factor] = [0; 3];
+        Self {
+            dim,
+            boundary,
+            members,
+            factor,
+        }
+    }
+
     pub(crate) fn report(&self, dense: bool) -> ClassReport {
         ClassReport {
             members: self.members,

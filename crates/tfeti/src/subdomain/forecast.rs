@@ -86,6 +86,10 @@ impl<'a> Forecast<'a> {
             let boundary = boundary.iter().filter(|b| **b).count();
             let members = class.members.len();
             copies += members * boundary;
+            if subdomains[class.members[0] as usize].is_rigid() {
+                sizes.push(Size::rigid(members));
+                continue;
+            }
             let (dim, boundary, factor) = (3 * class.nodes, 3 * boundary, symbolic.stored());
             sizes.push(Size {
                 dim,

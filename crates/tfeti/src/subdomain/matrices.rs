@@ -25,8 +25,9 @@ pub(crate) struct ClassBase {
     pub(crate) held: Option<ClassMatrices>,
     /// Of the stiffness that preconditioners are made of.
     pub(crate) diagonal: Vec<f64>,
-    /// Smallest and largest shear modulus of its elements, the mean of three.
-    pub(crate) moduli: [f64; 2],
+    /// Smallest and largest shear modulus of its elements, the mean of three; `None` of a rigid class, which has no
+    /// matrices anywhere.
+    pub(crate) moduli: Option<[f64; 2]>,
     pub(crate) kernel: Kernel,
 }
 
@@ -39,6 +40,13 @@ pub(crate) struct ClassMatrices {
     /// What preconditioners are made of where the material is nearly incompressible and elements do not lock: the
     /// stiffness of a compressible one. With its own they would need many times more iterations.
     pub(crate) compressible: Option<Columns>,
+}
+
+impl ClassBase {
+    /// Whether nothing but rigid motions moves its members.
+    pub(crate) fn is_rigid(&self) -> bool {
+        self.moduli.is_none()
+    }
 }
 
 impl ClassMatrices {
@@ -63,7 +71,7 @@ impl Subdomains {
             let regions: Vec<u32> = elements.map(|&e| mesh.regions()[e as usize]).collect();
             let laws = materials.of_tets(&regions);
             laws.map_err(|e| TfetiError::Material {
-                element: subdomain.elements[0] as usize,
+                element: subdomain.elements.first().map_or(0, |&e| e as usize),
                 message: e.to_string(),
             })
         };
@@ -101,12 +109,15 @@ impl Subdomains {
             let points: Vec<[f64; 3]> = nodes.map(|&n| mesh.points()[n as usize]).collect();
             let laws = laws(class)?;
             let shear = |law: &&Hooke| (3..6).map(|i| law.voigt()[i][i]).sum::<f64>() / 3.0;
-            let held = (ownership.holds(k).then(|| matrices(class, &points, &laws))).transpose()?;
+            let is_rigid = decomposition.subdomains()[s].is_rigid();
+            let held = (ownership.holds(k) && !is_rigid).then(|| matrices(class, &points, &laws));
+            let held = held.transpose()?;
+            let moduli = laws.iter().map(shear);
             let diagonal = |m: &ClassMatrices| (0..m.stiffness.dim).map(|i| m.preconditioning().diagonal(i)).collect();
             Ok(ClassBase {
                 diagonal: held.as_ref().map_or_else(|| vec![0.0; 3 * class.nodes], diagonal),
                 held,
-                moduli: (laws.iter().map(shear)).fold([f64::INFINITY, 0.0], |[a, b], v| [v.min(a), v.max(b)]),
+                moduli: moduli.map(|v| [v; 2]).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]),
                 kernel: Kernel::new(&points, s)?,
             })
         };

@@ -9,6 +9,7 @@ use crate::processes::communicator::Communicator;
 use crate::processes::exchange::Exchange;
 use crate::projector::levels::has_two_levels;
 use crate::rows::gluing::Gluing;
+use crate::rows::rigid::{RigidRow, RigidSupport};
 use crate::rows::side::ContactConstraint;
 use crate::rows::supports::{NodalSpring, NodeSupport};
 use crate::subdomain::class::Classes;
@@ -31,6 +32,7 @@ pub struct TfetiBuilder<'a> {
     decomposition: &'a Decomposition,
     materials: &'a Materials,
     supports: &'a [NodeSupport],
+    rigid: &'a [RigidSupport],
     contact: &'a [ContactConstraint],
     springs: &'a [NodalSpring],
     share_translates: bool,
@@ -47,6 +49,7 @@ impl<'a> TfetiBuilder<'a> {
             decomposition,
             materials,
             supports: &[],
+            rigid: &[],
             contact: &[],
             springs: &[],
             share_translates: true,
@@ -72,6 +75,13 @@ impl<'a> TfetiBuilder<'a> {
     #[must_use]
     pub fn with_supports(mut self, supports: &'a [NodeSupport]) -> Self {
         self.supports = supports;
+        self
+    }
+
+    /// Sets what is held of the motions of rigid subdomains.
+    #[must_use]
+    pub fn with_rigid_supports(mut self, rigid: &'a [RigidSupport]) -> Self {
+        self.rigid = rigid;
         self
     }
 
@@ -184,7 +194,13 @@ impl<'a> TfetiBuilder<'a> {
         let counts = has_several_laws(self.mesh, self.materials) || all.differs(self.decomposition);
         let stiffness = if counts { all.clone() } else { CopyStiffness::default() };
         let springs = (self.springs, &all);
-        let gluing = Gluing::new(self.decomposition, self.supports, self.contact, &stiffness, springs)?;
+        let rigid = self
+            .rigid
+            .iter()
+            .map(|support| support.row(self.mesh, self.decomposition));
+        let rigid: Vec<RigidRow> = rigid.collect::<Result<_, _>>()?;
+        let supports = (self.supports, &rigid[..]);
+        let gluing = Gluing::new(self.decomposition, supports, self.contact, &stiffness, springs)?;
         Ok((Arc::new(gluing), stiffness))
     }
 }

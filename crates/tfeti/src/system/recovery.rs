@@ -7,6 +7,7 @@ use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::BLOCKS;
 use rayon::prelude::*;
+use signorini_fem_mesh::vec3::{add, cross, sub};
 use std::ops::Range;
 
 /// Response of the torn body to one load: what a time step needs to combine.
@@ -215,6 +216,17 @@ impl Tfeti {
             value.iter_mut().for_each(|v| *v /= sum);
         }
         out
+    }
+
+    /// The rigid motion of a subdomain in a torn displacement, the nearest one: displacement of a point in m, and rotation
+    /// in radians.
+    pub fn rigid_motion(&self, subdomain: usize, u: &[f64], point: [f64; 3]) -> [[f64; 3]; 2] {
+        let kernel = self.kernel(subdomain);
+        let amplitudes = kernel.transpose_times(&u[self.torn_range(subdomain)]);
+        let [x, y, z, a, b, c] = kernel.motion(&amplitudes);
+        let rotation = [a, b, c].map(|w| w / kernel.radius());
+        let arm = sub(point, self.coarse().centre(subdomain));
+        [add([x, y, z], cross(rotation, arm)), rotation]
     }
 
     /// Row offsets `c` of prescribed displacements, `sum factor * offset` over `(case, factor)`, in old memory, which may

@@ -3,7 +3,7 @@
 use crate::linalg::sparse::SolveMemory;
 use crate::subdomain::inverse::Inverse;
 use crate::system::tfeti::Tfeti;
-use crate::tolerances::{SAMPLE, SHORT_ROWS};
+use crate::tolerances::{RIGID, SAMPLE, SHORT_ROWS};
 use rayon::prelude::*;
 use signorini_fem_mesh::internal::distinct;
 use std::ops::Range;
@@ -161,6 +161,8 @@ impl Tfeti {
         for w in &mut weights {
             *w = if *w > 0.0 { *w / largest } else { 1.0 };
         }
+        // what holds a rigid subdomain takes what the others leave
+        weights[ranges.rigid.clone()].fill(RIGID);
         Some(weights)
     }
 }

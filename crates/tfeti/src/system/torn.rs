@@ -9,23 +9,38 @@ use crate::tolerances::{PANEL, SHARED};
 use rayon::prelude::*;
 
 impl Tfeti {
-    /// `y = K x` for torn vectors.
+    /// `y = K x` for torn vectors; zero on rigid subdomains.
     pub fn stiffness_times(&self, x: &[f64], y: &mut [f64]) {
-        self.stiffness_product(x, y, |product, _| product);
+        let rigid = |_, y: &mut [f64]| y.fill(0.0);
+        self.stiffness_product(x, y, rigid, |product, _| product);
         self.complete_torn(y);
     }
 
-    /// `y = K x - y` on the subdomains of this process, the others' are left alone.
+    /// `y = K x - y` on the subdomains of this process, the others' are left alone. Of forces `y` on a rigid subdomain
+    /// that is what moves it: it takes all others.
     pub(super) fn stiffness_less(&self, x: &[f64], y: &mut [f64]) {
-        self.stiffness_product(x, y, |product, y| product - y);
+        let rigid = |s, y: &mut [f64]| {
+            let kernel = self.kernel(s);
+            let moving = kernel.transpose_times(y);
+            y.fill(0.0);
+            kernel.add_motion(-1.0, &moving, y);
+        };
+        self.stiffness_product(x, y, rigid, |product, y| product - y);
     }
 
-    /// `y = new(K x, y)`, entry by entry, likewise.
-    fn stiffness_product(&self, x: &[f64], y: &mut [f64], new: impl Fn(f64, f64) -> f64 + Sync) {
+    /// `y = new(K x, y)`, entry by entry, likewise; `rigid` does it on rigid subdomains.
+    fn stiffness_product(
+        &self,
+        x: &[f64],
+        y: &mut [f64],
+        rigid: impl Fn(usize, &mut [f64]) + Sync,
+        new: impl Fn(f64, f64) -> f64 + Sync,
+    ) {
         let parts = &self.parts;
         self.by_class(y, |class, members, columns| {
             let Some(base) = parts.subdomains.held(class) else {
-                return;
+                let each = members.iter().zip(columns);
+                return each.for_each(|(&s, y)| rigid(s as usize, y));
             };
             if parts.subdomains.classes.classes()[class].members.len() < SHARED {
                 for (&s, y) in members.iter().zip(columns) {
@@ -65,7 +80,18 @@ impl Tfeti {
         let parts = &self.parts;
         self.by_class(u, |class, members, columns| {
             let base = &parts.subdomains.bases[class];
+            let add_motion = |s: u32, target: &mut [f64]| {
+                if let Some(alpha) = alpha {
+                    let own = &alpha[6 * s as usize..][..6];
+                    self.kernel(s as usize).add_motion(1.0, own, target);
+                }
+            };
             let Some(ClassInverse { full: inverse, .. }) = &parts.inverses[class] else {
+                // rigid
+                for (&s, target) in members.iter().zip(columns) {
+                    target.fill(0.0);
+                    add_motion(s, target);
+                }
                 return;
             };
             let (dim, count) = (base.diagonal.len(), members.len());
@@ -77,10 +103,7 @@ impl Tfeti {
             inverse.apply(&base.kernel, &mut x, count, &mut memory);
             for ((&s, column), target) in members.iter().zip(x.chunks_exact(dim)).zip(columns) {
                 target.copy_from_slice(column);
-                if let Some(alpha) = alpha {
-                    self.kernel(s as usize)
-                        .add_motion(1.0, &alpha[6 * s as usize..][..6], target);
-                }
+                add_motion(s, target);
             }
         });
     }

@@ -12,6 +12,7 @@ mod operators;
 mod preconditioners;
 mod processes;
 mod refusals;
+mod rigid;
 mod rows;
 mod scratch;
 mod sides;

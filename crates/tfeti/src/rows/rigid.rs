@@ -1,0 +1,113 @@
+//! Rows that hold motions of rigid subdomains.
+
+use super::gluing::CopyEntry;
+use crate::error::TfetiError;
+use crate::tolerances::ANGLE;
+use nalgebra::{SMatrix, SVector};
+use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, norm, sub};
+use signorini_fem_mesh::{Decomposition, TetMesh};
+
+/// A motion of a [rigid subdomain](Decomposition::with_rigid) that is held: the displacement of a point, which need not be
+/// one of its nodes, or a rotation.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RigidSupport {
+    /// Number of the subdomain.
+    pub subdomain: u32,
+    /// The point, m.
+    pub point: [f64; 3],
+    /// 0 to 2 for the displacement along x, y, z in m, 3 to 5 for the rotation about them in radians.
+    pub component: usize,
+    /// Prescribed values by displacement case, m or radians; zero in others.
+    pub values: Vec<(u32, f64)>,
+}
+
+/// Its row.
+#[derive(Debug)]
+pub(crate) struct RigidRow {
+    pub(super) entries: Vec<CopyEntry>,
+    /// A mesh node of the subdomain.
+    pub(super) node: u32,
+    /// The row is `scale` times the motion.
+    pub(super) scale: f64,
+    pub(super) values: Vec<(u32, f64)>,
+}
+
+/// Forces at three of some points, far from one another, with this force at a place and this moment: the smallest
+/// ones. `None` if all points lie on a line.
+pub fn forces_at_three(points: &[Vec3], place: Vec3, force: Vec3, moment: Vec3) -> Option<[(usize, Vec3); 3]> {
+    let chosen = far_apart(points)?;
+    let about = points[chosen[0]];
+    let arms = chosen.map(|k| sub(points[k], about));
+    let size = arms.iter().map(|arm| norm(*arm)).fold(0.0, f64::max);
+    let moment = add(moment, cross(sub(place, about), force));
+    let target: SVector<f64, 6> = SVector::from_fn(|k, _| match k {
+        0..3 => force[k],
+        _ => moment[k - 3] / size,
+    });
+    let wrenches: SMatrix<f64, 6, 9> = SMatrix::from_fn(|row, column| {
+        let unit = unit(column % 3);
+        match row {
+            0..3 => unit[row],
+            _ => cross(arms[column / 3], unit)[row - 3] / size,
+        }
+    });
+    let gram = (wrenches * wrenches.transpose()).cholesky()?;
+    let forces = wrenches.transpose() * gram.solve(&target);
+    Some([0, 1, 2].map(|k| (chosen[k], [0, 1, 2].map(|c| forces[3 * k + c]))))
+}
+
+fn unit(axis: usize) -> Vec3 {
+    [0, 1, 2].map(|c| f64::from(u8::from(c == axis)))
+}
+
+impl RigidSupport {
+    /// A row of length one at three nodes of the subdomain.
+    pub(crate) fn row(&self, mesh: &TetMesh, decomposition: &Decomposition) -> Result<RigidRow, TfetiError> {
+        let subdomain = self.subdomain as usize;
+        let own = decomposition.subdomains().get(subdomain).filter(|s| s.is_rigid());
+        let (Some(own), 0..6) = (own, self.component) else {
+            return Err(TfetiError::RigidSupport { subdomain });
+        };
+        let [force, moment] = match self.component {
+            0..3 => [unit(self.component), [0.0; 3]],
+            _ => [[0.0; 3], unit(self.component - 3)],
+        };
+        let forces = forces_at_three(&own.points(mesh), self.point, force, moment);
+        let forces = forces.ok_or(TfetiError::Collinear { subdomain })?;
+        let scale = forces.iter().map(|(_, f)| dot(*f, *f)).sum::<f64>().sqrt().recip();
+        let bad = self.values.iter().any(|v| !v.1.is_finite());
+        if bad || !(scale.is_finite() && scale > 0.0) {
+            return Err(TfetiError::RigidSupport { subdomain });
+        }
+        let entry = |(local, force): (usize, Vec3)| CopyEntry {
+            subdomain: self.subdomain,
+            local: local as u32,
+            vector: force.map(|f| scale * f),
+        };
+        Ok(RigidRow {
+            entries: forces.map(entry).to_vec(),
+            node: own.nodes[forces[0].0],
+            scale,
+            values: self.values.clone(),
+        })
+    }
+}
+
+/// Three points far from one another, by their places; `None` if all lie on a line.
+fn far_apart(points: &[Vec3]) -> Option<[usize; 3]> {
+    let farthest = |from: &dyn Fn(Vec3) -> f64| {
+        let all = points.iter().enumerate().map(|(k, p)| (k, from(*p)));
+        all.reduce(|best, next| if next.1 > best.1 { next } else { best })
+    };
+    let from = |origin: Vec3| {
+        farthest(&|p| {
+            let arm = sub(p, origin);
+            dot(arm, arm)
+        })
+    };
+    let first = from(*points.first()?)?.0;
+    let (second, square) = from(points[first])?;
+    let axis = sub(points[second], points[first]);
+    let (third, off) = farthest(&|p| norm(cross(axis, sub(p, points[first]))))?;
+    (off > ANGLE * square).then_some([first, second, third])
+}

@@ -1,0 +1,114 @@
+//! Rigid subdomains: their rows measure motions, products know nothing of their stiffness, and what is refused.
+
+use crate::common::{self, dot, noise};
+use signorini_fem_mesh::vec3::{add, cross, sub};
+use signorini_fem_mesh::{Hooke, Materials, brick};
+use signorini_qp::SymmetricOperator;
+use signorini_tfeti::{NodeSupport, RigidSupport, Tfeti, TfetiBuilder, TfetiError};
+
+const POINT: [f64; 3] = [4.0, -0.3, 0.7];
+
+/// A brick held at one end with a rigid subdomain at the other, of which all motions about a point are held.
+fn system(held: &[RigidSupport]) -> Result<Tfeti, TfetiError> {
+    let b = common::Brick::new(1, 2);
+    let cut = b.decomposition.clone();
+    let cut = cut
+        .with_rigid(vec![b.mesh.nodes_on(brick::X_MAX)])
+        .expect("nodes of the mesh");
+    let materials = Materials::uniform(Hooke::isotropic(2e11, 0.3).expect("steel"));
+    let supports = [NodeSupport::fixed(b.mesh.nodes_on(brick::X_MIN))];
+    let builder = TfetiBuilder::new(&b.mesh, &cut, &materials).with_supports(&supports);
+    builder.with_rigid_supports(held).build()
+}
+
+fn held(component: usize) -> RigidSupport {
+    let number = common::Brick::new(1, 2).decomposition.subdomains().len() as u32;
+    RigidSupport {
+        subdomain: number,
+        point: POINT,
+        component,
+        values: vec![(1, 2.0 + component as f64)],
+    }
+}
+
+#[test]
+fn rows_measure_rigid_motions() {
+    let all: Vec<RigidSupport> = (0..6).map(held).collect();
+    let tfeti = system(&all).expect("a system");
+    let (gluing, mesh) = (tfeti.gluing(), common::Brick::new(1, 2).mesh);
+    let rows = gluing.ranges().rigid.clone();
+    assert!(rows.len() == 6 && rows.start == gluing.ranges().tied.end && rows.end == gluing.ranges().dirichlet.start);
+    let nodes = mesh.nodes_on(brick::X_MAX);
+    let rigid = tfeti.subdomains() - 1;
+    for motion in noise(60, 5).as_chunks::<6>().0 {
+        let [x, y, z, a, b, c] = *motion;
+        let mut u = vec![0.0; tfeti.torn_dim()];
+        for (node, u) in nodes.iter().zip(u[tfeti.torn_range(rigid)].as_chunks_mut().0) {
+            let arm = sub(mesh.points()[*node as usize], POINT);
+            *u = add([x, y, z], cross([a, b, c], arm));
+        }
+        let mut out = vec![0.0; tfeti.dual_dim()];
+        tfeti.rows_times(&u, &mut out);
+        for (k, row) in rows.clone().enumerate() {
+            let entries = gluing.row(row);
+            let length: f64 = entries.iter().map(|e| e.2 * e.2).sum();
+            let prescribed = gluing
+                .prescribed(1)
+                .iter()
+                .find(|p| p.0 as usize == row)
+                .expect("moves");
+            let scale = prescribed.1 / (2.0 + k as f64);
+            assert!((length - 1.0).abs() < 1e-12 && (out[row] - scale * motion[k]).abs() < 1e-12);
+        }
+        let [displacement, rotation] = tfeti.rigid_motion(rigid, &u, POINT);
+        let found = [displacement, rotation].concat();
+        assert!(
+            found.iter().zip(motion).all(|(a, b)| (a - b).abs() < 1e-12),
+            "{found:?} {motion:?}"
+        );
+    }
+}
+
+/// `F` is symmetric and positive semidefinite; multipliers of what holds the rigid subdomain move nothing.
+#[test]
+fn products_are_those_of_the_elastic_subdomains() {
+    let tfeti = system(&[held(0), held(4)]).expect("a system");
+    let (f, n) = (tfeti.dual(), tfeti.dual_dim());
+    let mut scratch = f.scratch();
+    let [x, y] = [7, 8].map(|seed| noise(n, seed));
+    let mut times = |x: &[f64]| {
+        let mut out = vec![f64::NAN; n];
+        f.apply(x, &mut out, &mut scratch);
+        out
+    };
+    let (fx, fy) = (times(&x), times(&y));
+    assert!((dot(&x, &fy) - dot(&y, &fx)).abs() < 1e-12 * dot(&x, &fx) && dot(&x, &fx) > 0.0);
+    let mut only = vec![0.0; n];
+    only[tfeti.gluing().ranges().rigid.clone()].fill(1.0);
+    assert!(times(&only).iter().all(|v| *v == 0.0));
+    assert!(tfeti.coarse_factor().expect("a factor").free_motions().is_empty());
+}
+
+#[test]
+fn what_is_refused() {
+    let refused = |support: RigidSupport| system(&[support]).map(|_| ()).expect_err("refused");
+    let elastic = RigidSupport {
+        subdomain: 0,
+        ..held(0)
+    };
+    assert_eq!(refused(elastic), TfetiError::RigidSupport { subdomain: 0 });
+    let none = RigidSupport {
+        subdomain: 99,
+        ..held(0)
+    };
+    assert_eq!(refused(none), TfetiError::RigidSupport { subdomain: 99 });
+    let subdomain = held(0).subdomain as usize;
+    let nowhere = RigidSupport {
+        point: [f64::INFINITY, 0.0, 0.0],
+        ..held(1)
+    };
+    let values = vec![(0, f64::NAN)];
+    for bad in [held(6), nowhere, RigidSupport { values, ..held(0) }] {
+        assert_eq!(refused(bad), TfetiError::RigidSupport { subdomain });
+    }
+}
