@@ -82,6 +82,10 @@ signorini_fem_mesh::errors! {
         SpringStiffness { spring: usize, value: f64 } =
             "spring {spring}: its stiffness is {value}; it must be finite and not negative, and some component \
             positive";
+        Coupling { coupling: usize, node: Option<u32>, reason: &'static str } =
+            "coupling {coupling}{}: {reason}", node.map_or(String::new(), |n| format!(", node {n}"));
+        UnknownCoupling { load: usize, coupling: usize, couplings: usize } =
+            "load {load}: coupling {coupling} does not exist, the scene has {couplings}, numbered from 0";
         UnknownNode { support: usize, node: u32, nodes: usize } =
             "support {support}: node {node} does not exist, the mesh has {nodes} nodes, numbered from 0";
         ValueCount { support: usize, values: usize, nodes: usize } =

@@ -90,6 +90,11 @@ impl ContactError {
             Self::UnknownTag { what, index, .. } | Self::HistoryValue { what, index, .. } => {
                 Part::of_scene(what, *index).into_iter().collect()
             }
+            Self::Coupling { coupling, node, .. } => {
+                let node = node.map(Part::Node);
+                [Part::Coupling(*coupling)].into_iter().chain(node).collect()
+            }
+            Self::UnknownCoupling { load, .. } => vec![Part::Load(*load)],
             Self::SpringStiffness { spring, .. } => vec![Part::Spring(*spring)],
             Self::UnknownNode { support, .. }
             | Self::ValueCount { support, .. }

@@ -12,6 +12,8 @@ pub enum Part {
     Support(usize),
     /// A spring.
     Spring(usize),
+    /// A rigid coupling.
+    Coupling(usize),
     /// A load.
     Load(usize),
     /// A node of the mesh.
@@ -33,6 +35,7 @@ impl Part {
             "contact" => Self::Contact(index),
             "support" => Self::Support(index),
             "spring" => Self::Spring(index),
+            "coupling" => Self::Coupling(index),
             "load" => Self::Load(index),
             _ => return None,
         })
@@ -45,6 +48,7 @@ impl std::fmt::Display for Part {
             Self::Contact(index) => write!(f, "contact {index}"),
             Self::Support(index) => write!(f, "support {index}"),
             Self::Spring(index) => write!(f, "spring {index}"),
+            Self::Coupling(index) => write!(f, "coupling {index}"),
             Self::Load(index) => write!(f, "load {index}"),
             Self::Node(node) => write!(f, "node {node}"),
             Self::Tet(tet) => write!(f, "tetrahedron {tet}"),

@@ -29,7 +29,8 @@ fn longest(around: &AABB<[f64; 3]>) -> f64 {
 impl Extents {
     /// Bodies are sets of subdomains that share faces: each of these is connected.
     pub(crate) fn new(mesh: &TetMesh, decomposition: &Decomposition) -> Self {
-        let subdomains = decomposition.subdomains();
+        // rigid ones are no bodies of their own
+        let subdomains: Vec<_> = decomposition.subdomains().iter().filter(|s| !s.is_rigid()).collect();
         let mut sets = DisjointSets::new(subdomains.len());
         for (tet, &own) in decomposition.parts().iter().enumerate() {
             let others = mesh.neighbours(tet).into_iter().flatten();
@@ -65,7 +66,8 @@ impl Extents {
             }
         }
         let copies = nodes.flat_map(|node| decomposition.copies(node as usize));
-        let touched: BTreeSet<u32> = copies.map(|copy| copy.subdomain).collect();
+        let elastic = copies.filter(|copy| !decomposition.subdomains()[copy.subdomain as usize].is_rigid());
+        let touched: BTreeSet<u32> = elastic.map(|copy| copy.subdomain).collect();
         let slenderness = touched.into_iter().map(|part| {
             let ([volume, surface], part) = (sizes[part as usize], &decomposition.subdomains()[part as usize]);
             longest(&around(mesh, &part.nodes)) * surface / (4.0 * volume)

@@ -1,6 +1,7 @@
 //! Materials, loads, motions and gaps whose squares would overflow are refused with their place before anything is
 //! solved: solvers would only see norms that are infinite or vanish, and blame their tolerance.
 
+use super::couplings::Couplings;
 use super::points::ContactPoint;
 use crate::error::ContactError;
 use crate::part::Part;
@@ -71,6 +72,16 @@ pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactErr
             expect(factor * size * spring, FORCE, part, place)?;
         }
     }
+    for (index, coupling) in scene.couplings.iter().enumerate() {
+        for (motion, history) in &coupling.motions {
+            let (factor, time) = scene.analysis.largest_factor(history);
+            let size = factor * vector::max_abs(motion);
+            let part = Part::Coupling(index);
+            expect(size, LENGTH, part, || format!(" at time {time} s: its motion"))?;
+            let place = || format!(" at time {time} s: its motion times the stiffness");
+            expect(size * spring, FORCE, part, place)?;
+        }
+    }
     for (index, contact) in scene.contacts.iter().enumerate() {
         let part = Part::Contact(index);
         if let Some((value, history)) = &contact.motion {
@@ -91,7 +102,7 @@ pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactErr
 /// region, N/m.
 pub(super) fn nodal_loads(
     scene: &Scene,
-    decomposition: &Decomposition,
+    (decomposition, couplings): (&Decomposition, &Couplings),
     spring: f64,
 ) -> Result<Vec<Vec<Vec<f64>>>, ContactError> {
     let mut out = Vec::with_capacity(scene.loads.len());
@@ -99,6 +110,7 @@ pub(super) fn nodal_loads(
         let local = match &load.kind {
             LoadKind::Density(density) => assemble_load(&scene.mesh, decomposition, density),
             LoadKind::Eigenstrain(strain) => assemble_eigenstrain(&scene.mesh, decomposition, &scene.materials, strain),
+            LoadKind::Coupling(load) => Ok(couplings.forces(scene, decomposition, (index, load))?),
         };
         let local = local.map_err(|source| ContactError::Load { index, source })?;
         // a NaN stays one

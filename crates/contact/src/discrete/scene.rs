@@ -1,5 +1,6 @@
 //! The discrete scene: a scene at the nodes of its mesh, made and checked once.
 
+use super::couplings::Couplings;
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
 use super::partners::Paired;
 use super::penetration::check_penetration;
@@ -23,6 +24,7 @@ pub(crate) struct DiscreteScene {
     pub(crate) decomposition: Decomposition,
     pub(crate) supports: Supports,
     pub(crate) springs: Springs,
+    pub(crate) couplings: Couplings,
     /// The sides that have the contact points, in the order of the contacts, fixed nodes included.
     pub(crate) surfaces: Vec<Surface>,
     /// What the contacts say: each of their nodes with each of its normals.
@@ -52,7 +54,8 @@ impl DiscreteScene {
     pub(crate) fn new(scene: &Scene) -> Result<Self, ContactError> {
         scene.validate()?;
         let decomposition = scene.decompose()?;
-        let supports = Supports::new(scene)?;
+        let mut supports = Supports::new(scene)?;
+        let (decomposition, couplings) = Couplings::new(scene, decomposition, &mut supports)?;
         let springs = Springs::new(scene, &supports)?;
         let largest = |m: f64, v: &f64| m.max(v.abs());
         let rounding = ROUNDING * scene.mesh.points().iter().flatten().fold(0.0, largest);
@@ -85,6 +88,7 @@ impl DiscreteScene {
             check_turn(scene, index, own, &conditions[first..end], &poses[index])?;
         }
         let (points, stands) = points(scene, &conditions, rounding)?;
+        couplings.check_contact(points.iter().chain(&ties))?;
         let [softest, stiffest] = check_materials(scene)?;
         check_motions(scene, stiffest)?;
         check_gaps(scene, &conditions, &poses)?;
@@ -93,7 +97,7 @@ impl DiscreteScene {
         let nodes = scene.mesh.points().len();
         let prescribed = prescribed_points(&constraints, &supports.nodes, nodes)?;
         check_penetration(scene, &points, &prescribed, (&supports.motions, &poses), rounding)?;
-        let loads = nodal_loads(scene, &decomposition, softest)?;
+        let loads = nodal_loads(scene, (&decomposition, &couplings), softest)?;
         // both in the order of the points
         let mut without = prescribed.iter().map(|p| p.point).peekable();
         let with_rows = points.iter().enumerate();
@@ -106,6 +110,7 @@ impl DiscreteScene {
             decomposition,
             supports,
             springs,
+            couplings,
             surfaces,
             conditions,
             points,

@@ -33,13 +33,8 @@ impl Supports {
             };
             let mut one = NodeSupport::partial(own, directions);
             if let Some((given, history)) = &support.motion {
-                let known = motions.iter().position(|known| known == history);
-                let case = known.unwrap_or_else(|| {
-                    motions.push(history.clone());
-                    motions.len() - 1
-                });
                 one = one.with_motion(Motion {
-                    case: case as u32,
+                    case: case_of(&mut motions, history),
                     values: values.unwrap_or_else(|| given.clone()),
                 });
             }
@@ -55,6 +50,27 @@ impl Supports {
             directions,
         })
     }
+
+    /// Takes a node out of all supports.
+    pub(super) fn release(&mut self, node: u32) {
+        if self.directions.remove(&node).is_some() {
+            self.nodes.iter_mut().for_each(|support| support.release(node));
+        }
+    }
+
+    /// The displacement case of a history.
+    pub(super) fn case(&mut self, history: &History) -> u32 {
+        case_of(&mut self.motions, history)
+    }
+}
+
+/// The case of a history, which is a new one if it is not known.
+fn case_of(motions: &mut Vec<History>, history: &History) -> u32 {
+    let known = motions.iter().position(|known| known == history);
+    known.unwrap_or_else(|| {
+        motions.push(history.clone());
+        motions.len() - 1
+    }) as u32
 }
 
 /// Directions of a support, and its displacements if it moves.

@@ -170,10 +170,13 @@ impl Solved<'_> {
         let (model, copies) = (self.model, self.model.copies());
         let force = self.problem.forces(model);
         let (mut alone, mut moved) = (0.0_f64, 0.0);
+        let rigid = (model.tfeti.torn_range(model.discrete.couplings.first - 1)).end / 3;
         for (k, (f, u)) in force.chunks_exact(3).zip(torn.chunks_exact(3)).enumerate() {
             let stiffness = copies.weight(k);
             alone += dot(f, f) / stiffness;
-            moved += dot(u, u) * stiffness;
+            if k < rigid {
+                moved += dot(u, u) * stiffness;
+            }
         }
         let works = self.problem.peaks.iter();
         let before = REST * REST * works.map(|p| p.multipliers * p.displacement).sum::<f64>();

@@ -102,6 +102,7 @@ impl Model {
         let (plan, forecast) = Plan::of(&scene, &discrete, settings)?;
         let tfeti = TfetiBuilder::of_forecast(&forecast)
             .with_supports(&discrete.supports.nodes)
+            .with_rigid_supports(&discrete.couplings.supports)
             .with_springs(&discrete.springs.nodal)
             .with_contact(&discrete.constraints)
             .with_communicator(&settings.communicator)
@@ -114,7 +115,7 @@ impl Model {
                     false => tfeti.load_response(&local)?,
                 };
                 // strain that makes no stress is in balance, and no rounding is to push a body that nothing holds
-                if load.density().is_none() {
+                if load.is_eigenstrain() {
                     response.coarse.fill(0.0);
                 }
                 Ok::<_, TfetiError>(response)
@@ -125,9 +126,9 @@ impl Model {
         let strained = loads
             .iter()
             .zip(&scene.loads)
-            .map(|(response, load)| match load.density() {
-                Some(_) => Vec::new(),
-                None => bodies.torn_squares(&tfeti, &response.force),
+            .map(|(response, load)| match load.is_eigenstrain() {
+                false => Vec::new(),
+                true => bodies.torn_squares(&tfeti, &response.force),
             });
         let strained = strained.collect();
         let points = constrained_points(&discrete.points, tfeti.gluing());

@@ -41,7 +41,9 @@ pub struct Effects {
     pub supports: bool,
     /// Elastic foundations.
     pub springs: bool,
-    /// Supports that move.
+    /// Rigid couplings.
+    pub couplings: bool,
+    /// Supports or couplings that move.
     pub motion: bool,
     /// Obstacles that move.
     pub moving_obstacle: bool,
@@ -87,7 +89,8 @@ impl Effects {
             gluing: discrete.decomposition.subdomains().len() > 1,
             supports: !scene.supports.is_empty(),
             springs: !scene.springs.is_empty(),
-            motion: scene.supports.iter().any(|s| s.motion.is_some()),
+            couplings: !scene.couplings.is_empty(),
+            motion: !discrete.supports.motions.is_empty(),
             moving_obstacle: contacts.iter().any(|c| !c.tied && c.moves()),
             moving_ties: contacts.iter().any(|c| c.tied && c.moves()),
             compliance: contacts.iter().any(|c| c.compliance != [0.0; 2]),

@@ -40,7 +40,7 @@ pub struct Plan {
     pub tangential_rows: usize,
     /// Rows of `B_int`.
     pub interface_rows: usize,
-    /// Rows of `B_Dir`.
+    /// Rows of `B_Dir`, and those that hold couplings.
     pub dirichlet_rows: usize,
     /// Rows of tied contacts.
     pub tied_rows: usize,
@@ -148,7 +148,9 @@ impl Plan {
             tangential_rows: points.iter().filter(rough).map(|p| free(p) - 1).sum(),
             // each copy of a node but one is glued
             interface_rows: primal - 3 * nodes,
-            dirichlet_rows: fixed.values().map(Vec::len).sum::<usize>() + discrete.springs.nodal.len(),
+            dirichlet_rows: fixed.values().map(Vec::len).sum::<usize>()
+                + discrete.springs.nodal.len()
+                + discrete.couplings.supports.len(),
             tied_rows: discrete.ties.iter().map(free).sum(),
             rank: settings.communicator.rank(),
             ranks: settings.communicator.size(),

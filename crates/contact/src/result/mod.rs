@@ -1,5 +1,5 @@
 //! What a step ended with: states of contact points (`points`), sums over them (`summary`), contact stresses
-//! (`surface_stress`), `reactions`, and the `certificate` of all conditions, measured by `certify`.
+//! (`surface_stress`), `reactions`, motions of couplings (`coupling_motion`), and the `certificate` of all conditions, measured by `certify`.
 //!
 //! All of it follows from the recovered displacement and the multipliers; nothing relies on a solver's own report.
 //!
@@ -8,6 +8,7 @@
 
 mod certificate;
 mod certify;
+mod coupling_motion;
 mod points;
 mod reactions;
 mod recovered;
@@ -18,6 +19,7 @@ mod surface_stress;
 
 pub(crate) use certificate::contact_violation;
 pub use certificate::{Certificate, Violation};
+pub use coupling_motion::CouplingMotion;
 pub use points::{ContactState, PointState};
 pub use reactions::{NodalForce, Reactions, Resultant, SupportReaction};
 pub(crate) use reactions::{nodal_reactions, reactions_about, tied_forces};

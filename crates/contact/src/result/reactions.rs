@@ -83,6 +83,8 @@ pub struct Reactions {
     pub supports: Vec<SupportReaction>,
     /// Reactions of the [elastic foundations](crate::Spring), in the order of the scene.
     pub springs: Vec<SupportReaction>,
+    /// Reactions of what holds the [couplings](crate::Coupling), in the order of the scene.
+    pub couplings: Vec<Resultant>,
     /// Contact pressure and friction of obstacles. Forces between bodies cancel; so do their moments, except that of
     /// friction across an initial gap between matching or plane sides, because moments use the undeformed state.
     pub contact: Resultant,
@@ -102,10 +104,11 @@ impl Reactions {
         sum
     }
 
-    /// Supports, springs, contact and loads together; zero in equilibrium.
+    /// Supports, springs, couplings, contact and loads together; zero in equilibrium.
     pub fn imbalance(&self) -> Resultant {
         let mut sum = self.of_supports();
         self.springs.iter().for_each(|s| sum += s.resultant);
+        self.couplings.iter().for_each(|c| sum += *c);
         sum += self.contact;
         sum += self.loads;
         sum
@@ -223,6 +226,7 @@ pub(crate) fn reactions_about(
         point: about,
         supports: by_support(&model.discrete.supports, &forces, arm),
         springs: by_spring(model, recovered, arm),
+        couplings: by_coupling(model, recovered, arm),
         contact,
         contacts,
         loads: loads(model, problem, arm),
@@ -243,6 +247,21 @@ fn loads(model: &Model, problem: &StepProblem, arm: impl Fn(u32) -> [f64; 3]) ->
         }
     }
     sum
+}
+
+/// What holds the couplings, from the multipliers of their rows.
+fn by_coupling(model: &Model, recovered: &Recovered, arm: impl Fn(u32) -> [f64; 3]) -> Vec<Resultant> {
+    let mut out = vec![Resultant::default(); model.scene.couplings.len()];
+    let couplings = &model.discrete.couplings;
+    let rows = model.tfeti.gluing().ranges().rigid.clone();
+    for ((row, lambda), held) in rows.zip(&recovered.rigid_multipliers).zip(&couplings.supports) {
+        for (node, c, coefficient) in model.row(row) {
+            let mut force = [0.0; 3];
+            force[c] = lambda * coefficient;
+            out[held.subdomain as usize - couplings.first].add(arm(node), force);
+        }
+    }
+    out
 }
 
 /// What springs do, from the multipliers of their rows; several at a node have the parts that their stiffness has.

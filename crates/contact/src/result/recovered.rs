@@ -27,6 +27,8 @@ pub(crate) struct Recovered {
     pub(crate) points: Vec<PointState>,
     /// Multipliers of the support rows.
     pub(crate) support_multipliers: Vec<f64>,
+    /// Multipliers of the rows that hold couplings.
+    pub(crate) rigid_multipliers: Vec<f64>,
     /// Multipliers of the rows of tied contacts.
     pub(crate) tied_multipliers: Vec<f64>,
 }
@@ -64,6 +66,7 @@ impl Recovered {
             certificate: certify(&measured, &sizes),
             points: point_states(model, problem, lambda, (&rows, &gives_way)),
             support_multipliers: lambda[tfeti.gluing().ranges().dirichlet.clone()].to_vec(),
+            rigid_multipliers: lambda[tfeti.gluing().ranges().rigid.clone()].to_vec(),
             tied_multipliers: lambda[tfeti.gluing().ranges().tied.clone()].to_vec(),
             sizes,
             torn,

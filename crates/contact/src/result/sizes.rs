@@ -63,7 +63,9 @@ pub(super) fn sizes(m: &Measured<'_>) -> Vec<Sizes> {
         for ((f, u), copy) in nodes.zip(range.start / 3..) {
             let stiffness = copies.weight(copy);
             displacement = displacement.max(vector::max_abs(f) / stiffness);
-            stiff += stiffness * stiffness * vector::dot(u, u);
+            if subdomain < model.discrete.couplings.first {
+                stiff += stiffness * stiffness * vector::dot(u, u);
+            }
         }
         let [residual, force] = [residual, &force].map(|v| vector::dot(v, v));
         [displacement, stiff, residual, force]

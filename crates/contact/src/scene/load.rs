@@ -14,6 +14,15 @@ pub struct Load {
 pub(crate) enum Kind {
     Density(LoadDensity),
     Eigenstrain(Eigenstrain),
+    Coupling(CouplingLoad),
+}
+
+/// A force and a moment, N and N m, on the reference point of a coupling.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct CouplingLoad {
+    pub(crate) coupling: usize,
+    pub(crate) force: [f64; 3],
+    pub(crate) moment: [f64; 3],
 }
 
 impl Load {
@@ -76,18 +85,31 @@ impl Load {
         Self::new(LoadDensity::body(value))
     }
 
+    /// A force, N, and a moment, N m, on the reference point of a [coupling](crate::Coupling), by its number in the scene.
+    pub fn on_coupling(coupling: usize, force: [f64; 3], moment: [f64; 3]) -> Self {
+        Self::of(Kind::Coupling(CouplingLoad {
+            coupling,
+            force,
+            moment,
+        }))
+    }
+
     /// The load is multiplied by `history(t)`.
     pub fn with_history(mut self, history: History) -> Self {
         self.history = history;
         self
     }
 
-    /// The load in space; `None` of an eigenstrain.
+    /// The load in space; `None` of an eigenstrain and on a coupling.
     pub fn density(&self) -> Option<&LoadDensity> {
         match &self.kind {
             Kind::Density(density) => Some(density),
-            Kind::Eigenstrain(_) => None,
+            Kind::Eigenstrain(_) | Kind::Coupling(_) => None,
         }
+    }
+
+    pub(crate) fn is_eigenstrain(&self) -> bool {
+        matches!(self.kind, Kind::Eigenstrain(_))
     }
 
     /// Its factor in time.

@@ -9,6 +9,7 @@
 //! `validate` makes the checks that need no computation, `discrete` the others.
 
 mod contact;
+mod coupling;
 mod facets;
 mod friction;
 mod gap;
@@ -24,11 +25,12 @@ mod validate;
 
 pub use contact::Contact;
 pub(crate) use contact::ContactNormal;
+pub use coupling::Coupling;
 pub(crate) use friction::check_laws;
 pub use friction::{Coefficient, Friction, SlipBound};
 pub(crate) use gap::Gap;
-pub(crate) use load::Kind as LoadKind;
 pub use load::Load;
+pub(crate) use load::{CouplingLoad, Kind as LoadKind};
 pub use obstacle::Obstacle;
 pub use partition::Partition;
 pub(crate) use pose::Pose;

@@ -1,6 +1,7 @@
 //! The scene: plain data that say what is to be simulated.
 
 use super::contact::Contact;
+use super::coupling::Coupling;
 use super::load::Load;
 use super::partition::Partition;
 use super::spring::Spring;
@@ -22,6 +23,7 @@ pub struct Scene {
     pub(crate) springs: Vec<Spring>,
     pub(crate) loads: Vec<Load>,
     pub(crate) contacts: Vec<Contact>,
+    pub(crate) couplings: Vec<Coupling>,
     pub(crate) partition: Partition,
     pub(crate) analysis: Analysis,
     pub(crate) names: Names,
@@ -40,6 +42,7 @@ impl Scene {
             springs: Vec::new(),
             loads,
             contacts: Vec::new(),
+            couplings: Vec::new(),
             partition: Partition::Automatic,
             analysis: Analysis::statics(),
             names: Names::default(),
@@ -72,6 +75,12 @@ impl Scene {
     /// equal distance, with the law of the contact added first and the area of both.
     pub fn with_contact(mut self, contact: Contact) -> Self {
         self.contacts.push(contact);
+        self
+    }
+
+    /// Adds a rigid coupling.
+    pub fn with_coupling(mut self, coupling: Coupling) -> Self {
+        self.couplings.push(coupling);
         self
     }
 
@@ -154,6 +163,11 @@ impl Scene {
         &self.springs
     }
 
+    /// The rigid couplings, in the order in which they were added.
+    pub fn couplings(&self) -> &[Coupling] {
+        &self.couplings
+    }
+
     /// The loads, those of the materials' eigenstrains first, then in the order in which they were added.
     pub fn loads(&self) -> &[Load] {
         &self.loads
@@ -174,7 +188,7 @@ impl Scene {
         &self.analysis
     }
 
-    /// The decomposition that the scene asks for.
+    /// The decomposition that the scene asks for, without what couplings add.
     pub(crate) fn decompose(&self) -> Result<Decomposition, ContactError> {
         self.partition.decompose(&self.mesh, &self.materials)
     }

@@ -42,7 +42,7 @@ impl Scene {
         Ok(nodes)
     }
 
-    fn unknown_tag(&self, what: &'static str, index: usize, tag: FacetTag) -> ContactError {
+    pub(crate) fn unknown_tag(&self, what: &'static str, index: usize, tag: FacetTag) -> ContactError {
         ContactError::UnknownTag {
             what,
             index,
@@ -82,6 +82,8 @@ impl Scene {
         let loads = self.loads.iter().enumerate();
         let supports = self.supports.iter().enumerate();
         let contacts = self.contacts.iter().enumerate();
+        let couplings = self.couplings.iter().enumerate();
+        let couplings = couplings.flat_map(|(k, c)| c.motions.iter().map(move |(_, h)| ("coupling", k, h)));
         (loads.map(|(k, l)| ("load", k, &l.history)))
             .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
             .chain(contacts.flat_map(|(k, c)| {
@@ -89,6 +91,7 @@ impl Scene {
                 let turn = c.rotation.as_ref().map(|rotation| &rotation.angle);
                 (motion.into_iter().chain(turn).chain(&c.gap_history)).map(move |h| ("contact", k, h))
             }))
+            .chain(couplings)
     }
 
     fn check(&self, index: usize, contact: &Contact) -> Result<(), ContactError> {

@@ -29,7 +29,9 @@ impl Fingerprint {
         let mesh = &model.scene.mesh;
         let coordinates = mesh.points().iter().flatten();
         let tets = mesh.tets().iter().flatten().chain(mesh.mids().iter().flatten());
-        let parts = model.discrete.decomposition.parts().iter();
+        let decomposition = &model.discrete.decomposition;
+        let rigid = decomposition.subdomains().iter().filter(|s| s.is_rigid());
+        let parts = decomposition.parts().iter().chain(rigid.flat_map(|s| &s.nodes));
         Self {
             points: hash(coordinates.map(|x| number(*x))),
             tets: hash(tets.map(|n| u64::from(*n))),
@@ -170,10 +172,15 @@ fn supports(model: &Model) -> u64 {
             *sum += product / square;
         }
     }
-    hash(nodes.into_iter().flat_map(|(node, projector)| {
+    let nodes = nodes.into_iter().flat_map(|(node, projector)| {
         let rounded = projector.map(|v| number((v * 1e7).round()));
         std::iter::once(u64::from(node)).chain(rounded)
-    }))
+    });
+    let couplings = model.discrete.couplings.supports.iter().flat_map(|s| {
+        let whose = [u64::from(s.subdomain), s.component as u64];
+        whose.into_iter().chain(s.point.map(number))
+    });
+    hash(nodes.chain(couplings))
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ mod column;
 mod common;
 mod compliance;
 mod contact_stress;
+mod couplings;
 mod crack;
 mod curved_sides;
 mod determinism;
