@@ -82,7 +82,7 @@
 //! | `*RIGID BODY` | `ELSET`, `NSET` or `TIE NSET`, `REF NODE`, `ROT NODE` | an obstacle, or nodes of elastic elements that it carries, see below |
 //! | `*COUPLING` | `CONSTRAINT NAME`, `REF NODE`, `SURFACE` | a node that stands for a surface, as the card behind it says |
 //! | `*DISTRIBUTING` | `COUPLING=CONTINUUM`, `WEIGHTING METHOD=UNIFORM` | forces and moments of the node are spread over the surface by areas (of flat faces), growing linearly from its centroid; it stays elastic |
-//! | `*KINEMATIC` | | the surface has the displacement and the small rotation of the node, whose components 1 to 6 are held or moved |
+//! | `*KINEMATIC` | | the surface has the displacement and the small rotation of the node, whose components 1 to 6 are held, moved, loaded or free |
 //! | `*TRANSFORM` | `NSET`, `TYPE=R`, `C` | axes of nodes, along which their supports and forces are |
 //! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `XASYMM` and so on; rotations held at zero are ignored on solids |
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |
@@ -120,12 +120,12 @@
 //! ([`Contact::obstacle`](signorini_contact::Contact::obstacle)), with triangles between neighbouring nodes; nodes that
 //! do not face it touch nothing. Elements of rigid bodies are not part of the mesh and need no section.
 //!
-//! Nodes of elastic elements in a rigid body, by its `NSET` or by elements that share them, become supports with the
-//! displacement of the body, for small rotations.
-//!
-//! All six components of the reference node must be held or moved (rotations are 4 to 6, `ENCASTRE` is all, or the
-//! components 1 to 3 of the rotation node; the same if both). Of an obstacle, and of what turns, displacement and
-//! rotation have one history each. A body that is free or loaded is refused.
+//! The reference node has six components: rotations are 4 to 6, or the components 1 to 3 of the rotation node (the same
+//! if both), `ENCASTRE` is all. Nodes of elastic elements in a rigid body, by its `NSET` or by elements that share them,
+//! become supports with the displacement of the body, for small rotations, if all are held or moved. If some are free or
+//! loaded they become a [rigid coupling](signorini_contact::Coupling), and solid elements of its `ELSET` are elastic ones
+//! with a section, coupled. Of an obstacle, and of what is turned as a support, displacement and rotation have one
+//! history each. An obstacle of facets that is free or loaded is refused.
 //!
 //! # Parts and instances
 //!

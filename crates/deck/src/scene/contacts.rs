@@ -6,7 +6,7 @@ use signorini_contact::{Contact, Friction};
 use signorini_fem_mesh::FacetTag;
 
 use super::faces::{FaceTable, Known};
-use super::rigid::{Lead, obstacle};
+use super::rigid::{FreeLead, Lead, obstacle};
 use super::ties;
 use crate::error::{DeckError, Fault};
 use crate::lexer::Named;
@@ -17,7 +17,7 @@ pub(super) fn contacts(
     known: Known,
     faces: &FaceTable,
     surfaces: &Names<Vec<FacetTag>>,
-    leads: &[Lead],
+    leads: &[Result<Lead, FreeLead>],
     ignored: &mut Vec<Ignored>,
 ) -> Result<Vec<Contact>, DeckError> {
     let model = known.model;

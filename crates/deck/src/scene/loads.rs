@@ -11,6 +11,7 @@ use signorini_fem_mesh::{FacetTag, LoadDensity};
 use super::faces::{FaceTable, Known};
 use super::history::{Histories, Tracks};
 use super::spread::Spread;
+use super::supports::Rigid;
 use super::volume::Volume;
 use crate::error::{DeckError, Word};
 use crate::model::{Components, Condition, Conditions, CouplingLaw, DistributedKind, FORCE, Target};
@@ -27,8 +28,10 @@ type Forces = BTreeMap<usize, (usize, BTreeMap<u32, Vec3>)>;
 enum Place {
     /// A node of the mesh.
     Node(u32),
-    /// The surface of a coupling, by its position.
+    /// The surface of a distributing coupling, by its position.
     Coupling(usize),
+    /// What is rigid, by its reference node in the deck.
+    Rigid(u32),
 }
 
 /// All loads, with the pressures noted in the table of faces.
@@ -38,6 +41,8 @@ pub(super) struct Loads {
     /// Value, history, place among all.
     pressures: Vec<(f64, usize, usize)>,
     forces: Forces,
+    /// Forces and moments on what is rigid: by its reference node and history, with their place among all.
+    rigid: BTreeMap<(u32, usize), (usize, [f64; 6])>,
     /// Loads of the whole mesh: place among all, density, history.
     bodies: Vec<(usize, LoadDensity, usize)>,
     /// The targets in the order of the deck.
@@ -74,6 +79,12 @@ impl Loads {
                     let at = (node, known.raw.points[node as usize]);
                     let force = known.transforms.force(at, component, value, &track.word)?;
                     loads.force(history, track.order, node, force);
+                }
+                Place::Rigid(reference) => {
+                    let new = (track.order, [0.0; 6]);
+                    let (order, forces) = loads.rigid.entry((reference, history)).or_insert(new);
+                    *order = track.order.min(*order);
+                    forces[component] += value;
                 }
                 Place::Coupling(index) => {
                     let spread = match spreads.entry(index) {
@@ -135,25 +146,41 @@ impl Loads {
         add_force(&mut self.forces, (history, order), node, force);
     }
 
+    /// The reference nodes of what is rigid that have loads, by position, with the word of one.
+    pub(super) fn on_rigid(&self) -> BTreeMap<u32, Word> {
+        let word = |(key, load): (&(u32, usize), &(usize, [f64; 6]))| (key.0, self.words[load.0].clone());
+        self.rigid.iter().map(word).collect()
+    }
+
     /// The loads of the scene, in the order of the deck, each with the first word that asks for it; `tags` are those of
-    /// the faces.
-    pub(super) fn lower(self, faces: &FaceTable, tags: &[FacetTag]) -> Vec<(Load, Word)> {
-        let mut out: Vec<(usize, LoadDensity, usize)> = Vec::new();
+    /// the faces, `rigid` the couplings of the scene.
+    pub(super) fn lower(self, faces: &FaceTable, tags: &[FacetTag], rigid: &[Rigid]) -> Vec<(Load, Word)> {
+        let mut out: Vec<(usize, Load, usize)> = Vec::new();
         for (number, (value, history, order)) in (0..).zip(&self.pressures) {
             let with = faces.list.iter().zip(tags);
             let with = with.filter(|(face, _)| face.pressure == Some(number));
             let tags = distinct(with.map(|(_, tag)| *tag));
-            let pressure = |tag| (*order, LoadDensity::pressure(tag, *value), *history);
+            let pressure = |tag| (*order, Load::pressure(tag, *value), *history);
             out.extend(tags.into_iter().map(pressure));
         }
         for (history, (order, forces)) in self.forces {
             let forces = forces.into_iter().collect();
-            out.push((order, LoadDensity::nodal_forces(forces), history));
+            out.push((order, Load::new(LoadDensity::nodal_forces(forces)), history));
         }
-        out.extend(self.bodies);
+        out.extend(
+            self.bodies
+                .into_iter()
+                .map(|(order, density, history)| (order, Load::new(density), history)),
+        );
+        for ((reference, history), (order, [a, b, c, d, e, f])) in self.rigid {
+            // loaded ones are couplings
+            let number = rigid.iter().position(|r| r.reference == reference);
+            let load = |number| (order, Load::on_coupling(number, [a, b, c], [d, e, f]), history);
+            out.extend(number.map(load));
+        }
         out.sort_by_key(|load| load.0);
-        let load = |(order, density, history): (usize, LoadDensity, usize)| {
-            let load = Load::new(density).with_history(self.histories.at(history));
+        let load = |(order, load, history): (usize, Load, usize)| {
+            let load = load.with_history(self.histories.at(history));
             (load, self.words[order].clone())
         };
         out.into_iter().map(load).collect()
@@ -185,8 +212,8 @@ impl Known<'_> {
             let order = words.len();
             words.push(line.word.clone());
             for node in self.sets.nodes.find(&line.target, &line.word)? {
-                let place = self.place_of_force(node, line)?;
-                for component in (0..6).filter(|&c| line.kind.on[c]) {
+                let (place, first) = self.place_of_force(node, line)?;
+                for component in (0..6).filter(|&c| line.kind.on[c]).map(|c| first + c) {
                     tracks.set((place, component), (step, order, true), line.given, &line.word)?;
                 }
             }
@@ -194,28 +221,28 @@ impl Known<'_> {
         Ok(())
     }
 
-    /// What a force at a node of the deck, by position, is on.
-    fn place_of_force(self, node: u32, line: &Condition<Components>) -> Result<Place, DeckError> {
+    /// What a force at a node of the deck, by position, is on, and which component there its first one is.
+    fn place_of_force(self, node: u32, line: &Condition<Components>) -> Result<(Place, usize), DeckError> {
         let rotation = line.kind.rotation.as_ref();
         if let Some((index, coupling)) = self.couplings.of(node) {
             let CouplingLaw::Distributing { moments } = coupling.law else {
-                return Err(line.word.cannot(
-                    "a surface that keeps its shape and moves under a force is not here; spread the force with \
-                    *DISTRIBUTING",
-                ));
+                return Ok((Place::Rigid(node), 0));
             };
             return match rotation.filter(|_| (0..3).any(|c| line.kind.on[3 + c] && !moments[c])) {
                 Some(word) => {
                     Err(word.cannot("the *DISTRIBUTING of this node does not name the component; add it there"))
                 }
-                None => Ok(Place::Coupling(index)),
+                None => Ok((Place::Coupling(index), 0)),
             };
         }
-        if self.bodies.has(node) {
-            return Err(line.word.cannot(
-                "a rigid body is held or moved here, not loaded; give its displacement with *BOUNDARY, whose reaction \
-                is the force",
-            ));
+        match (self.bodies.reference_of(node), rotation) {
+            (Some((_, true)), Some(word)) => {
+                return Err(word.cannot("components 1 to 3 of a ROT NODE are the moments; give these"));
+            }
+            (Some((reference, is_rotation)), _) => {
+                return Ok((Place::Rigid(reference), if is_rotation { 3 } else { 0 }));
+            }
+            (None, _) => {}
         }
         let inside = self.raw.in_mesh(node).ok_or_else(|| {
             let label = self.model.nodes[node as usize].label;
@@ -225,7 +252,7 @@ impl Known<'_> {
         })?;
         match rotation {
             Some(word) => Err(word.expected(FORCE)),
-            None => Ok(Place::Node(inside)),
+            None => Ok((Place::Node(inside), 0)),
         }
     }
 

@@ -79,20 +79,23 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     let mesh = raw.mesh(path, model, faces.facets(&tags), regions, |part| parts.name(part))?;
     let surfaces = faces.tags_of(&tags, model);
 
-    let mut supports = supports::supports(known, &faces)?;
+    let mut supports = supports::supports(known, &faces, &loads.on_rigid())?;
     supports.ignored.append(&mut notes);
     let contacts = contacts::contacts(known, &faces, &surfaces, &supports.leads, &mut supports.ignored)?;
     let warm = temperatures::temperatures(known, &mut supports.ignored)?;
-    let loads = loads.lower(&faces, &tags).into_iter().chain(warm);
+    let loads = loads.lower(&faces, &tags, &supports.rigid).into_iter().chain(warm);
     let (loads, words): (Vec<_>, Vec<_>) = loads.unzip();
     let (support_names, held): (Vec<_>, Vec<_>) = supports.names.into_iter().unzip();
     parts.steps = timeline.steps();
     parts.tagged(&surfaces);
     parts.loads = words.iter().map(Word::told).collect();
     parts.supports = held.iter().map(Word::told).collect();
+    parts.couplings = supports.rigid.iter().map(|r| r.word.told()).collect();
     let scene = materials.map(|materials| {
         let scene = Scene::new(mesh.clone(), materials).with_analysis(timeline.analysis());
         let scene = supports.list.into_iter().fold(scene, Scene::with_support);
+        let couplings = supports.rigid.into_iter().map(|r| r.coupling);
+        let scene = couplings.fold(scene, Scene::with_coupling);
         let scene = loads.into_iter().fold(scene, Scene::with_load);
         let scene = contacts.into_iter().fold(scene, Scene::with_contact);
         scene.with_names(move |part| parts.name(part))

@@ -12,6 +12,7 @@ use crate::model::{Law, Names, Pair};
 pub(super) struct Parts {
     contacts: Vec<String>,
     pub(super) supports: Vec<String>,
+    pub(super) couplings: Vec<String>,
     pub(super) loads: Vec<String>,
     sections: Vec<String>,
     /// Increments up to the end of each step of the deck.
@@ -70,6 +71,7 @@ impl Parts {
         match part {
             Part::Contact(index) => self.contacts.get(index).cloned(),
             Part::Support(index) => self.supports.get(index).cloned(),
+            Part::Coupling(index) => self.couplings.get(index).cloned(),
             Part::Load(index) => self.loads.get(index).cloned(),
             Part::Step(step) => {
                 let at = self.steps.partition_point(|s| s.0 <= step);

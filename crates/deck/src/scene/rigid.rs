@@ -15,7 +15,7 @@ use super::numbers::Sets;
 use super::timeline::Timeline;
 use crate::error::{DeckError, Word};
 use crate::lexer::Named;
-use crate::model::{FACES, Kind, Model, Side, Target};
+use crate::model::{FACES, Kind, Model, RigidBody, Side, Target};
 use crate::tolerances::ROUNDING;
 
 /// The nodes that say how a body moves, by position.
@@ -46,7 +46,7 @@ pub(super) struct RigidFace {
 /// A vector and its history; `None` if it is zero at all times.
 type Course = Option<(Vec3, History)>;
 
-/// What moves a body: its components 1 to 6 in time, the place of its node, and the word that names that.
+/// What moves a body: its components 1 to 6 in time, all of them, the place of its node, and the word that names that.
 #[derive(Debug)]
 pub(super) struct Lead {
     pub(super) tracks: [Track; 6],
@@ -60,6 +60,25 @@ pub(super) struct Motion {
     shift: Course,
     turn: Course,
     about: Vec3,
+}
+
+/// A component of a body, from 1, that is free, and the word that names its node.
+#[derive(Debug)]
+pub(super) struct FreeLead {
+    component: usize,
+    word: Word,
+}
+
+impl FreeLead {
+    /// The error where the body is an obstacle.
+    fn refused(&self) -> DeckError {
+        self.word.cannot(format!(
+            "the rigid body is not held along component {} (of 6, rotations are 4 to 6), and a rigid surface that \
+            touches others is held or moved here, not loaded; give its node *BOUNDARY, or make the body elastic with a \
+            *COUPLING, *KINEMATIC of its surface",
+            self.component
+        ))
+    }
 }
 
 impl Lead {
@@ -127,6 +146,41 @@ impl Motion {
     }
 }
 
+/// Whether some component of each body is not held, or loaded.
+fn are_free(sets: &Sets, bodies: &[Body]) -> Result<Vec<bool>, DeckError> {
+    let (model, steps) = (sets.model, || sets.model.steps.iter());
+    let mut out = vec![false; bodies.len()];
+    let mut held = vec![[false; 6]; bodies.len()];
+    let forces = steps()
+        .flat_map(|step| &step.forces.lines)
+        .filter(|line| line.given.value != 0.0);
+    for line in forces {
+        let nodes = sets.nodes.find(&line.target, &line.word)?;
+        let moves = |body: &Body| nodes.iter().any(|n| *n == body.reference || Some(*n) == body.rotation);
+        out.iter_mut().zip(bodies).for_each(|(free, body)| *free |= moves(body));
+    }
+    let lines = steps().flat_map(|step| &step.boundary.lines);
+    for line in model.supports.iter().chain(lines) {
+        let nodes = sets.nodes.find(&line.target, &line.word)?;
+        for (held, body) in held.iter_mut().zip(bodies) {
+            for node in nodes.iter() {
+                let first = match () {
+                    () if *node == body.reference => 0,
+                    () if Some(*node) == body.rotation => 3,
+                    () => continue,
+                };
+                (first..6)
+                    .filter(|c| line.kind.on[c - first])
+                    .for_each(|c| held[c] = true);
+            }
+        }
+    }
+    out.iter_mut()
+        .zip(held)
+        .for_each(|(free, held)| *free |= held.contains(&false));
+    Ok(out)
+}
+
 impl RigidBodies {
     pub(super) fn new(sets: &Sets) -> Result<Self, DeckError> {
         let model = sets.model;
@@ -155,6 +209,11 @@ impl RigidBodies {
                 rotation: body.rotation.as_ref().map(node).transpose()?,
                 nodes: distinct(nodes),
             });
+        }
+        // solid elements of what is free or loaded are elastic ones whose nodes are coupled
+        let free = are_free(sets, &list)?;
+        for (element, of) in model.elements.iter().zip(&mut of_element) {
+            *of = of.filter(|body| !(element.kind == Kind::Solid && free[*body as usize]));
         }
         let references: Vec<u32> = list.iter().map(|body| body.reference).collect();
         for (body, said) in list.iter().zip(&model.rigid) {
@@ -240,24 +299,27 @@ impl RigidBodies {
         self.list.iter().map(|b| (&*b.nodes, b.reference, b.rotation))
     }
 
-    /// What moves each body; `held` are the components 0 to 5 of its nodes that supports hold.
-    pub(super) fn leads(&self, model: &Model, held: &BTreeMap<(u32, usize), Track>) -> Result<Vec<Lead>, DeckError> {
-        let mut out = Vec::with_capacity(self.list.len());
-        for (body, said) in self.list.iter().zip(&model.rigid) {
-            let word = &said.reference.1;
-            let tracks = rigid_components(held, (body.reference, body.rotation)).map_err(|component| {
-                word.cannot(format!(
-                    "the rigid body is not held along component {component} (of 6, rotations are 4 to 6); give its \
-                    node *BOUNDARY, since what is rigid is held or moved here, not loaded"
-                ))
-            })?;
-            out.push(Lead {
-                tracks,
-                about: model.nodes[body.reference as usize].point,
-                word: word.clone(),
-            });
-        }
-        Ok(out)
+    /// Position of the reference node whose motion a node says, and whether as its rotation.
+    pub(super) fn reference_of(&self, node: u32) -> Option<(u32, bool)> {
+        let body = (self.list.iter()).find(|b| b.reference == node || b.rotation == Some(node))?;
+        Some((body.reference, body.reference != node))
+    }
+
+    /// What moves each body, or the component from 1 that is free; `held` are the components 0 to 5 of its nodes that
+    /// supports hold.
+    pub(super) fn leads(&self, model: &Model, held: &BTreeMap<(u32, usize), Track>) -> Vec<Result<Lead, FreeLead>> {
+        let lead = |(body, said): (&Body, &RigidBody)| {
+            let word = said.reference.1.clone();
+            match all_components(rigid_components(held, (body.reference, body.rotation))) {
+                Ok(tracks) => Ok(Lead {
+                    tracks,
+                    about: model.nodes[body.reference as usize].point,
+                    word,
+                }),
+                Err(component) => Err(FreeLead { component, word }),
+            }
+        };
+        self.list.iter().zip(&model.rigid).map(lead).collect()
     }
 }
 
@@ -309,24 +371,36 @@ impl RigidFace {
 }
 
 /// What the steps say about the six components of what is rigid: of its reference node, or of the node whose
-/// displacement is its rotation. The error is the first that is free, from 1.
+/// displacement is its rotation.
 pub(super) fn rigid_components<T: Clone>(
     held: &BTreeMap<(u32, usize), T>,
     (reference, rotation): (u32, Option<u32>),
-) -> Result<[T; 6], usize> {
-    let find = |component: usize| {
+) -> [Option<T>; 6] {
+    [0, 1, 2, 3, 4, 5].map(|component: usize| {
         let own = held.get(&(reference, component));
         let other = || held.get(&(rotation?, component.checked_sub(3)?));
-        own.or_else(other).cloned().ok_or(component + 1)
-    };
-    Ok([find(0)?, find(1)?, find(2)?, find(3)?, find(4)?, find(5)?])
+        own.or_else(other).cloned()
+    })
+}
+
+/// All of them, or the first that is free, from 1.
+pub(super) fn all_components<T>(held: [Option<T>; 6]) -> Result<[T; 6], usize> {
+    let [a, b, c, d, e, f] = held;
+    Ok([
+        a.ok_or(1_usize)?,
+        b.ok_or(2_usize)?,
+        c.ok_or(3_usize)?,
+        d.ok_or(4_usize)?,
+        e.ok_or(5_usize)?,
+        f.ok_or(6_usize)?,
+    ])
 }
 
 /// The contact of the facets with a tag with a rigid surface that `word` names, and whether it is a half-space. `over`
 /// are the places that may touch it.
 pub(super) fn obstacle(
     faces: &[RigidFace],
-    (timeline, leads): (&Timeline, &[Lead]),
+    (timeline, leads): (&Timeline, &[Result<Lead, FreeLead>]),
     (tag, over): (FacetTag, &[Vec3]),
     word: &Word,
 ) -> Result<(Contact, bool), DeckError> {
@@ -334,7 +408,8 @@ pub(super) fn obstacle(
     if faces.iter().any(|face| face.body != body) {
         return Err(word.cannot("the surface is on several rigid bodies; give a pair for each"));
     }
-    let motion = leads[body as usize].motion(timeline)?;
+    let lead = leads[body as usize].as_ref().map_err(FreeLead::refused)?;
+    let motion = lead.motion(timeline)?;
     let plane = if motion.turn.is_none() {
         plane(faces, over)
     } else {

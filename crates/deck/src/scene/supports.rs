@@ -2,12 +2,12 @@
 
 use std::collections::BTreeMap;
 
-use signorini_contact::Support;
+use signorini_contact::{Coupling, Support};
 use signorini_fem_mesh::History;
 
 use super::faces::{FaceTable, Known};
 use super::history::{Histories, Track};
-use super::rigid::{Lead, rigid_components};
+use super::rigid::{FreeLead, Lead, all_components, rigid_components};
 use super::spread::coupled_nodes;
 use crate::error::{DeckError, Word};
 use crate::model::{COMPONENT, Components, Condition, Given, Ignored, Target};
@@ -36,17 +36,26 @@ struct Table {
     ignored: Vec<Ignored>,
 }
 
+/// What is rigid and not held in all components, or loaded.
+pub(super) struct Rigid {
+    /// Its reference node, by position in the deck.
+    pub(super) reference: u32,
+    pub(super) coupling: Coupling,
+    pub(super) word: Word,
+}
+
 /// Supports with the names of their targets, and what moves rigid bodies.
 pub(super) struct Supports {
     pub(super) list: Vec<Support>,
     pub(super) names: Vec<Owner>,
-    pub(super) leads: Vec<Lead>,
+    pub(super) leads: Vec<Result<Lead, FreeLead>>,
+    pub(super) rigid: Vec<Rigid>,
     /// Rotations that are held where there are none.
     pub(super) ignored: Vec<Ignored>,
 }
 
-/// One support for each target and its moving or fixed components.
-pub(super) fn supports(known: Known, faces: &FaceTable) -> Result<Supports, DeckError> {
+/// One support for each target and its moving or fixed components; `loaded` are the reference nodes that have loads.
+pub(super) fn supports(known: Known, faces: &FaceTable, loaded: &BTreeMap<u32, Word>) -> Result<Supports, DeckError> {
     let mut table = Table::default();
     for line in &known.model.supports {
         table.add(known, None, line)?;
@@ -77,16 +86,17 @@ pub(super) fn supports(known: Known, faces: &FaceTable) -> Result<Supports, Deck
     }
     let track = |node, component| table.rigid.get(&(node, component)).map(|held| &held.track);
     known.bodies.check_rotations(known.timeline, track)?;
-    table.couple(known, faces)?;
-    let rigid = std::mem::take(&mut table.rigid);
-    let rigid = rigid.into_iter().map(|(key, held)| (key, held.track)).collect();
-    let leads = known.bodies.leads(known.model, &rigid)?;
+    let rigid = table.couple(known, faces, loaded)?;
+    let held = std::mem::take(&mut table.rigid);
+    let held = held.into_iter().map(|(key, held)| (key, held.track)).collect();
+    let leads = known.bodies.leads(known.model, &held);
     let ignored = std::mem::take(&mut table.ignored);
     let (list, names) = table.lower(known)?;
     Ok(Supports {
         list,
         names,
         leads,
+        rigid,
         ignored,
     })
 }
@@ -179,43 +189,81 @@ impl Table {
         Ok(())
     }
 
-    /// Gives the nodes of what is rigid its displacements: of surfaces with *KINEMATIC, and of rigid bodies.
-    fn couple(&mut self, known: Known, faces: &FaceTable) -> Result<(), DeckError> {
+    /// Gives the nodes of what is rigid its displacements: of surfaces with *KINEMATIC, and of rigid bodies. What of it is
+    /// free or `loaded` is a coupling.
+    fn couple(
+        &mut self,
+        known: Known,
+        faces: &FaceTable,
+        loaded: &BTreeMap<u32, Word>,
+    ) -> Result<Vec<Rigid>, DeckError> {
+        let mut out = Vec::new();
         for coupling in known.couplings.0.iter().filter(|c| known.couplings.moves(c.node)) {
-            let nodes = coupled_nodes(coupling, known, faces)?;
-            self.move_rigidly(
-                known,
-                nodes.into_keys(),
-                (coupling.node, None),
-                ("surface", &coupling.word),
-            )?;
+            let nodes = coupled_nodes(coupling, known, faces)?.into_keys().collect();
+            let leads = (coupling.node, None);
+            out.extend(self.move_rigidly(known, nodes, (leads, loaded), ("surface", &coupling.word))?);
             (0..6).for_each(|c| drop(self.rigid.remove(&(coupling.node, c))));
         }
         for ((nodes, reference, rotation), said) in known.bodies.nodes().zip(&known.model.rigid) {
-            let elastic = nodes.iter().filter_map(|n| known.raw.in_mesh(*n));
-            self.move_rigidly(known, elastic, (reference, rotation), ("rigid body", &said.word))?;
+            let elastic: Vec<u32> = nodes.iter().filter_map(|n| known.raw.in_mesh(*n)).collect();
+            if !elastic.is_empty() {
+                let leads = (reference, rotation);
+                out.extend(self.move_rigidly(known, elastic, (leads, loaded), ("rigid body", &said.word))?);
+            } else if let Some(word) = loaded.get(&reference) {
+                return Err(word.cannot(
+                    "a rigid body without elastic nodes is held or moved here, not loaded; give its displacement with \
+                     *BOUNDARY, whose reaction is the force, or load an elastic body whose surface *COUPLING with \
+                     *KINEMATIC keeps rigid",
+                ));
+            }
         }
-        Ok(())
+        Ok(out)
     }
 
-    /// Gives nodes of the mesh the displacement of a reference node and its rotation; `what` they are, and its word.
+    /// A coupling of nodes of the mesh with a reference node and its rotation.
+    fn coupling(
+        &self,
+        known: Known,
+        nodes: Vec<u32>,
+        leads: (u32, Option<u32>),
+        word: &Word,
+    ) -> Result<Rigid, DeckError> {
+        let reference = leads.0;
+        let held = rigid_components(&self.rigid, leads);
+        let mut histories = Histories::default();
+        let mut coupling = Coupling::rigid(nodes, known.model.nodes[reference as usize].point)
+            .with_held(held.each_ref().map(Option::is_some));
+        for (component, held) in held.iter().enumerate() {
+            let Some(held) = held else {
+                continue;
+            };
+            if let Some((value, history)) = histories.add(known.timeline, &held.track)? {
+                let mut motion = [0.0; 6];
+                motion[component] = value;
+                coupling = coupling.with_motion(motion, histories.at(history));
+            }
+        }
+        let word = word.clone();
+        Ok(Rigid {
+            reference,
+            coupling,
+            word,
+        })
+    }
+
+    /// Gives nodes of the mesh the displacement of a reference node and its rotation; `what` they are, and its word. A
+    /// coupling where they are not held in all components, or are loaded.
     fn move_rigidly(
         &mut self,
         known: Known,
-        nodes: impl Iterator<Item = u32>,
-        leads: (u32, Option<u32>),
+        nodes: Vec<u32>,
+        (leads, loaded): ((u32, Option<u32>), &BTreeMap<u32, Word>),
         (what, word): (&str, &Word),
-    ) -> Result<(), DeckError> {
-        let mut nodes = nodes.peekable();
-        if nodes.peek().is_none() {
-            return Ok(());
-        }
-        let held = rigid_components(&self.rigid, leads).map_err(|component| {
-            word.cannot(format!(
-                "component {component} (of 6, rotations are 4 to 6) of the node of this {what} is free, and what keeps \
-                its shape and moves freely is not here; hold it with *BOUNDARY"
-            ))
-        })?;
+    ) -> Result<Option<Rigid>, DeckError> {
+        let held = match all_components(rigid_components(&self.rigid, leads)) {
+            Ok(held) if !loaded.contains_key(&leads.0) => held,
+            _ => return self.coupling(known, nodes, leads, word).map(Some),
+        };
         let lead = Lead {
             tracks: held.each_ref().map(|held| held.track.clone()),
             about: known.model.nodes[leads.0 as usize].point,
@@ -243,7 +291,7 @@ impl Table {
                 }
             }
         }
-        Ok(())
+        Ok(None)
     }
 
     fn lower(

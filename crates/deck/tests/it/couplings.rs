@@ -101,8 +101,6 @@ fn what_is_refused() {
     refused(other, &idle, other, "WEIGHTING METHOD=LINEAR", "by area");
     refused("*KINEMATIC\n1, 2", &idle, "1, 2", "1, 2", "give 1 to 3");
     refused("*DISTRIBUTING\n4, 7", &idle, "4, 7", "4, 7", "1 to 6");
-    let free = format!("{HELD}*BOUNDARY\n900, 1, 3\n{idle}");
-    refused("*KINEMATIC\n1, 3", &free, card, "SURFACE=S6", "component 4");
     let own = "*AMPLITUDE, NAME=A\n0., 0., 1., 1., 2., 0.\n";
     let turned = step("*BOUNDARY\n900, 2, 5\n900, 1, 1, 0.1\n*BOUNDARY, AMPLITUDE=A\n900, 6, 6, 0.1\n");
     refused(
@@ -114,8 +112,6 @@ fn what_is_refused() {
     );
     let twice = format!("{HELD}*BOUNDARY\n900, 1, 6\n27, 1\n{idle}");
     refused("*KINEMATIC", &twice, card, "SURFACE=S6", "keep one");
-    let pushed = format!("{HELD}*BOUNDARY\n900, 1, 6\n{}", step("*CLOAD\n900, 1, 1.\n"));
-    refused("*KINEMATIC", &pushed, "900, 1, 1.", "900", "spread the force");
     let held = format!("{HELD}*BOUNDARY\n900, 1, 6\n{idle}");
     refused("*DISTRIBUTING", &held, "900, 1, 6", "900", "takes loads");
     let moment = format!("{HELD}{}", step("*CLOAD\n900, 5, 1.\n"));
@@ -172,4 +168,80 @@ fn a_bar_is_bent_as_by_calculix() {
             "{place:?} {found:?} {expected:?}"
         );
     }
+}
+
+/// A rigid end under a force and a moment beside it, by *COUPLING and by *RIGID BODY, and guided against some motions:
+/// displacements as CalculiX 2.20 prints them.
+#[test]
+fn a_rigid_end_is_loaded_as_in_calculix() {
+    let bar = Brick::new([4.0, 1.0, 1.0], [8, 2, 2]).build().expect("a bar");
+    let bar = bar.raise_order().expect("quadratic");
+    let nodes = "*NODE\n900, 5., 0.7, 0.2\n901, 5., 0.7, 0.2\n";
+    let coupling = "*COUPLING, CONSTRAINT NAME=C, REF NODE=900, SURFACE=S2\n*KINEMATIC\n1, 3\n";
+    let body = "*RIGID BODY, NSET=N2, REF NODE=900, ROT NODE=901\n";
+    let loaded = [
+        [6.730666e-3, 1.146496e-1, -8.427700e-2],
+        [-6.730666e-3, 1.146496e-1, 8.427700e-2],
+        [6.730666e-3, -5.390438e-2, -8.427700e-2],
+        [0.0, 3.037261e-2, 0.0],
+    ];
+    let guided = [6.730666e-3, -6.730666e-3, 6.730666e-3, 0.0].map(|x| [x, 3.037261e-2, 0.0]);
+    let drawn = [7.077161e-2, 7.077161e-2, 4.130643e-2, 5.603902e-2].map(|x| [x, 3.449953e-3, -2.946518e-2]);
+    let cases = [
+        (coupling, "*CLOAD\n900, 2, 10.\n900, 4, 500.\n900, 6, 30.\n", loaded),
+        (body, "*CLOAD\n900, 2, 10.\n901, 1, 500.\n901, 3, 30.\n", loaded),
+        (body, "*BOUNDARY\n901, 1, 1\n*CLOAD\n900, 2, 10.\n901, 3, 30.\n", guided),
+        (
+            coupling,
+            "*BOUNDARY\n900, 3, 4\n900, 6, 6\n*CLOAD\n900, 2, 10.\n900, 1, 3000.\n",
+            drawn,
+        ),
+    ];
+    for (law, loads, expected) in cases {
+        let deck = format!("{}{STEEL}{nodes}{law}*BOUNDARY\nN1, 1, 3\n{}", mesh(&bar), step(loads));
+        let settings = Settings::default().with_tolerance(1e-9);
+        let mut simulation = Simulation::new(scene(&deck), settings).expect("simulation");
+        let result = simulation.step().expect("solved");
+        let places = [[4.0, 0.0, 0.0], [4.0, 1.0, 0.0], [4.0, 0.0, 1.0], [4.0, 0.5, 0.5]];
+        for (place, expected) in places.into_iter().zip(expected) {
+            let node = bar.points().iter().position(|x| *x == place).expect("a node");
+            let found = result.displacement()[node];
+            assert!(
+                norm(sub(found, expected)) < 2e-7,
+                "{loads}: {place:?} {found:?} {expected:?}"
+            );
+        }
+    }
+}
+
+/// What is held in all components and loaded, too, is a coupling, whose reaction has the load in it; a moved one follows
+/// its amplitude.
+#[test]
+fn a_load_on_what_is_held_is_in_its_reaction() {
+    let moves = "*BOUNDARY\n900, 3, 3, -0.1\n900, 1, 2\n900, 4, 6\n";
+    let run = |loads: &str| {
+        let steps = step(&format!("{moves}{loads}"));
+        let deck = cube(&format!("{}{HELD}{steps}", coupled("*KINEMATIC\n1, 3")));
+        let mut simulation = Simulation::new(scene(&deck), Settings::default()).expect("simulation");
+        simulation.step().expect("solved")
+    };
+    let (plain, loaded) = (run(""), run("*CLOAD\n900, 3, 700.\n900, 4, 90.\n"));
+    assert!(plain.couplings().is_empty() && (loaded.couplings()[0].displacement[2] + 0.1).abs() < 1e-6);
+    let about = [3.0, 0.25, 2.0];
+    let held = plain.reactions_about(about).of_supports();
+    let others = loaded.reactions_about(about);
+    let sum = others.of_supports();
+    let [force, moment] = [
+        add(sum.force, others.couplings[0].force),
+        add(sum.moment, others.couplings[0].moment),
+    ];
+    let size = norm(plain.reactions().supports[0].resultant.force);
+    assert!(
+        norm(sub(add(force, [0.0, 0.0, 700.0]), held.force)) < 1e-6 * size,
+        "{force:?}"
+    );
+    assert!(
+        norm(sub(add(moment, [90.0, 0.0, 0.0]), held.moment)) < 1e-5 * size,
+        "{moment:?}"
+    );
 }

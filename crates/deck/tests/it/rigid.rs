@@ -6,7 +6,7 @@ use signorini_contact::{
     Analysis, Contact, DifferenceFormula, Friction, Obstacle, Scene, Settings, Simulation, Support,
 };
 use signorini_fem_mesh::vec3::{cross, norm, sub};
-use signorini_fem_mesh::{Brick, History, brick};
+use signorini_fem_mesh::{Brick, FacetTag, History, brick};
 
 use crate::same_bits::{compare, steel};
 use crate::write::{STEEL, cube, mesh, read};
@@ -138,4 +138,54 @@ fn beside_a_rigid_plane_nothing_is_held() {
         );
         assert!(if over { down > -1e-9 } else { down < -1e-3 }, "{over} {down}");
     }
+}
+
+/// A rigid punch of solid elements that is pressed by a force on an elastic block: its elements are in the mesh, and its
+/// nodes coupled, as those of a set are. It sinks in and tilts as one, and the block takes the force.
+#[test]
+fn a_rigid_punch_is_pressed_by_a_force() {
+    let brick = |n| Brick::new([1.0; 3], [n; 3]).build().expect("brick");
+    let above = brick(2)
+        .map_points(|[x, y, z]| [0.5 * x + 0.3, 0.5 * y + 0.2, 0.5 * z + 1.0])
+        .expect("lifted");
+    let (below, first) = (brick(4), brick(4).tets().len());
+    let both = below.append(&above.map_tags(|t| FacetTag(t.0 + 10))).expect("two");
+    let sets = format!(
+        "*ELSET, ELSET=PUNCH, GENERATE\n{}, {}\n*NSET, NSET=PUNCH, GENERATE\n{}, {}\n*NODE\n900, 0.6, 0.4, 1.5\n901\n",
+        first + 1,
+        both.tets().len(),
+        below.points().len() + 1,
+        both.points().len()
+    );
+    let rest = "*SURFACE INTERACTION, NAME=I\n*FRICTION\n0.3\n*CONTACT PAIR, INTERACTION=I\nS6, S15\n*BOUNDARY\n\
+        N5, 1, 3\n900, 1, 2\n901, 3, 3\n*STEP\n*STATIC\n*CLOAD\n900, 3, -1e8\n*END STEP\n";
+    let run = |body: &str| {
+        let deck = read(&format!("{}{STEEL}{sets}{body}{rest}", mesh(&both))).expect("deck");
+        let settings = Settings::default().with_tolerance(1e-8);
+        let mut simulation = Simulation::new(deck.scene().expect("scene"), settings).expect("simulation");
+        let result = simulation.step().expect("solved");
+        assert!(result.report().status.converged());
+        result
+    };
+    let result = run("*RIGID BODY, ELSET=PUNCH, REF NODE=900, ROT NODE=901\n");
+    let by_set = run("*RIGID BODY, NSET=PUNCH, REF NODE=900, ROT NODE=901\n");
+    assert_eq!(result.displacement(), by_set.displacement());
+    let motion = result.couplings()[0];
+    assert!(
+        motion.displacement[2] < 0.0 && norm(motion.rotation) > 0.0,
+        "{motion:?}"
+    );
+    for (point, found) in both
+        .points()
+        .iter()
+        .zip(result.displacement())
+        .skip(below.points().len())
+    {
+        let turn = cross(motion.rotation, sub(*point, [0.6, 0.4, 1.5]));
+        let exact: Vec<f64> = (0..3).map(|c| motion.displacement[c] + turn[c]).collect();
+        let off = norm(sub(found, [exact[0], exact[1], exact[2]]));
+        assert!(off < 1e-6 * norm(motion.displacement), "{found:?} {exact:?}");
+    }
+    let support = result.reactions().supports[0].resultant.force[2];
+    assert!((support - 1e8).abs() < 1e2, "{support}");
 }

@@ -346,8 +346,9 @@ fn rigid_bodies() {
         "*RIGID BODY",
         "of this rigid body is held by itself",
     );
-    let free = "*NODE\n109\n*BOUNDARY\n109, 1, 5\n*RIGID BODY, NSET=N6, REF NODE=109\n";
-    behind(free, line, "*RIGID BODY", "component 6");
+    let moment = "*NODE\n109\n*NODE\n110\n*RIGID BODY, NSET=N6, REF NODE=109, ROT NODE=110\n\
+        *STEP\n*STATIC\n*CLOAD\n110, 4, 1.\n*END STEP\n";
+    behind(moment, "110, 4, 1.", "4", "1 to 3 of a ROT NODE are the moments");
     let line = "*RIGID BODY, NSET=N6, REF NODE=109, ROT NODE=109";
     let one = format!("*NODE\n109\n*BOUNDARY\n109, 1, 6\n{line}\n");
     behind(&one, line, "ROT NODE=109", "node 109 is a REF NODE, too");
