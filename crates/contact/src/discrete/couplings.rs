@@ -73,6 +73,11 @@ impl Couplings {
         Ok((decomposition.with_rigid(rigid)?, out))
     }
 
+    /// Whether a node is in a coupling.
+    pub(crate) fn has(&self, node: u32) -> bool {
+        self.of_node.contains_key(&node)
+    }
+
     /// Nodes of a coupling, checked; supports that say the same of them are left out.
     fn nodes(&mut self, scene: &Scene, index: usize, supports: &mut Supports) -> Result<Vec<u32>, ContactError> {
         let count = scene.mesh.points().len();

@@ -68,7 +68,11 @@ impl AdmissibleNode {
             }
         }
         // a node that can move: of several partners, which have other points, only where the node itself cannot
-        let free = |k: usize| freedom(&parts[k].1, &point.stretch);
+        let couplings = &model.discrete.couplings;
+        let free = |k: usize| match couplings.has(parts[k].0) {
+            true => 0.0,
+            false => freedom(&parts[k].1, &point.stretch),
+        };
         let moving = match last {
             0 => 0,
             1 => usize::from(free(1) > free(0) + ROUNDING),

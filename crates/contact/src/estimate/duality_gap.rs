@@ -21,6 +21,7 @@ use crate::tolerances::{FREEDOM_TAKEN, NO_STRAIN, PARALLEL, REST, ROUNDING};
 use crate::vec3::dot;
 use nalgebra::{DMatrix, DVector};
 use signorini_fem_mesh::recovery::StrainRecovery;
+use signorini_fem_mesh::vec3::{Vec3, add, cross, sub};
 use signorini_qp::vector;
 use signorini_tfeti::{CoarseFactor, RowWeights, Tfeti};
 use std::borrow::Cow;
@@ -95,6 +96,7 @@ impl Solved<'_> {
         let offset = &*self.offset();
         let mut v = tfeti.mean_by(model.copies(), &self.recovered.torn);
         let mean = (tfeti.subdomains() > 1).then(|| tfeti.nodal_mean(&self.recovered.torn));
+        self.couple(offset, &mut v);
         let points = || self.recovered.points.iter().zip(&weights.nodes);
         let moved: Vec<Correction> = match &weights.shared {
             None => points()
@@ -288,6 +290,35 @@ impl Solved<'_> {
         }
     }
 
+    /// Moves the nodes of couplings as rigid bodies, of which what is held has its prescribed values.
+    fn couple(&self, offset: &[f64], v: &mut [f64]) {
+        let (model, couplings) = (self.model, &self.model.discrete.couplings);
+        let mut rows = model
+            .tfeti
+            .gluing()
+            .ranges()
+            .rigid
+            .clone()
+            .zip(&couplings.supports)
+            .peekable();
+        let subdomains = &model.discrete.decomposition.subdomains()[couplings.first..];
+        for (k, (coupling, rigid)) in model.scene.couplings.iter().zip(subdomains).enumerate() {
+            let (point, subdomain) = (coupling.reference(), couplings.first + k);
+            let arm = |node: u32| sub(model.scene.mesh.points()[node as usize], point);
+            let mut motion = model.tfeti.rigid_motion(subdomain, &self.recovered.torn, point);
+            while let Some((row, held)) = rows.next_if(|(_, held)| held.subdomain as usize == subdomain) {
+                let mut unit = [[0.0; 3]; 2];
+                unit[held.component / 3][held.component % 3] = 1.0;
+                let entries = model.row(row);
+                let scale: f64 = entries.map(|(node, c, value)| value * moved(unit, arm(node))[c]).sum();
+                motion[held.component / 3][held.component % 3] = offset[row] / scale;
+            }
+            for &node in &rigid.nodes {
+                v[3 * node as usize..][..3].copy_from_slice(&moved(motion, arm(node)));
+            }
+        }
+    }
+
     /// Sets supported directions to their prescribed values.
     fn support(&self, offset: &[f64], v: &mut [f64]) {
         let gluing = self.model.tfeti.gluing();
@@ -304,6 +335,11 @@ impl Solved<'_> {
             }
         }
     }
+}
+
+/// The displacement of a rigid motion, of a point and its rotation, at an arm from it.
+fn moved([displacement, rotation]: [Vec3; 2], arm: Vec3) -> Vec3 {
+    add(displacement, cross(rotation, arm))
 }
 
 /// Moves a point as little as possible onto planes `(n, d)`, `n . x = d`; next to all of them where they do not meet.
