@@ -137,6 +137,23 @@ fn print_reactions(deck: &Deck, step: &StepResult) {
             numbers.join(", ")
         );
     }
+    for (k, (name, motion)) in deck.coupling_names().iter().zip(step.couplings()).enumerate() {
+        let point = step.scene().couplings()[k].reference();
+        let held = step.reactions_about(point).couplings[k];
+        let six = |[a, b]: [[f64; 3]; 2]| {
+            [a, b]
+                .concat()
+                .iter()
+                .map(|v| format!("{v:.5e}"))
+                .collect::<Vec<_>>()
+                .join(" ")
+        };
+        println!(
+            "coupling {k} ({name}): moved and turned by {}, held by {}",
+            six([motion.displacement, motion.rotation]),
+            six([held.force, held.moment])
+        );
+    }
 }
 
 /// What the deck asks for and does not get, each where it stands first.

@@ -117,6 +117,11 @@ impl Deck {
         &self.is.support_names
     }
 
+    /// For each rigid coupling of the scene the word that names its surface or its rigid body.
+    pub fn coupling_names(&self) -> &[String] {
+        &self.is.coupling_names
+    }
+
     /// The node of the mesh with a number in the deck, if the mesh has it.
     pub fn node(&self, number: u32) -> Option<u32> {
         self.is.nodes.get(number)

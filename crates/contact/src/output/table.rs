@@ -82,9 +82,18 @@ fn head(probes: &[u32], result: &StepResult) -> String {
          step,time,products,status,certificate,touch,stick,slide"
     );
     let scene = result.scene();
-    for (what, count) in [("contact", scene.contacts().len()), ("support", scene.supports().len())] {
+    let (forces, motion) = (
+        ["fx", "fy", "fz", "mx", "my", "mz"],
+        ["ux", "uy", "uz", "rx", "ry", "rz"],
+    );
+    for (what, count, parts) in [
+        ("contact", scene.contacts().len(), forces),
+        ("support", scene.supports().len(), forces),
+        ("coupling", scene.couplings().len(), forces),
+        ("coupling", scene.couplings().len(), motion),
+    ] {
         for k in 0..count {
-            for part in ["fx", "fy", "fz", "mx", "my", "mz"] {
+            for part in parts {
                 // writing to a string cannot fail
                 let _ = write!(text, ",{what}_{k}_{part}");
             }
@@ -111,14 +120,18 @@ fn row(probes: &[u32], result: &StepResult) -> String {
         sum.slip
     );
     let supports = reactions.supports.iter().map(|s| s.resultant);
-    let resultants = reactions.contacts.iter().copied().chain(supports);
+    let couplings = reactions.couplings.iter().copied();
+    let resultants = reactions.contacts.iter().copied().chain(supports).chain(couplings);
+    let motions = result.couplings().into_iter();
+    let motions = motions.flat_map(|m| [m.displacement, m.rotation]);
     let u = if probes.is_empty() {
         Vec::new()
     } else {
         result.displacement()
     };
     let probed = probes.iter().map(|&node| u[node as usize]);
-    for vector in resultants.flat_map(|r| [r.force, r.moment]).chain(probed) {
+    let resultants = resultants.flat_map(|r| [r.force, r.moment]);
+    for vector in resultants.chain(motions).chain(probed) {
         for value in vector {
             // the shortest digits that give the same bits again
             let _ = write!(text, ",{value:?}");

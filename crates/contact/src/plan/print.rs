@@ -95,14 +95,17 @@ impl Plan {
     }
 
     fn supports_text(&self) -> String {
-        let moving = if self.effects.motion { ", moving" } else { "" };
-        let springs = match (self.effects.supports, self.effects.springs) {
-            (false, false) => return "none (free body)".to_owned(),
-            (true, false) => "",
-            (true, true) => ", with springs",
-            (false, true) => ", springs only",
+        let e = &self.effects;
+        let moving = if e.motion { ", moving" } else { "" };
+        let others = [(e.springs, "springs"), (e.couplings, "couplings")];
+        let others: Vec<&str> = others.into_iter().filter(|o| o.0).map(|o| o.1).collect();
+        let with = match (e.supports, &others[..]) {
+            (false, []) => return "none (free body)".to_owned(),
+            (true, []) => String::new(),
+            (true, others) => format!(", with {}", others.join(" and ")),
+            (false, others) => format!(", {} only", others.join(" and ")),
         };
-        format!("{} rows{moving}{springs}", self.dirichlet_rows)
+        format!("{} rows{moving}{with}", self.dirichlet_rows)
     }
 
     fn contact_text(&self) -> String {

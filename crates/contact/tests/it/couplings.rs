@@ -416,6 +416,20 @@ fn the_plan_counts_couplings() {
     assert_eq!(coupled.interface_rows - plain.interface_rows, 3 * nodes);
     assert_eq!(coupled.dirichlet_rows - plain.dirichlet_rows, 2);
     assert_eq!(coupled.coarse - plain.coarse, 6);
+    let alone = Scene::new(bar([1; 3]).mesh().clone(), steel());
+    let moving = alone.with_coupling(end().with_held([true; 6]).with_motion(MOTION, moved()));
+    let plan = Plan::new(&moving, &settings).expect("plan");
+    assert!(
+        plan.to_string().contains("6 rows, moving, couplings only") && plan.warnings().is_empty(),
+        "{plan}"
+    );
+    let idle = moving.mesh().clone();
+    let idle = Scene::new(idle, steel()).with_coupling(end().with_held([true; 6]).with_motion([0.0; 6], moved()));
+    let plan = Plan::new(&idle, &settings).expect("plan");
+    assert!(
+        matches!(plan.warnings(), [Warning::NothingActs { held: true }]),
+        "{plan}"
+    );
 }
 
 /// Held couplings take the products of supports, loaded ones those of a traction, whatever the number of subdomains.

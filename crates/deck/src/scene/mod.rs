@@ -48,6 +48,8 @@ pub(crate) struct Translated {
     pub(crate) element_sets: Names<Vec<u32>>,
     /// The set that each support of the scene is given on.
     pub(crate) support_names: Vec<String>,
+    /// What each coupling of the scene is in the deck.
+    pub(crate) coupling_names: Vec<String>,
     pub(crate) ignored: Vec<Ignored>,
 }
 
@@ -90,6 +92,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     parts.tagged(&surfaces);
     parts.loads = words.iter().map(Word::told).collect();
     parts.supports = held.iter().map(Word::told).collect();
+    let coupling_names = supports.rigid.iter().map(|r| r.word.text.clone()).collect();
     parts.couplings = supports.rigid.iter().map(|r| r.word.told()).collect();
     let scene = materials.map(|materials| {
         let scene = Scene::new(mesh.clone(), materials).with_analysis(timeline.analysis());
@@ -110,6 +113,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         element_labels: raw.element_labels,
         surfaces,
         support_names,
+        coupling_names,
         ignored: supports.ignored,
     })
 }
