@@ -38,8 +38,7 @@ impl Violation {
 pub struct Certificate {
     /// Equilibrium of every subdomain, N.
     pub equilibrium: Violation,
-    /// Gluing and supports, m. Rows of springs count with the length that they have in the solver, which is a thousandth
-    /// for the softest: what such a spring misses may be that much more.
+    /// Gluing, supports and springs, m.
     pub continuity: Violation,
     /// Penetration, m.
     pub gap: Violation,

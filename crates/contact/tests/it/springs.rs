@@ -363,7 +363,8 @@ fn soft_springs_beside_friction() {
             let what = format!("{stiff} {softness:e} {boxes:?}");
             let (simulation, results) = run(scene.clone().with_boxes(boxes), Settings::default());
             let products = simulation.counters().products;
-            assert!(products < 210, "{what}: {products}");
+            // 214 in one case: what springs miss is certified as a length, however soft they are
+            assert!(products < 215, "{what}: {products}");
             let reactions = simulation.result().expect("a step").reactions();
             let lifted = reactions.springs[0].resultant.force[2];
             let dragged = reactions.contacts[0].force;
@@ -375,4 +376,30 @@ fn soft_springs_beside_friction() {
             }
         }
     }
+}
+
+/// What soft springs miss is told as a length, however the solver scales their rows: by up to a thousand.
+#[test]
+fn certificates_of_soft_springs_are_lengths() {
+    let ground = 1e-7 * GROUND;
+    let scene = Scene::new(block([1.0; 3], [4; 3]), uniform(YOUNG, 0.3))
+        .with_spring(Spring::components(brick::Z_MIN, [ground; 3]))
+        .with_load(Load::traction(brick::Z_MAX, [1e5, 0.0, -1e5]))
+        .with_boxes([2, 2, 2]);
+    let mesh = scene.mesh().clone();
+    let mut area = vec![0.0; mesh.points().len()];
+    for (nodes, size, _) in facets(&mesh, brick::Z_MIN) {
+        nodes.iter().for_each(|n| area[*n as usize] += size / 3.0);
+    }
+    let mut simulation = Simulation::new(scene, at(1e-2)).expect("set-up");
+    let result = simulation.step().expect("step");
+    let (u, mut largest) = (result.displacement(), 0.0_f64);
+    for held in &result.reactions().springs[0].nodes {
+        for (u, force) in u[held.node as usize].iter().zip(held.force) {
+            largest = largest.max((u + force / (ground * area[held.node as usize])).abs());
+        }
+    }
+    let told = result.certificate().continuity;
+    assert!(largest > 1e-9 * told.reference, "{largest:e} {told:?}");
+    assert!(told.value >= 0.999 * largest, "{largest:e} {told:?}");
 }
