@@ -461,3 +461,79 @@ fn couplings_cost_no_products() {
         );
     }
 }
+
+/// Two blocks meshed apart, the upper one pressed, drawn and turned by its rigid top: what holds it, as a load, makes the
+/// same state, its motion is that of its nodes, and the estimate bounds the energy that a loose tolerance leaves.
+#[test]
+fn random_pairs_are_moved_by_couplings() {
+    for seed in 0..12 {
+        let mut dice = random(seed);
+        let cells = |dice: &mut rand_pcg::Pcg64Mcg| [0, 1, 2].map(|_| 2 + dice.random_range(0..3));
+        let lower = Brick::new([1.2, 1.2, 0.6], cells(&mut dice)).perturbed(0.1, seed);
+        let upper = Brick::new([0.8, 0.8, 0.5], cells(&mut dice)).build().expect("brick");
+        let upper = upper
+            .map_points(|[x, y, z]| [x + 0.2, y + 0.2, z + 0.6])
+            .expect("moved");
+        let mut mesh = with_second(&lower.build().expect("brick"), &upper);
+        if seed % 4 == 0 {
+            mesh = mesh.raise_order().expect("order 2");
+        }
+        let mut any = |size: f64| [0, 1, 2].map(|_| dice.random_range(-size..size));
+        let (beside, drawn, turned) = (any(1.0), any(1e-4), any(1e-4));
+        let motion = [drawn[0], drawn[1], -4e-4 + drawn[2], turned[0], turned[1], turned[2]];
+        let held: [bool; 6] = std::array::from_fn(|_| dice.random());
+        let friction = match dice.random_range(0..3) {
+            0 => Friction::None,
+            _ => Friction::coulomb(dice.random_range(0.0..0.5)),
+        };
+        let free = matches!(friction, Friction::None);
+        let point = [0.6 + beside[0], 0.6 + beside[1], 1.1 + beside[2]];
+        let scene = |coupling: Coupling, force, moment| {
+            Scene::new(mesh.clone(), uniform(YOUNG, 0.3))
+                .with_support(Support::fixed(brick::Z_MIN))
+                .with_contact(Contact::between(brick::Z_MAX, second(brick::Z_MIN)).with_friction(friction.clone()))
+                .with_coupling(coupling)
+                .with_load(Load::on_coupling(0, force, moment))
+                .with_subdomains(2 + seed as usize % 4)
+        };
+        let top = |held: [bool; 6]| {
+            let motion = Coupling::rigid(second(brick::Z_MAX), point).with_motion(motion, moved());
+            motion.with_held(held)
+        };
+        let settings = Settings::default().with_tolerance(1e-9);
+        let all = scene(top([true; 6]), [0.0; 3], [0.0; 3]);
+        let mut simulation = Simulation::new(all.clone(), settings.clone()).expect("set-up");
+        let exact = step(&mut simulation);
+        assert_certified(&exact, "held");
+        let resultant = simulation.result().expect("a step").reactions_about(point).couplings[0];
+        let mut loose = Simulation::new(all, at(1e-3)).expect("set-up");
+        let rough = step(&mut loose);
+        let error = loose.result().expect("a step").algebraic_error();
+        let off = energy_distance(loose.scene(), &rough.displacement, &exact.displacement);
+        assert!(
+            error.energy.sqrt() > 0.5 * off || off < 1e-9 * error.elastic.sqrt(),
+            "seed {seed}: {error:?} {off:e}"
+        );
+        // without friction nothing holds the upper block along the plane
+        let held = [0, 1, 2, 3, 4, 5].map(|c| held[c] || free && [0, 1, 5].contains(&c));
+        let all = six(resultant.force, resultant.moment);
+        let part = |c: usize| if held[c] { 0.0 } else { all[c] };
+        let [force, moment] = [0, 3].map(|first| [0, 1, 2].map(|c| part(first + c)));
+        let mut simulation = Simulation::new(scene(top(held), force, moment), settings).expect("set-up");
+        let loaded = step(&mut simulation);
+        assert_certified(&loaded, &format!("seed {seed}, {held:?}"));
+        assert_close(
+            &loaded.displacement,
+            &exact.displacement,
+            1e-5,
+            &format!("seed {seed}, {held:?}"),
+        );
+        let found = simulation.result().expect("a step").couplings()[0];
+        for node in mesh.nodes_on(second(brick::Z_MAX)) {
+            let arm = sub(mesh.points()[node as usize], point);
+            let by = add(found.displacement, cross(found.rotation, arm));
+            let own = [0, 1, 2].map(|c| loaded.displacement[3 * node as usize + c]);
+            assert!(norm(sub(by, own)) < 1e-7 * norm(own), "seed {seed}, node {node}");
+        }
+    }
+}
