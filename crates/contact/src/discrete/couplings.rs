@@ -150,7 +150,8 @@ impl Couplings {
         } = load;
         let subdomains = decomposition.subdomains();
         let mut out: Vec<Vec<f64>> = subdomains.iter().map(|s| vec![0.0; s.dofs()]).collect();
-        let (Some(own), Some(target)) = (scene.couplings.get(coupling), out.get_mut(self.first + coupling)) else {
+        let rigid = out.iter_mut().zip(subdomains).skip(self.first);
+        let Some((own, (target, nodes))) = scene.couplings.iter().zip(rigid).nth(coupling) else {
             let couplings = scene.couplings.len();
             return Err(ContactError::UnknownCoupling {
                 load: index,
@@ -158,7 +159,7 @@ impl Couplings {
                 couplings,
             });
         };
-        let places = subdomains[self.first + coupling].points(&scene.mesh);
+        let places = nodes.points(&scene.mesh);
         // nodes are not on a line: that is checked
         for (node, force) in forces_at_three(&places, own.reference, force, moment)
             .into_iter()
@@ -170,19 +171,23 @@ impl Couplings {
     }
 }
 
-/// Whether supports hold a node only where what is held of a coupling holds it, too, and neither moves.
+/// Whether supports hold a node only where what is held of a coupling holds it, too, and neither moves it there.
 fn says_the_same(scene: &Scene, coupling: &Coupling, node: u32, supports: &Supports) -> bool {
     let Some(held) = supports.directions.get(&node) else {
         return true;
     };
     let arm = sub(scene.mesh.points()[node as usize], coupling.reference);
-    let free = |direction: &PrescribedDirection| {
-        let turning = cross(arm, direction.direction);
-        let parts = direction.direction.iter().chain(&turning).zip(&coupling.held);
-        let free = parts.enumerate().filter(|(_, (_, held))| !**held);
+    held.iter().all(|PrescribedDirection { direction, support, .. }| {
+        // what each motion of the coupling does to the node along the direction
+        let parts: Vec<f64> = [*direction, cross(arm, *direction)].concat();
         let size = |c: usize| if c < 3 { 1.0 } else { norm(arm) };
-        free.fold(0.0, |most: f64, (c, (part, _))| most.max(part.abs() / size(c)))
-    };
-    let rests = |direction: &PrescribedDirection| scene.supports[direction.support].motion.is_none();
-    held.iter().all(|d| free(d) <= ALONG && rests(d)) && coupling.motions.is_empty()
+        let stays = |motion: &[f64; 6]| {
+            let all = || (0..6).map(|c| (motion[c] * parts[c], (motion[c] * size(c)).abs()));
+            let (way, most) = all().fold((0.0, 0.0_f64), |(way, most), (own, size)| (way + own, most.max(size)));
+            way.abs() <= ALONG * most
+        };
+        scene.supports[*support].motion.is_none()
+            && (0..6).all(|c| coupling.held[c] || parts[c].abs() <= ALONG * size(c))
+            && coupling.motions.iter().all(|(motion, _)| stays(motion))
+    })
 }

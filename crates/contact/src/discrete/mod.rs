@@ -3,7 +3,9 @@
 //! A node of a contact surface becomes a contact point for each direction in which it meets an obstacle (`points`,
 //! `creases`, `normals`; the scene says the gap) or a node of another body (`partners`, with the gap); in a mesh of
 //! order 2 it is a mean around the node (`means`). Scenes that make no sense are refused here, before any stiffness is
-//! assembled (`scene`, `overflow`, `penetration`, `turn`). `couplings` are subdomains of their own. `side` has the nodes and weights of a contact point.
+//! assembled (`scene`, `overflow`, `penetration`, `turn`). `side` has the nodes and weights of a contact point.
+//!
+//! Rigid couplings are subdomains of their own (`couplings`).
 //!
 //! Uses: `scene`, `mortar`. In: a scene. Out: a [`DiscreteScene`], borrowed by plan, model and reactions.
 

@@ -1,5 +1,6 @@
 //! What a step ended with: states of contact points (`points`), sums over them (`summary`), contact stresses
-//! (`surface_stress`), `reactions`, motions of couplings (`coupling_motion`), and the `certificate` of all conditions, measured by `certify`.
+//! (`surface_stress`), `reactions`, motions of couplings (`coupling_motion`), and the `certificate` of all conditions,
+//! measured by `certify`.
 //!
 //! All of it follows from the recovered displacement and the multipliers; nothing relies on a solver's own report.
 //!

@@ -327,6 +327,21 @@ fn a_quarter_is_the_whole() {
     // the meshes are not mirrored
     assert_close(&motion.displacement, &other.displacement, 2e-3, "pressed");
     assert!(found.iter().all(|u| u.is_finite()) && expected.len() > found.len());
+    // likewise where the plate moves, but along the plane only
+    let pressed = |x: f64| {
+        let down = [x, 0.0, -1e-4, 0.0, 0.0, 0.0];
+        let plate = plate(1.0).with_held([true; 6]).with_motion(down, moved());
+        let scene = scene(1.0, 3).with_support(Support::components(brick::X_MAX, [true, false, false]));
+        scene
+            .with_support(Support::components(brick::Y_MAX, [false, true, false]))
+            .with_coupling(plate)
+    };
+    let (_, motion, _) = solved(pressed(0.0));
+    assert!((motion.displacement[2] + 1e-4).abs() < 1e-12);
+    let refused = Simulation::new(pressed(1e-6), Settings::default())
+        .map(|_| ())
+        .expect_err("contradictory");
+    assert!(refused.to_string().contains("or moves it"), "{refused}");
     // what the coupling leaves free a support of its nodes cannot hold
     let free = scene(1.0, 3)
         .with_support(Support::components(brick::X_MAX, [true, false, false]))
@@ -385,6 +400,8 @@ fn faults_are_refused() {
         with(end()).with_load(Load::on_coupling(1, [1.0; 3], [0.0; 3])),
         &["load 1", "coupling 1 does not exist"],
     );
+    let far = Load::on_coupling(usize::MAX, [1.0; 3], [0.0; 3]);
+    refuse(with(end()).with_load(far), &["does not exist"]);
     refuse(
         with(end()).with_load(Load::on_coupling(0, [f64::NAN; 3], [0.0; 3])),
         &["is not finite"],

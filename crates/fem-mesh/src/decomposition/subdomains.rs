@@ -164,7 +164,7 @@ impl Decomposition {
         Ok(self)
     }
 
-    /// The subdomains, by part number.
+    /// The subdomains, by part number, and behind them the rigid ones.
     pub fn subdomains(&self) -> &[Subdomain] {
         &self.subdomains
     }

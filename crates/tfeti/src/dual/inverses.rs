@@ -48,7 +48,7 @@ pub(crate) fn invert(
     let ownership = &subdomains.ownership;
     let pieces = (0..factors.len()).map(|k| (ownership.rank_of(k, 0), k..k + 1));
     ownership.exchange.complete(&mut factors, &pieces.collect::<Vec<_>>());
-    let size = |k: usize| match bases[k].is_rigid() {
+    let size = |k: usize| match classes[k].is_rigid {
         true => Size::rigid(classes[k].members.len()),
         false => Size {
             dim: 3 * classes[k].nodes,

@@ -18,6 +18,8 @@ pub struct Class {
     pub members: Vec<u32>,
     /// Nodes of each member.
     pub nodes: usize,
+    /// Whether they have no elements, and no matrices: nothing but rigid motions moves them.
+    pub is_rigid: bool,
 }
 
 /// Partition of the subdomains into classes.
@@ -82,8 +84,11 @@ impl Classes {
                 }
             }
             let class = home.unwrap_or_else(|| {
-                let (members, nodes) = (Vec::new(), subdomains[s].nodes.len());
-                classes.push(Class { members, nodes });
+                classes.push(Class {
+                    members: Vec::new(),
+                    nodes: subdomains[s].nodes.len(),
+                    is_rigid: subdomains[s].is_rigid(),
+                });
                 classes.len() - 1
             });
             place.push((class as u32, classes[class].members.len() as u32));

@@ -29,12 +29,10 @@ impl CopyStiffness {
             (0..base.diagonal.len() / 3).map(mean).collect()
         };
         let mut by_class: Vec<Vec<f64>> = subdomains.bases.iter().map(by_class).collect();
-        if subdomains.bases.iter().any(ClassBase::is_rigid) {
+        let classes = subdomains.classes.classes();
+        if classes.iter().any(|class| class.is_rigid) {
             let largest = by_class.iter().flatten().fold(0.0_f64, |m, v| m.max(*v));
-            let rigid = by_class
-                .iter_mut()
-                .zip(&subdomains.bases)
-                .filter(|(_, base)| base.is_rigid());
+            let rigid = by_class.iter_mut().zip(classes).filter(|(_, class)| class.is_rigid);
             rigid.for_each(|(values, _)| values.fill(RIGID * largest));
         }
         let copies = (0..subdomains.count())

@@ -86,7 +86,7 @@ impl<'a> Forecast<'a> {
             let boundary = boundary.iter().filter(|b| **b).count();
             let members = class.members.len();
             copies += members * boundary;
-            if subdomains[class.members[0] as usize].is_rigid() {
+            if class.is_rigid {
                 sizes.push(Size::rigid(members));
                 continue;
             }

@@ -25,8 +25,7 @@ pub(crate) struct ClassBase {
     pub(crate) held: Option<ClassMatrices>,
     /// Of the stiffness that preconditioners are made of.
     pub(crate) diagonal: Vec<f64>,
-    /// Smallest and largest shear modulus of its elements, the mean of three; `None` of a rigid class, which has no
-    /// matrices anywhere.
+    /// Smallest and largest shear modulus of its elements, the mean of three; `None` of a rigid class.
     pub(crate) moduli: Option<[f64; 2]>,
     pub(crate) kernel: Kernel,
 }
@@ -40,13 +39,6 @@ pub(crate) struct ClassMatrices {
     /// What preconditioners are made of where the material is nearly incompressible and elements do not lock: the
     /// stiffness of a compressible one. With its own they would need many times more iterations.
     pub(crate) compressible: Option<Columns>,
-}
-
-impl ClassBase {
-    /// Whether nothing but rigid motions moves its members.
-    pub(crate) fn is_rigid(&self) -> bool {
-        self.moduli.is_none()
-    }
 }
 
 impl ClassMatrices {
@@ -109,8 +101,7 @@ impl Subdomains {
             let points: Vec<[f64; 3]> = nodes.map(|&n| mesh.points()[n as usize]).collect();
             let laws = laws(class)?;
             let shear = |law: &&Hooke| (3..6).map(|i| law.voigt()[i][i]).sum::<f64>() / 3.0;
-            let is_rigid = decomposition.subdomains()[s].is_rigid();
-            let held = (ownership.holds(k) && !is_rigid).then(|| matrices(class, &points, &laws));
+            let held = (ownership.holds(k) && !class.is_rigid).then(|| matrices(class, &points, &laws));
             let held = held.transpose()?;
             let moduli = laws.iter().map(shear);
             let diagonal = |m: &ClassMatrices| (0..m.stiffness.dim).map(|i| m.preconditioning().diagonal(i)).collect();

@@ -37,7 +37,8 @@ impl Ownership {
             let count = members.div_ceil(PANEL);
             for panel in 0..count {
                 let columns = members * panel / count..members * (panel + 1) / count;
-                let work = columns.len() as u64 * nodes * (nodes + 64);
+                let each = if class.is_rigid { nodes } else { nodes * (nodes + 64) };
+                let work = columns.len() as u64 * each;
                 let middle = class.members[(columns.start + columns.end) / 2];
                 panels.push((k, columns, work, middle));
             }
