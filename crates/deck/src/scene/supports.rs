@@ -252,7 +252,7 @@ impl Table {
     }
 
     /// Gives nodes of the mesh the displacement of a reference node and its rotation; `what` they are, and its word. A
-    /// coupling where they are not held in all components, or are loaded.
+    /// coupling where not all of its components are held, or it is loaded, or nodes are held by themselves, too.
     fn move_rigidly(
         &mut self,
         known: Known,
@@ -260,8 +260,10 @@ impl Table {
         (leads, loaded): ((u32, Option<u32>), &BTreeMap<u32, Word>),
         (what, word): (&str, &Word),
     ) -> Result<Option<Rigid>, DeckError> {
+        // supports of single nodes are judged beside a coupling
+        let apart = |node: &u32| (0..3).all(|c| !self.held.contains_key(&(*node, c)));
         let held = match all_components(rigid_components(&self.rigid, leads)) {
-            Ok(held) if !loaded.contains_key(&leads.0) => held,
+            Ok(held) if !loaded.contains_key(&leads.0) && nodes.iter().all(apart) => held,
             _ => return self.coupling(known, nodes, leads, word).map(Some),
         };
         let lead = Lead {
@@ -285,10 +287,7 @@ impl Table {
                         .unwrap_or((0.0, History::constant(0.0)));
                     held.track = held.track.with_course(value, history);
                 }
-                if self.held.insert((node, component), held).is_some() {
-                    let why = format!("node {label} of this {what} is held by itself, too; keep one of them");
-                    return Err(word.cannot(why));
-                }
+                self.held.insert((node, component), held);
             }
         }
         Ok(None)

@@ -110,8 +110,6 @@ fn what_is_refused() {
         "SURFACE=S6",
         "one amplitude",
     );
-    let twice = format!("{HELD}*BOUNDARY\n900, 1, 6\n27, 1\n{idle}");
-    refused("*KINEMATIC", &twice, card, "SURFACE=S6", "keep one");
     let held = format!("{HELD}*BOUNDARY\n900, 1, 6\n{idle}");
     refused("*DISTRIBUTING", &held, "900, 1, 6", "900", "takes loads");
     let moment = format!("{HELD}{}", step("*CLOAD\n900, 5, 1.\n"));
@@ -212,6 +210,29 @@ fn a_rigid_end_is_loaded_as_in_calculix() {
             );
         }
     }
+}
+
+/// A quarter of a block under a plate that is moved: what its planes of symmetry hold of the plate the plate holds, too.
+#[test]
+fn planes_of_symmetry_stand_beside_a_plate() {
+    let symmetry = "*BOUNDARY\nN1, 1\nN3, 2\n";
+    let run = |moves: &str| {
+        let deck = format!(
+            "{}{HELD}{symmetry}{}",
+            coupled("*KINEMATIC\n1, 3"),
+            step(&format!("*BOUNDARY\n{moves}"))
+        );
+        let mut simulation = Simulation::new(scene(&cube(&deck)), Settings::default())?;
+        simulation.step()
+    };
+    let result = run("900, 3, 3, -0.1\n900, 1, 2\n900, 4, 6\n").expect("solved");
+    assert!((result.couplings()[0].displacement[2] + 0.1).abs() < 1e-6);
+    let error = run("900, 3, 3, -0.1\n900, 1, 1, 0.01\n900, 2, 2\n900, 4, 6\n").expect_err("contradictory");
+    let text = error.to_string();
+    assert!(
+        text.contains("SURFACE=S6") && text.contains("a support holds it"),
+        "{text}"
+    );
 }
 
 /// What is held in all components and loaded, too, is a coupling, whose reaction has the load in it; a moved one follows

@@ -338,14 +338,6 @@ fn rigid_bodies() {
         "PLANE",
         "is no obstacle: facet",
     );
-    let own = format!("*RIGID BODY, NSET=N6, REF NODE=109\n{}", "*BOUNDARY\n27, 1\n");
-    let line = "*RIGID BODY, NSET=N6, REF NODE=109";
-    behind(
-        &format!("*NODE\n109\n*BOUNDARY\n109, 1, 6\n{own}"),
-        line,
-        "*RIGID BODY",
-        "of this rigid body is held by itself",
-    );
     let moment = "*NODE\n109\n*NODE\n110\n*RIGID BODY, NSET=N6, REF NODE=109, ROT NODE=110\n\
         *STEP\n*STATIC\n*CLOAD\n110, 4, 1.\n*END STEP\n";
     behind(moment, "110, 4, 1.", "4", "1 to 3 of a ROT NODE are the moments");
