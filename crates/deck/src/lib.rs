@@ -67,11 +67,12 @@
 //! | `*SURFACE` | `NAME`, `TYPE=ELEMENT`, `INTERNAL` | faces `S1` to `S4` of elements or sets, on the boundary, or without a number all that are there, or those of triangles; `SPOS`, `SNEG` of rigid facets |
 //! | | `TYPE=NODE` | the faces on the boundary whose corners are all among these nodes and sets; a node on none of them is refused |
 //! | `*MATERIAL` | `NAME` | |
-//! | `*ELASTIC` | `TYPE=ISO`, `ORTHO`, `ENGINEERING CONSTANTS` | numbers of one temperature; axes are x, y, z |
+//! | `*ELASTIC` | `TYPE=ISO`, `ORTHO`, `ENGINEERING CONSTANTS` | numbers of one temperature |
 //! | `*DENSITY` | | for gravity |
 //! | `*EXPANSION` | `TYPE=ISO`, `ORTHO`, `ZERO` | constant coefficients; `ZERO` says nothing then |
 //! | `*INITIAL CONDITIONS` | `TYPE=TEMPERATURE` | temperatures without stress, else zero |
-//! | `*SOLID SECTION` | `ELSET`, `MATERIAL` | a region of the mesh; each element has one |
+//! | `*SOLID SECTION` | `ELSET`, `MATERIAL`, `ORIENTATION` | a region of the mesh; each element has one |
+//! | `*ORIENTATION` | `NAME`, `SYSTEM` | axes of the material of a section, x, y, z without; `CYLINDRICAL` of isotropic ones only |
 //! | `*AMPLITUDE` | `NAME`, `TIME=STEP TIME` or `TOTAL TIME`, `VALUE=RELATIVE`, `DEFINITION=TABULAR` | straight lines, constant outside; times ascend |
 //! | `*SURFACE INTERACTION` | `NAME` | |
 //! | `*SURFACE BEHAVIOR` | `PRESSURE-OVERCLOSURE=HARD`, `LINEAR` | contact is hard and exact, or has a normal compliance, the inverse of the slope; other laws are refused |

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, norm, scale, sub};
 
-use super::{Faces, Member, Model, Names, Section, Set, Side, Target, mesh, property};
+use super::{Faces, MaterialAxes, Member, Model, Names, Section, Set, Side, Target, mesh, property};
 use crate::error::{DeckError, Fault, Location, Word};
 use crate::lexer::{Card, LARGEST, Named, label};
 
@@ -299,9 +299,19 @@ fn reader(key: &str) -> Option<Reader> {
         "NSET" => |model, card| mesh::set(model, card, "NSET"),
         "ELSET" => |model, card| mesh::set(model, card, "ELSET"),
         "SURFACE" => mesh::surface,
-        "SOLIDSECTION" => property::section,
+        "SOLIDSECTION" => section,
         _ => return None,
     })
+}
+
+/// A section of a part, whose axes would turn with its instances.
+fn section(model: &mut Model, card: &Card) -> Result<(), DeckError> {
+    match card.param("ORIENTATION") {
+        None => property::section(model, card),
+        Some(param) => Err(param
+            .word
+            .cannot("axes of materials are not read in parts; give the section behind the assembly, of a set there")),
+    }
 }
 
 fn too_many(word: &Word) -> DeckError {
@@ -404,7 +414,14 @@ impl Scope<'_> {
                 word: word.clone(),
             };
             let material = section.material.clone();
-            model.sections.push(Section { elset, material });
+            model.sections.push(Section {
+                elset,
+                material,
+                axes: match self.moved.1 {
+                    Some((_, angle)) if angle != 0.0 => MaterialAxes::Turned(self.word.clone()),
+                    _ => MaterialAxes::Global,
+                },
+            });
         }
         Ok(())
     }

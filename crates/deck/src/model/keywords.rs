@@ -4,13 +4,13 @@ use std::borrow::Cow;
 
 use super::assembly::Assembly;
 use super::step::{self, SOLVER, Step};
-use super::{Ignored, Model, coupling, elastic, mesh, property, temperature, transform};
+use super::{Ignored, Model, coupling, elastic, mesh, orientation, property, temperature, transform};
 use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
 
 /// What is read, as an error lists it.
 const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, *EXPANSION, \
-*INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *TRANSFORM, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, \
+*INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *ORIENTATION, *TRANSFORM, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, \
 *CLEARANCE, *TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *PART, *ASSEMBLY, *INSTANCE, \
 *SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
 which are ignored and reported";
@@ -47,13 +47,12 @@ const IDLE_PARAMETERS: [(&str, &str, &str); 14] = [
 ];
 
 /// Keywords of these programs that have no counterpart here, and what to do.
-const REFUSED: [(&str, &str); 9] = [
+const REFUSED: [(&str, &str); 8] = [
     ("EQUATION MPC", "equations between nodes are not here"),
     (
         "DISTRIBUTINGCOUPLING KINEMATICCOUPLING",
         "couplings are read of surfaces; give *COUPLING and behind it *DISTRIBUTING or *KINEMATIC",
     ),
-    ("ORIENTATION", "the axes of materials are x, y, z"),
     ("PLASTIC CREEP HYPERELASTIC", "materials are linear and elastic"),
     (
         "SHELLSECTION BEAMSECTION MEMBRANESECTION SPRING MASS",
@@ -148,6 +147,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         "EXPANSION" => Some(temperature::expansion),
         "INITIALCONDITIONS" => Some(temperature::initial),
         "SOLIDSECTION" => Some(property::section),
+        "ORIENTATION" => Some(orientation::orientation),
         "AMPLITUDE" => Some(property::amplitude),
         "SURFACEINTERACTION" => Some(property::interaction),
         "SURFACEBEHAVIOR" => Some(property::behavior),

@@ -11,6 +11,7 @@ mod elastic;
 mod keywords;
 mod mesh;
 mod names;
+mod orientation;
 mod property;
 mod step;
 mod temperature;
@@ -24,6 +25,7 @@ use std::borrow::Cow;
 pub(crate) use coupling::{Coupling, CouplingLaw};
 pub(crate) use keywords::read;
 pub(crate) use names::Names;
+pub(crate) use orientation::Orientation;
 pub(crate) use step::{
     COMPONENT, Components, Condition, Conditions, DistributedKind, FORCE, Given, INCREMENTS, Step, Target, VolumeLaw,
 };
@@ -152,6 +154,18 @@ pub(crate) struct Material {
 pub(crate) struct Section {
     pub(crate) elset: Named,
     pub(crate) material: Named,
+    pub(crate) axes: MaterialAxes,
+}
+
+/// Along what the laws of a section are given.
+#[derive(Debug, Clone)]
+pub(crate) enum MaterialAxes {
+    /// x, y and z.
+    Global,
+    /// An orientation.
+    Named(Named),
+    /// The axes of a part that an instance turns, with the word of the instance.
+    Turned(Word),
 }
 
 #[derive(Debug, Clone)]
@@ -242,6 +256,7 @@ pub(crate) struct Model {
     pub(crate) elsets: Names<Set>,
     pub(crate) surfaces: Names<Vec<Faces>>,
     pub(crate) materials: Names<Material>,
+    pub(crate) orientations: Names<Orientation>,
     pub(crate) sections: Vec<Section>,
     pub(crate) amplitudes: Names<Amplitude>,
     pub(crate) interactions: Names<Interaction>,

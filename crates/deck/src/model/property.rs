@@ -1,7 +1,10 @@
 //! Materials, sections, amplitudes, contact pairs and their interactions.
 
 use super::mesh::node_of;
-use super::{Amplitude, Clearance, Ignored, Interaction, Law, Material, Model, Pair, RigidBody, Section, Tie, Touch};
+use super::{
+    Amplitude, Clearance, Ignored, Interaction, Law, Material, MaterialAxes, Model, Pair, RigidBody, Section, Tie,
+    Touch,
+};
 use crate::error::{DeckError, Fault, Location, Word};
 use crate::lexer::{Card, Named, name};
 use signorini_fem_mesh::History;
@@ -60,14 +63,20 @@ pub(super) fn density(model: &mut Model, card: &Card) -> Result<(), DeckError> {
 }
 
 pub(super) fn section(model: &mut Model, card: &Card) -> Result<(), DeckError> {
-    card.allow(&["ELSET", "MATERIAL"])?;
+    card.allow(&["ELSET", "MATERIAL", "ORIENTATION"])?;
     let [elset, material] = [card.need("ELSET")?, card.need("MATERIAL")?];
     let wanted = "nothing, or one number: solid elements have no thickness";
     card.lines_at_most(1, wanted)?;
     if let Some(line) = card.lines.first() {
         line.optional(&line.at_most(1, wanted)?, 0, wanted)?;
     }
-    model.sections.push(Section { elset, material });
+    model.sections.push(Section {
+        elset,
+        material,
+        axes: card
+            .value("ORIENTATION")?
+            .map_or(MaterialAxes::Global, MaterialAxes::Named),
+    });
     Ok(())
 }
 

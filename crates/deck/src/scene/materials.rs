@@ -21,7 +21,15 @@ pub(super) fn materials(raw: &Raw, sets: &Sets) -> Result<(Vec<u32>, Option<Mate
             let word = Word::new(&material.location, &section.material.name);
             return Err(word.cannot("the material has no *ELASTIC; put it behind *MATERIAL"));
         };
-        laws.push(*law);
+        let axes = match law.poisson() {
+            Some(_) => None,
+            None => sets.model.axes(section)?,
+        };
+        // axes at right angles turn any law
+        laws.push(axes.map_or(Ok(*law), |axes| law.rotated(axes)).map_err(|error| {
+            let word = Word::new(&material.location, &section.material.name);
+            word.cannot(error.to_string())
+        })?);
     }
     let materials = match laws[..] {
         [law] => Some(Materials::uniform(law)),

@@ -5,10 +5,11 @@ use std::collections::BTreeMap;
 
 use signorini_contact::Load;
 use signorini_fem_mesh::Eigenstrain;
+use signorini_fem_mesh::vec3::Vec3;
 
 use super::faces::Known;
 use super::history::{Histories, Track};
-use crate::error::{DeckError, Word};
+use crate::error::{DeckError, Location, Word};
 use crate::model::{Given, Ignored};
 
 /// Rises by history: the first track that asks for them, and nodes.
@@ -83,7 +84,26 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
     }
     let mut laws = Vec::with_capacity(model.sections.len());
     for section in &model.sections {
-        laws.push(model.material(section)?.expansion.as_ref().map(|law| law.1));
+        let expansion = model.material(section)?.expansion.as_ref();
+        let strain = |law: &(Location, [f64; 3])| -> Result<[f64; 6], DeckError> {
+            let [x, y, z] = law.1;
+            if x == y && y == z {
+                return Ok([x, y, z, 0.0, 0.0, 0.0]);
+            }
+            let along = |axes: [Vec3; 3]| {
+                let of = |p: usize, q: usize| (0..3).map(|k| law.1[k] * axes[k][p] * axes[k][q]).sum::<f64>();
+                [
+                    of(0, 0),
+                    of(1, 1),
+                    of(2, 2),
+                    2.0 * of(1, 2),
+                    2.0 * of(0, 2),
+                    2.0 * of(0, 1),
+                ]
+            };
+            Ok(model.axes(section)?.map_or([x, y, z, 0.0, 0.0, 0.0], along))
+        };
+        laws.push(expansion.map(strain).transpose()?);
     }
     if laws.iter().all(Option::is_none) {
         let why = "no material of a section has *EXPANSION";
@@ -93,7 +113,7 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
     for (history, (track, nodes_of)) in &fields.groups {
         let mut rises = vec![0.0; nodes];
         nodes_of.iter().for_each(|(node, rise)| rises[*node as usize] += rise);
-        let warm = |[x, y, z]: [f64; 3]| Eigenstrain::new([x, y, z, 0.0, 0.0, 0.0]).with_factors(rises.clone());
+        let warm = |strain: [f64; 6]| Eigenstrain::new(strain).with_factors(rises.clone());
         let strains: Vec<Eigenstrain> = match laws[..] {
             [Some(law), ref others @ ..] if others.iter().all(|other| *other == Some(law)) => vec![warm(law)],
             _ => {

@@ -6,6 +6,7 @@ mod couplings;
 mod gaps;
 mod meaning;
 mod names;
+mod orientation;
 mod reading;
 mod refusals;
 mod rigid;

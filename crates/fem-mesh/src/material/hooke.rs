@@ -1,6 +1,7 @@
 //! Hooke's law with a general elasticity tensor.
 
 use crate::tolerances::{ASYMMETRY, ELLIPTICITY, INCOMPRESSIBLE};
+use crate::vec3::dot;
 use nalgebra::SMatrix;
 
 errors! {
@@ -16,6 +17,9 @@ errors! {
         NotSymmetric { left: [usize; 4], left_value: f64, right: [usize; 4], right_value: f64 } =
             "c{left:?} = {left_value} but c{right:?} = {right_value}; (2.8) asks for c_ijkl = c_jikl = c_klij \
             (indices here from 0)";
+        Axes { first: usize, second: usize, product: f64 } =
+            "the axes {first} and {second} (from 0) of a material have the scalar product {product}; give unit vectors \
+            at right angles";
         NotElliptic { smallest: f64, largest: f64 } =
             "the elasticity tensor is not elliptic: its smallest eigenvalue is {smallest:e}, its largest \
             {largest:e}; (2.8) asks for a positive one, so check signs and moduli";
@@ -133,6 +137,35 @@ impl Hooke {
         Ok(Self { voigt, largest })
     }
 
+    /// The law of the same material with these unit vectors, at right angles, in place of the axes x, y and z.
+    ///
+    /// # Errors
+    /// [`HookeError::Axes`] if they are no such vectors.
+    pub fn rotated(&self, axes: [[f64; 3]; 3]) -> Result<Self, HookeError> {
+        for (first, second) in [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)] {
+            let product = dot(axes[first], axes[second]);
+            let expected = f64::from(u8::from(first == second));
+            if !((product - expected).abs() <= ASYMMETRY) {
+                return Err(HookeError::Axes { first, second, product });
+            }
+        }
+        // strain along the axes from that along x, y, z
+        let of = |row: usize, column: usize| {
+            let ([i, j], [p, q]) = (PAIRS[row], PAIRS[column]);
+            let (a, b) = (axes[i], axes[j]);
+            let part = if p == q {
+                a[p] * b[p]
+            } else {
+                0.5 * (a[p] * b[q] + a[q] * b[p])
+            };
+            if i == j { part } else { 2.0 * part }
+        };
+        let strain: [[f64; 6]; 6] = std::array::from_fn(|row| std::array::from_fn(|column| of(row, column)));
+        let columns: [[f64; 6]; 6] = std::array::from_fn(|c| self.stress(&strain.map(|row| row[c])));
+        let entry = |r: usize, c: usize| (0..6).map(|k| strain[k][r] * columns[c][k]).sum::<f64>();
+        Self::from_voigt(&std::array::from_fn(|r| std::array::from_fn(|c| entry(r, c))))
+    }
+
     /// The 6 x 6 matrix in Voigt order xx, yy, zz, yz, xz, xy with engineering shear.
     pub fn voigt(&self) -> &[[f64; 6]; 6] {
         &self.voigt
@@ -162,9 +195,12 @@ impl Hooke {
 
 /// Tensor indices of an entry of the 6 x 6 matrix.
 fn tensor_indices(row: usize, column: usize) -> [usize; 4] {
-    const PAIR: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [1, 2], [0, 2], [0, 1]];
-    [PAIR[row][0], PAIR[row][1], PAIR[column][0], PAIR[column][1]]
+    let ([i, j], [k, l]) = (PAIRS[row], PAIRS[column]);
+    [i, j, k, l]
 }
+
+/// Indices of the entries of strains and stresses.
+const PAIRS: [[usize; 2]; 6] = [[0, 0], [1, 1], [2, 2], [1, 2], [0, 2], [0, 1]];
 
 /// Smallest and largest eigenvalue of the tensor on symmetric second-order tensors. The scaling
 /// by sqrt(2) of the shear rows and columns makes the 6-vectors carry the tensor norm.
@@ -178,6 +214,55 @@ fn eigenvalue_range(voigt: &[[f64; 6]; 6]) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A wood of which energies do not depend on the axes that one looks along.
+    #[test]
+    fn energies_are_those_along_the_axes_of_the_material() {
+        let mut c = [[0.0; 6]; 6];
+        for (i, row) in c.iter_mut().enumerate().take(3) {
+            row[..3].copy_from_slice(&[[9.0, 1.0, 2.0], [1.0, 5.0, 0.5], [2.0, 0.5, 3.0]][i]);
+        }
+        (3..6).for_each(|k| c[k][k] = [0.7, 0.9, 1.3][k - 3]);
+        let wood = Hooke::from_voigt(&c).expect("a law");
+        // a third of a turn about the diagonal, and another one
+        let cyclic = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0], [1.0, 0.0, 0.0]];
+        let turned = wood.rotated(cyclic).expect("axes");
+        assert!((turned.voigt()[1][1] - 9.0).abs() < 1e-14 && (turned.voigt()[4][4] - 0.7).abs() < 1e-14);
+        let (s, t) = (0.6, 0.8);
+        let axes = [[s, t, 0.0], [-t * s, s * s, t], [t * t, -s * t, s]];
+        let turned = wood.rotated(axes).expect("axes");
+        let global = [0.3, -0.2, 0.5, 0.7, -0.4, 0.1];
+        let tensor = |p: usize, q: usize| {
+            let at = PAIRS
+                .iter()
+                .position(|pair| *pair == [p.min(q), p.max(q)])
+                .expect("a pair");
+            if p == q { global[at] } else { 0.5 * global[at] }
+        };
+        let local = PAIRS.map(|[i, j]| {
+            let all = (0..9).map(|k| (k / 3, k % 3));
+            let sum: f64 = all.map(|(p, q)| axes[i][p] * axes[j][q] * tensor(p, q)).sum();
+            if i == j { sum } else { 2.0 * sum }
+        });
+        let [a, b] = [turned.energy_density(&global), wood.energy_density(&local)];
+        assert!((a - b).abs() < 1e-13 * b, "{a} {b}");
+        let skew = [[1.0, 0.0, 0.0], [0.6, 0.8, 0.0], [0.0, 0.0, 1.0]];
+        let error = wood.rotated(skew).expect_err("skew");
+        assert!(
+            matches!(
+                error,
+                HookeError::Axes {
+                    first: 0,
+                    second: 1,
+                    ..
+                }
+            ),
+            "{error}"
+        );
+        let steel = Hooke::isotropic(2e11, 0.3).expect("steel");
+        let turned = steel.rotated(axes).expect("axes");
+        assert!(turned.poisson().is_some_and(|p| (p - 0.3).abs() < 1e-9));
+    }
 
     /// The ratio is found from the stiffness, with rounding that depends on the unit of stress.
     #[test]
