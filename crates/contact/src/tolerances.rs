@@ -32,6 +32,10 @@ pub(crate) const LARGEST: f64 = 1e70;
 /// Cosine to the outward normal below which a direction counts as along the surface.
 pub(crate) const ALONG: f64 = 1e-9;
 
+/// Distance of the reference point of a coupling over that of its nodes from one another up to which its motions are told
+/// apart: what rounding leaves of a rotation is 1e-10 there.
+pub(crate) const FAR: f64 = 1e6;
+
 /// Cosine above which two directions of contact are one: 1.4e-6 radians. Rows of larger angles are solved for apart, at
 /// any angle. Within smaller ones a node would have twice the same row, and one condition keeps the other to 1.4e-6 of
 /// the way along the surface, which the certificate sees.

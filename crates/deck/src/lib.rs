@@ -121,11 +121,12 @@
 //! ([`Contact::obstacle`](signorini_contact::Contact::obstacle)), with triangles between neighbouring nodes; nodes that
 //! do not face it touch nothing. Elements of rigid bodies are not part of the mesh and need no section.
 //!
-//! The reference node has six components: rotations are 4 to 6, or the components 1 to 3 of the rotation node (the same
-//! if both), `ENCASTRE` is all. Nodes of elastic elements in a rigid body, by its `NSET` or by elements that share them,
-//! become supports with the displacement of the body, for small rotations, if all are held or moved. If some are free or
-//! loaded, or nodes are held by themselves, too, as on planes of symmetry, they become a [rigid coupling](signorini_contact::Coupling), and solid elements of its `ELSET` are elastic ones
-//! with a section, coupled. Of an obstacle, and of what is turned as a support, displacement and rotation have one
+//! The reference node has six components: rotations and moments are 4 to 6, or the components 1 to 3 of the rotation node
+//! (the same if both; CalculiX knows those of the rotation node only), `ENCASTRE` is all. Nodes of elastic elements in a
+//! rigid body, by its `NSET` or by elements that share them, become supports with the displacement of the body, for small
+//! rotations, if all are held or moved. If some are free or loaded, or nodes are held by themselves, too, as on planes of
+//! symmetry, they become a [rigid coupling](signorini_contact::Coupling), and solid elements of its `ELSET` are elastic
+//! ones with a section, coupled. Of an obstacle, and of what is turned as a support, displacement and rotation have one
 //! history each. An obstacle of facets that is free or loaded is refused.
 //!
 //! # Parts and instances

@@ -19,6 +19,9 @@ pub const HELD: f64 = 0.25;
 pub const HELD_MEANS: f64 = 0.2;
 /// Prescribed displacements in one direction: relative difference that supports may have.
 pub(crate) const AGREEING: f64 = 1e-7;
+/// Nodes of a rigid subdomain: largest distance from a line, relative to its length, on which they lie. At 3e-6 loads about
+/// the line took all products allowed, from 1e-5 on they were solved.
+pub(crate) const ON_A_LINE: f64 = 1e-5;
 /// Sine of an angle that counts as none: a direction in a plane, nodes on a line.
 pub(crate) const ANGLE: f64 = 1e-6;
 /// Pivots and eigenvalues of small matrices, relative to the largest.
@@ -56,9 +59,10 @@ pub(crate) const SHORT_ROWS: usize = 500;
 /// Stiffness of a copy over that of another one of its node up to which all count alike: 1 where boxes cut a regular
 /// mesh, 2.5 where its nodes are displaced by 0.15 of a cell, 17 and more in cuts that follow no plane of the mesh.
 pub(crate) const ALIKE: f64 = 4.0;
-/// Stiffness of a copy in a rigid subdomain over that of the stiffest other copy, and weight of the rows that hold it: the
-/// mean of a node follows it, and products are those of a support. With 1e6 the best certificates were 1e-10.
-pub(crate) const RIGID: f64 = 1e3;
+/// Stiffness of a copy in a rigid subdomain over that of the other copies of its node, and weight of the rows that hold it
+/// over that of its others: the mean of a node follows it, and products are those of a support. With 1e6 the best
+/// certificates were 1e-10.
+pub const RIGID: f64 = 1e3;
 /// Added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come out
 /// large, but `B^T` takes them to zero.
 pub(crate) const DEPENDENT: f64 = 0.3;

@@ -4,10 +4,10 @@ use super::points::ContactPoint;
 use super::supports::Supports;
 use crate::error::ContactError;
 use crate::scene::{Coupling, CouplingLoad, Place, Scene};
-use crate::tolerances::ALONG;
+use crate::tolerances::{ALONG, FAR};
 use signorini_fem_mesh::Decomposition;
 use signorini_fem_mesh::internal::distinct;
-use signorini_fem_mesh::vec3::{cross, is_finite, norm, sub};
+use signorini_fem_mesh::vec3::{Vec3, cross, dot, is_finite, norm, sub};
 use signorini_tfeti::RigidSupport;
 use signorini_tfeti::internal::{PrescribedDirection, forces_at_three};
 use std::collections::BTreeMap;
@@ -40,21 +40,51 @@ impl Couplings {
         }
         let mut rigid = Vec::with_capacity(scene.couplings.len());
         for (index, coupling) in scene.couplings.iter().enumerate() {
-            let nodes = out.nodes(scene, index, supports)?;
+            let nodes = nodes_of(scene, index)?;
             let point = coupling.reference;
             let places: Vec<_> = nodes.iter().map(|&n| scene.mesh.points()[n as usize]).collect();
-            let refuse = |reason| {
-                let (coupling, node) = (index, None);
+            let refuse = |node, reason| {
+                let coupling = index;
                 Err(ContactError::Coupling { coupling, node, reason })
             };
-            if !is_finite(point) || coupling.motions.iter().any(|m| m.0.iter().any(|v| !v.is_finite())) {
-                return refuse("its reference point and its motions must be finite");
+            let motions = || coupling.motions.iter().flat_map(|m| m.0.iter().zip(&coupling.held));
+            if !is_finite(point) || motions().any(|(way, _)| !way.is_finite()) {
+                return refuse(None, "its reference point and its motions must be finite");
+            }
+            if motions().any(|(way, held)| *way != 0.0 && !held) {
+                return refuse(
+                    None,
+                    "a motion that it does not hold is prescribed; hold it (with_held), or make it zero",
+                );
             }
             if forces_at_three(&places, point, [0.0; 3], [0.0; 3]).is_none() {
-                return refuse("its nodes lie on one line, or are less than three; give it nodes that do not");
+                return refuse(
+                    None,
+                    "its nodes lie on one line, or are less than three; give it nodes that do not",
+                );
             }
+            let far = |from| places.iter().map(|x| norm(sub(*x, from))).fold(0.0, f64::max);
+            let extent = far(places[0]);
+            if far(point) > FAR * extent {
+                let why = "its reference point is a million times as far away as its nodes are from one another, where \
+                    rounding is all that its motions tell; give it a nearer one";
+                return refuse(None, why);
+            }
+            for &node in &nodes {
+                if out.of_node.insert(node, index).is_some() {
+                    let why = "it is in another coupling, too; give it to one of them, or make one coupling of both";
+                    return refuse(Some(node), why);
+                }
+                if !says_the_same(scene, coupling, (node, extent), supports) {
+                    let why = "a support holds it in a direction that the coupling leaves free, or moves it; hold the \
+                        coupling so (with_held), or leave the node out of one of them";
+                    return refuse(Some(node), why);
+                }
+            }
+            supports.release(&nodes);
             if supports.nodes.iter().any(|s| s.nodes.is_empty()) {
-                return refuse("a support has no other nodes, and says the same; leave the support out");
+                let why = "a support holds nothing but some of its nodes, and says the same; leave the support out";
+                return refuse(nodes.first().copied(), why);
             }
             let subdomain = (out.first + index) as u32;
             let cases: Vec<u32> = coupling.motions.iter().map(|(_, h)| supports.case(h)).collect();
@@ -78,57 +108,31 @@ impl Couplings {
         self.of_node.contains_key(&node)
     }
 
-    /// Nodes of a coupling, checked; supports that say the same of them are left out.
-    fn nodes(&mut self, scene: &Scene, index: usize, supports: &mut Supports) -> Result<Vec<u32>, ContactError> {
-        let count = scene.mesh.points().len();
-        let coupling = &scene.couplings[index];
-        let nodes = match &coupling.place {
-            Place::Tag(tag) => match scene.mesh.nodes_on(*tag) {
-                nodes if nodes.is_empty() => return Err(scene.unknown_tag("coupling", index, *tag)),
-                nodes => nodes,
-            },
-            Place::Nodes(nodes) => distinct(nodes.iter().copied()),
-        };
-        for &node in &nodes {
-            let reason = match () {
-                () if node as usize >= count => "the mesh has no such node; they are numbered from 0",
-                () if self.of_node.contains_key(&node) => {
-                    "it is in another coupling, too; give it to one of them, or make one coupling of both"
-                }
-                () if !says_the_same(scene, coupling, node, supports) => {
-                    "a support holds it in a direction that the coupling leaves free, or moves it; hold the coupling \
-                        so (with_held), or leave the node out of one of them"
-                }
-                () => {
-                    supports.release(node);
-                    self.of_node.insert(node, index);
-                    continue;
-                }
-            };
-            return Err(ContactError::Coupling {
-                coupling: index,
-                node: Some(node),
-                reason,
-            });
-        }
-        Ok(nodes)
-    }
-
-    /// Refuses contact points between what is rigid on both sides.
-    pub(super) fn check_contact<'a>(&self, points: impl Iterator<Item = &'a ContactPoint>) -> Result<(), ContactError> {
+    /// Refuses contact points between what is rigid on both sides: coupled, an obstacle, or held along the normal.
+    pub(super) fn check_contact<'a>(
+        &self,
+        points: impl Iterator<Item = &'a ContactPoint>,
+        supports: &Supports,
+    ) -> Result<(), ContactError> {
         if self.of_node.is_empty() {
             return Ok(());
         }
+        let is_held = |node: u32, normal: Vec3| {
+            let held = supports.directions.get(&node).into_iter().flatten();
+            held.map(|d| dot(d.direction, normal).powi(2)).sum::<f64>() >= 1.0 - ALONG
+        };
         for point in points {
-            let mut nodes = point.sides.nodes().map(|n| self.of_node.get(&n.0));
-            if let Some(&coupling) = self.of_node.get(&point.node())
-                && nodes.all(|c| c.is_some())
+            let nodes = || point.sides.nodes().map(|n| n.0);
+            let coupled = nodes().find(|node| self.has(*node));
+            if let Some(node) = coupled
+                && let Some(&coupling) = self.of_node.get(&node)
+                && nodes().all(|node| self.has(node) || is_held(node, point.frame.normal))
             {
-                let reason = "what it could touch is rigid, too, so that no contact force is determined; leave the \
-                    nodes that may touch out of the coupling";
+                let reason = "what it could touch is rigid or held, too, so that no contact force is determined; leave \
+                    the nodes that may touch out of the coupling";
                 return Err(ContactError::Coupling {
                     coupling,
-                    node: Some(point.node()),
+                    node: Some(node),
                     reason,
                 });
             }
@@ -171,8 +175,28 @@ impl Couplings {
     }
 }
 
-/// Whether supports hold a node only where what is held of a coupling holds it, too, and neither moves it there.
-fn says_the_same(scene: &Scene, coupling: &Coupling, node: u32, supports: &Supports) -> bool {
+/// Nodes of a coupling, ascending.
+fn nodes_of(scene: &Scene, coupling: usize) -> Result<Vec<u32>, ContactError> {
+    let count = scene.mesh.points().len();
+    match &scene.couplings[coupling].place {
+        Place::Tag(tag) => match scene.mesh.nodes_on(*tag) {
+            nodes if nodes.is_empty() => Err(scene.unknown_tag("coupling", coupling, *tag)),
+            nodes => Ok(nodes),
+        },
+        Place::Nodes(nodes) => match nodes.iter().find(|n| **n as usize >= count) {
+            None => Ok(distinct(nodes.iter().copied())),
+            Some(&node) => Err(ContactError::Coupling {
+                coupling,
+                node: Some(node),
+                reason: "the mesh has no such node; they are numbered from 0",
+            }),
+        },
+    }
+}
+
+/// Whether supports hold a node only where what is held of a coupling, whose nodes are so far from one another, holds it,
+/// too, and neither moves it there.
+fn says_the_same(scene: &Scene, coupling: &Coupling, (node, extent): (u32, f64), supports: &Supports) -> bool {
     let Some(held) = supports.directions.get(&node) else {
         return true;
     };
@@ -180,7 +204,7 @@ fn says_the_same(scene: &Scene, coupling: &Coupling, node: u32, supports: &Suppo
     held.iter().all(|PrescribedDirection { direction, support, .. }| {
         // what each motion of the coupling does to the node along the direction
         let parts: Vec<f64> = [*direction, cross(arm, *direction)].concat();
-        let size = |c: usize| if c < 3 { 1.0 } else { norm(arm) };
+        let size = |c: usize| if c < 3 { 1.0 } else { extent };
         let stays = |motion: &[f64; 6]| {
             let all = || (0..6).map(|c| (motion[c] * parts[c], (motion[c] * size(c)).abs()));
             let (way, most) = all().fold((0.0, 0.0_f64), |(way, most), (own, size)| (way + own, most.max(size)));

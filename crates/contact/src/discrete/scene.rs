@@ -88,7 +88,7 @@ impl DiscreteScene {
             check_turn(scene, index, own, &conditions[first..end], &poses[index])?;
         }
         let (points, stands) = points(scene, &conditions, rounding)?;
-        couplings.check_contact(points.iter().chain(&ties))?;
+        couplings.check_contact(points.iter().chain(&ties), &supports)?;
         let [softest, stiffest] = check_materials(scene)?;
         check_motions(scene, stiffest)?;
         check_gaps(scene, &conditions, &poses)?;

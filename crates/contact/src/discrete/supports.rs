@@ -51,10 +51,12 @@ impl Supports {
         })
     }
 
-    /// Takes a node out of all supports.
-    pub(super) fn release(&mut self, node: u32) {
-        if self.directions.remove(&node).is_some() {
-            self.nodes.iter_mut().for_each(|support| support.release(node));
+    /// Takes nodes, ascending, out of all supports.
+    pub(super) fn release(&mut self, nodes: &[u32]) {
+        let held = self.directions.len();
+        self.directions.retain(|node, _| nodes.binary_search(node).is_err());
+        if self.directions.len() < held {
+            self.nodes.iter_mut().for_each(|support| support.release(nodes));
         }
     }
 

@@ -5,6 +5,7 @@ use crate::state::Peak;
 use crate::step::StepProblem;
 use crate::tolerances::{REST, ROUNDED, SMALL_PART};
 use signorini_qp::vector;
+use signorini_tfeti::internal::RIGID;
 
 /// Multipliers of a step and what is recovered from them.
 pub(super) struct Measured<'a> {
@@ -62,10 +63,13 @@ pub(super) fn sizes(m: &Measured<'_>) -> Vec<Sizes> {
         let nodes = force.chunks_exact(3).zip(u.chunks_exact(3));
         for ((f, u), copy) in nodes.zip(range.start / 3..) {
             let stiffness = copies.weight(copy);
-            displacement = displacement.max(vector::max_abs(f) / stiffness);
-            if subdomain < model.discrete.couplings.first {
-                stiff += stiffness * stiffness * vector::dot(u, u);
-            }
+            // a rigid copy by the others of its node
+            let (elastic, counts) = match subdomain < model.discrete.couplings.first {
+                true => (stiffness, stiffness),
+                false => (stiffness / RIGID, 0.0),
+            };
+            displacement = displacement.max(vector::max_abs(f) / elastic);
+            stiff += counts * counts * vector::dot(u, u);
         }
         let [residual, force] = [residual, &force].map(|v| vector::dot(v, v));
         [displacement, stiff, residual, force]

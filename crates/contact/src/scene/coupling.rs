@@ -9,9 +9,10 @@ use signorini_fem_mesh::History;
 ///
 /// Elsewhere: kinematic coupling and `*RIGID BODY` (CalculiX, Abaqus), RBE2 (Nastran).
 ///
-/// Nodes must not all lie on a line. They can be in one coupling only, cannot have supports (hold the coupling), nor touch
-/// rigid obstacles; they may touch other bodies. What the coupling does not say of its motion is found: by loads, the
-/// stiffness of the body, other contacts.
+/// Nodes must not all lie on a line. They can be in one coupling only. Supports of them must say what the coupling holds,
+/// as on planes of symmetry; their reaction is then that of the coupling. They cannot touch what is rigid, too; they may
+/// touch other bodies. What the coupling does not say of its motion is found: by loads, the stiffness of the body, other
+/// contacts.
 ///
 /// ```
 /// use signorini_contact::{Coupling, Load, Scene, Settings, Simulation, Support};
@@ -58,7 +59,7 @@ impl Coupling {
         self
     }
 
-    /// Those that are held follow `history(t) * motion` instead of staying at zero: displacements in m, rotations in
+    /// Those that are held, and only these, follow `history(t) * motion` instead of staying at zero: displacements in m, rotations in
     /// radians. Several such motions add up.
     pub fn with_motion(mut self, motion: [f64; 6], history: History) -> Self {
         self.motions.push((motion, history));

@@ -31,11 +31,12 @@ impl Fingerprint {
         let tets = mesh.tets().iter().flatten().chain(mesh.mids().iter().flatten());
         let decomposition = &model.discrete.decomposition;
         let rigid = decomposition.subdomains().iter().filter(|s| s.is_rigid());
-        let parts = decomposition.parts().iter().chain(rigid.flat_map(|s| &s.nodes));
+        let rigid = rigid.flat_map(|s| std::iter::once(s.nodes.len() as u32).chain(s.nodes.iter().copied()));
+        let parts = decomposition.parts().iter().copied().chain(rigid);
         Self {
             points: hash(coordinates.map(|x| number(*x))),
             tets: hash(tets.map(|n| u64::from(*n))),
-            parts: hash(parts.map(|p| u64::from(*p))),
+            parts: hash(parts.map(u64::from)),
             supports: supports(model),
             contact: hash(model.points.iter().flat_map(point)),
             formula: model.scene.analysis.formula().map_or(0, formula),

@@ -105,7 +105,7 @@ fn random_coupled(seed: u64) -> Scene {
     let mut dice = random(1000 + seed);
     let scene = random_scene(seed);
     let mut mesh = scene.mesh().clone();
-    if seed % 3 == 0 {
+    if seed.is_multiple_of(3) {
         mesh = mesh.raise_order().expect("order 2");
     }
     let (_, high) = mesh.extent();
@@ -116,7 +116,8 @@ fn random_coupled(seed: u64) -> Scene {
     let (force, moment) = (any(2e6), any(1e6));
     let held: [bool; 6] = std::array::from_fn(|_| dice.random());
     let coupling = Coupling::rigid(nodes, [high[0] + point[0], point[1], point[2]]);
-    let motion = [motion[0], motion[1], motion[2], turn[0], turn[1], turn[2]];
+    let motion = [motion, turn].concat();
+    let motion = std::array::from_fn(|c| if held[c] { motion[c] } else { 0.0 });
     let plain = Scene::new(mesh.clone(), scene.materials().clone())
         .with_support(Support::fixed(brick::X_MIN))
         .with_contact(scene.contacts()[0].clone())

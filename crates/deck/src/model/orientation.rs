@@ -5,6 +5,7 @@ use signorini_fem_mesh::vec3::{Vec3, add, cross, norm, scale};
 use super::{MaterialAxes, Model, Section};
 use crate::error::{DeckError, Word};
 use crate::lexer::Card;
+use crate::tolerances::ROUNDING;
 
 /// Axes that sections can have.
 #[derive(Debug, Clone)]
@@ -30,7 +31,9 @@ pub(super) fn orientation(model: &mut Model, card: &Card) -> Result<(), DeckErro
     }
     let [a, b] = points;
     let normal = cross(a, b);
-    if !cylindrical && !(norm(normal) > 0.0 && norm(normal).is_finite()) {
+    let size = norm(a) * norm(b);
+    let in_line = norm(normal) <= ROUNDING * size || !size.is_finite();
+    if in_line && !cylindrical {
         return Err(line.cannot("these points give no axes; they and the origin must not be in line"));
     }
     let unit = |v: Vec3| scale(1.0 / norm(v), v);
@@ -62,11 +65,12 @@ pub(super) fn orientation(model: &mut Model, card: &Card) -> Result<(), DeckErro
 }
 
 impl Model {
-    /// The axes of the material of a section; none along x, y, z.
-    pub(crate) fn axes(&self, section: &Section) -> Result<Option<[Vec3; 3]>, DeckError> {
+    /// The axes of the material of a section; none along x, y, z, and where it is isotropic.
+    pub(crate) fn axes(&self, section: &Section, isotropic: bool) -> Result<Option<[Vec3; 3]>, DeckError> {
         let named = match &section.axes {
             MaterialAxes::Global => return Ok(None),
             MaterialAxes::Named(named) => named,
+            MaterialAxes::Turned(_) if isotropic => return Ok(None),
             MaterialAxes::Turned(word) => {
                 let why = "the instance turns, and with it the axes of a material that is not isotropic; give its section \
                     behind the assembly, of a set there, with *ORIENTATION";
@@ -78,6 +82,10 @@ impl Model {
                 .at(self.orientations.find("orientation", &named.name, &named.word)?);
         let why = "axes that differ from place to place are read of isotropic materials only, where they mean nothing; \
             give SYSTEM=RECTANGULAR, and parts of the body sections of their own";
-        axes.map(Some).ok_or_else(|| word.cannot(why))
+        match axes {
+            _ if isotropic => Ok(None),
+            Some(axes) => Ok(Some(*axes)),
+            None => Err(word.cannot(why)),
+        }
     }
 }

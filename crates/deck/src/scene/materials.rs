@@ -21,10 +21,7 @@ pub(super) fn materials(raw: &Raw, sets: &Sets) -> Result<(Vec<u32>, Option<Mate
             let word = Word::new(&material.location, &section.material.name);
             return Err(word.cannot("the material has no *ELASTIC; put it behind *MATERIAL"));
         };
-        let axes = match law.poisson() {
-            Some(_) => None,
-            None => sets.model.axes(section)?,
-        };
+        let axes = sets.model.axes(section, law.poisson().is_some())?;
         // axes at right angles turn any law
         laws.push(axes.map_or(Ok(*law), |axes| law.rotated(axes)).map_err(|error| {
             let word = Word::new(&material.location, &section.material.name);

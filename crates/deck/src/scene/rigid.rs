@@ -241,6 +241,13 @@ impl RigidBodies {
             .any(|n| n == Some(node))
     }
 
+    /// Whether the nodes that say how a body moves say so of another one, too.
+    pub(super) fn share(&self, (reference, rotation): (u32, Option<u32>)) -> bool {
+        let own = |n: u32| n == reference || Some(n) == rotation;
+        let all = self.list.iter();
+        all.filter(|b| own(b.reference) || b.rotation.is_some_and(own)).count() > 1
+    }
+
     /// Refuses reference nodes that elastic elements use; `elastic` are those that do.
     pub(super) fn check_apart(&self, sets: &Sets, elastic: &[bool]) -> Result<(), DeckError> {
         for (body, said) in self.list.iter().zip(&sets.model.rigid) {

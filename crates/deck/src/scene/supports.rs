@@ -208,7 +208,14 @@ impl Table {
             let elastic: Vec<u32> = nodes.iter().filter_map(|n| known.raw.in_mesh(*n)).collect();
             if !elastic.is_empty() {
                 let leads = (reference, rotation);
-                out.extend(self.move_rigidly(known, elastic, (leads, loaded), ("rigid body", &said.word))?);
+                let coupling = self.move_rigidly(known, elastic, (leads, loaded), ("rigid body", &said.word))?;
+                if coupling.is_some() && known.bodies.share(leads) {
+                    return Err(said.reference.1.cannot(
+                        "this node, or the ROT NODE, says how another rigid body moves, too, and what is free or loaded \
+                         moves by itself here; make one body of both, or give this one nodes of its own",
+                    ));
+                }
+                out.extend(coupling);
             } else if let Some(word) = loaded.get(&reference) {
                 return Err(word.cannot(
                     "a rigid body without elastic nodes is held or moved here, not loaded; give its displacement with \

@@ -87,9 +87,6 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
         let expansion = model.material(section)?.expansion.as_ref();
         let strain = |law: &(Location, [f64; 3])| -> Result<[f64; 6], DeckError> {
             let [x, y, z] = law.1;
-            if x == y && y == z {
-                return Ok([x, y, z, 0.0, 0.0, 0.0]);
-            }
             let along = |axes: [Vec3; 3]| {
                 let of = |p: usize, q: usize| (0..3).map(|k| law.1[k] * axes[k][p] * axes[k][q]).sum::<f64>();
                 [
@@ -101,7 +98,8 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
                     2.0 * of(0, 1),
                 ]
             };
-            Ok(model.axes(section)?.map_or([x, y, z, 0.0, 0.0, 0.0], along))
+            let isotropic = x == y && y == z;
+            Ok(model.axes(section, isotropic)?.map_or([x, y, z, 0.0, 0.0, 0.0], along))
         };
         laws.push(expansion.map(strain).transpose()?);
     }

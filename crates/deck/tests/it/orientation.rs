@@ -103,6 +103,12 @@ fn what_is_refused() {
         "1., 0., 0., 2., 0., 0.",
         "in line",
     );
+    let rounded = "1., 3., 7., 1.1, 3.3, 7.7";
+    refused(&of(rounded), rounded, rounded, "in line");
+    let bar = Brick::new([1.0; 3], [1; 3]).build().expect("a bar");
+    let steel = "*MATERIAL, NAME=WOOD\n*ELASTIC\n2.1e5, 0.3\n";
+    let unknown = mesh(&bar) + steel + SECTION;
+    refusals::refused(&unknown, SECTION.trim(), "ORIENTATION=GRAIN", "orientation");
     refused(&of("1., 0., 0., 0., 1., 0.\n4, 30."), "4, 30.", "4", "1, 2 or 3");
     refused(&of("1., 0., 0., 0., x, 0."), "1., 0., 0., 0., x, 0.", "x", "two points");
     refused(&format!("{card}\n"), card, "*ORIENTATION", "two points");

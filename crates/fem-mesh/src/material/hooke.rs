@@ -145,7 +145,8 @@ impl Hooke {
         for (first, second) in [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)] {
             let product = dot(axes[first], axes[second]);
             let expected = f64::from(u8::from(first == second));
-            if !((product - expected).abs() <= ASYMMETRY) {
+            let off = (product - expected).abs();
+            if off.is_nan() || off > ASYMMETRY {
                 return Err(HookeError::Axes { first, second, product });
             }
         }

@@ -2,7 +2,7 @@
 
 use super::gluing::CopyEntry;
 use crate::error::TfetiError;
-use crate::tolerances::ANGLE;
+use crate::tolerances::ON_A_LINE;
 use nalgebra::{SMatrix, SVector};
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, norm, sub};
 use signorini_fem_mesh::{Decomposition, TetMesh};
@@ -109,5 +109,5 @@ fn far_apart(points: &[Vec3]) -> Option<[usize; 3]> {
     let (second, square) = from(points[first])?;
     let axis = sub(points[second], points[first]);
     let (third, off) = farthest(&|p| norm(cross(axis, sub(p, points[first]))))?;
-    (off > ANGLE * square).then_some([first, second, third])
+    (off > ON_A_LINE * square).then_some([first, second, third])
 }

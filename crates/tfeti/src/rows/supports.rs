@@ -94,28 +94,21 @@ impl NodeSupport {
         }
     }
 
-    /// Takes a node out, with what is said of it alone.
-    pub fn release(&mut self, node: u32) {
+    /// Takes some nodes, ascending, out, with what is said of each alone.
+    pub fn release(&mut self, nodes: &[u32]) {
         let count = self.nodes.len();
-        let mut kept = self
-            .nodes
-            .iter()
-            .map(|n| *n != node)
-            .collect::<Vec<bool>>()
-            .into_iter()
-            .cycle();
-        self.nodes.retain(|n| *n != node);
-        let mut keep = || kept.next().unwrap_or(true);
+        let kept: Vec<bool> = self.nodes.iter().map(|n| nodes.binary_search(n).is_err()).collect();
+        self.nodes = keep(std::mem::take(&mut self.nodes), &kept);
         if let Directions::EachNode(lists) = &mut self.directions
             && lists.len() == count
         {
-            lists.retain(|_| keep());
+            *lists = keep(std::mem::take(lists), &kept);
         }
         if let Some(motion) = &mut self.motion
             && motion.values.len() == count
             && count > 1
         {
-            motion.values.retain(|_| keep());
+            motion.values = keep(std::mem::take(&mut motion.values), &kept);
         }
     }
 
@@ -125,6 +118,15 @@ impl NodeSupport {
         self.motion = Some(motion);
         self
     }
+}
+
+/// Those of a list that are kept.
+fn keep<T>(list: Vec<T>, kept: &[bool]) -> Vec<T> {
+    list.into_iter()
+        .zip(kept)
+        .filter(|(_, kept)| **kept)
+        .map(|(item, _)| item)
+        .collect()
 }
 
 /// A spring between a node and the ground: it pushes the body by `-stiffness` times its displacement along the

@@ -4,6 +4,7 @@ use crate::subdomain::matrices::{ClassBase, Subdomains};
 use crate::tolerances::{ALIKE, RIGID};
 use signorini_fem_mesh::Decomposition;
 use signorini_fem_mesh::decomposition::NodeCopy;
+use std::collections::HashMap;
 
 /// The stiffness that each copy of a node has in its subdomain: the mean diagonal entry of the stiffness matrix.
 ///
@@ -20,7 +21,9 @@ pub struct CopyStiffness {
 }
 
 impl CopyStiffness {
-    pub(crate) fn new(subdomains: &Subdomains) -> Self {
+    /// With the mesh node of each copy in torn order. Copies in rigid subdomains are as much stiffer than the others of their
+    /// node.
+    pub(crate) fn new(subdomains: &Subdomains, node_of: &[u32]) -> Self {
         let by_class = |base: &ClassBase| -> Vec<f64> {
             let mean = |node: usize| {
                 let diagonal = (3 * node..3 * node + 3).map(|i| base.diagonal[i]);
@@ -28,13 +31,7 @@ impl CopyStiffness {
             };
             (0..base.diagonal.len() / 3).map(mean).collect()
         };
-        let mut by_class: Vec<Vec<f64>> = subdomains.bases.iter().map(by_class).collect();
-        let classes = subdomains.classes.classes();
-        if classes.iter().any(|class| class.is_rigid) {
-            let largest = by_class.iter().flatten().fold(0.0_f64, |m, v| m.max(*v));
-            let rigid = by_class.iter_mut().zip(classes).filter(|(_, class)| class.is_rigid);
-            rigid.for_each(|(values, _)| values.fill(RIGID * largest));
-        }
+        let by_class: Vec<Vec<f64>> = subdomains.bases.iter().map(by_class).collect();
         let copies = (0..subdomains.count())
             .map(|s| by_class[subdomains.class(s)].len())
             .sum();
@@ -42,6 +39,19 @@ impl CopyStiffness {
         for s in 0..subdomains.count() {
             first.push(values.len());
             values.extend(&by_class[subdomains.class(s)]);
+        }
+        let is_rigid = |s: usize| subdomains.classes.classes()[subdomains.class(s)].is_rigid;
+        if (0..subdomains.count()).any(is_rigid) {
+            let mut largest: HashMap<u32, f64> = HashMap::new();
+            for (node, value) in node_of.iter().zip(&values) {
+                let most = largest.entry(*node).or_default();
+                *most = most.max(*value);
+            }
+            for s in (0..subdomains.count()).filter(|s| is_rigid(*s)) {
+                for k in first[s]..first[s] + by_class[subdomains.class(s)].len() {
+                    values[k] = RIGID * largest.get(&node_of[k]).copied().unwrap_or(0.0);
+                }
+            }
         }
         Self { first, values }
     }

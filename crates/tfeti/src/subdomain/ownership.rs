@@ -51,7 +51,8 @@ impl Ownership {
         let (mut owner, mut before) = (vec![0; panels.len()], 0);
         for k in order {
             let twice = u128::from(2 * before + panels[k].2) * ranks as u128;
-            owner[k] = (twice / u128::from(2 * total)) as usize;
+            // what is no work at the end belongs to the last
+            owner[k] = ((twice / u128::from(2 * total)) as usize).min(ranks - 1);
             before += panels[k].2;
         }
         let mut out = Self {

@@ -6,6 +6,7 @@ use crate::system::tfeti::Tfeti;
 use crate::tolerances::{RIGID, SAMPLE, SHORT_ROWS};
 use rayon::prelude::*;
 use signorini_fem_mesh::internal::distinct;
+use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// Subdomain, unknown and coefficient in a row.
@@ -161,8 +162,28 @@ impl Tfeti {
         for w in &mut weights {
             *w = if *w > 0.0 { *w / largest } else { 1.0 };
         }
-        // what holds a rigid subdomain takes what the others leave
-        weights[ranges.rigid.clone()].fill(RIGID);
+        self.weigh_rigid(&mut weights);
         Some(weights)
+    }
+
+    /// Rows that hold a rigid subdomain take what its others leave: they weigh more than any of these.
+    fn weigh_rigid(&self, weights: &mut [f64]) {
+        let gluing = self.gluing();
+        let rigid = gluing.ranges().rigid.clone();
+        let of = |row: usize| gluing.row(row).into_iter().map(|entry| entry.0);
+        let mut largest: BTreeMap<usize, f64> = rigid.clone().flat_map(of).map(|s| (s, 0.0)).collect();
+        if largest.is_empty() {
+            return;
+        }
+        for row in 0..rigid.start {
+            for subdomain in of(row) {
+                if let Some(largest) = largest.get_mut(&subdomain) {
+                    *largest = largest.max(weights[row]);
+                }
+            }
+        }
+        for row in rigid {
+            weights[row] = of(row).map(|s| RIGID * largest[&s]).fold(0.0, f64::max);
+        }
     }
 }

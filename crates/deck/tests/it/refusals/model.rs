@@ -338,6 +338,15 @@ fn rigid_bodies() {
         "PLANE",
         "is no obstacle: facet",
     );
+    let loaded = "*BOUNDARY\nN5, 1, 3\n*STEP\n*STATIC\n*CLOAD\n109, 1, 1.\n*END STEP\n";
+    let other = "*RIGID BODY, NSET=N2, REF NODE=109";
+    let shared = format!("*NODE\n109\n*RIGID BODY, NSET=N6, REF NODE=109\n{other}\n{loaded}");
+    behind(
+        &shared,
+        "*RIGID BODY, NSET=N6, REF NODE=109",
+        "REF NODE=109",
+        "another rigid body moves, too",
+    );
     let moment = "*NODE\n109\n*NODE\n110\n*RIGID BODY, NSET=N6, REF NODE=109, ROT NODE=110\n\
         *STEP\n*STATIC\n*CLOAD\n110, 4, 1.\n*END STEP\n";
     behind(moment, "110, 4, 1.", "4", "1 to 3 of a ROT NODE are the moments");
