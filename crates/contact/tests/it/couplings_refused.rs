@@ -71,6 +71,21 @@ fn couplings_do_not_know_of_stiffer_bodies() {
     }
 }
 
+/// Where a held coupling takes its load and nothing moves, lengths are measured by what the load would do to a node.
+#[test]
+fn a_load_that_moves_nothing_is_certified() {
+    for boxes in [[1, 1, 1], [3, 1, 2]] {
+        let plain = bar(boxes);
+        let scene = Scene::new(plain.mesh().clone(), uniform(YOUNG, 0.3))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_coupling(end().with_held([true; 6]))
+            .with_load(Load::on_coupling(0, [1e7, -2e7, 3e7], [1e6, 0.0, -1e6]))
+            .with_boxes(boxes);
+        let one = solve(scene, at(1e-9));
+        assert!(one.certificate.largest() <= 1e-9, "{:?}", one.certificate);
+    }
+}
+
 /// Each fault is refused with its place.
 #[test]
 fn faults_are_refused() {

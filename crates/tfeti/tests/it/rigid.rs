@@ -90,6 +90,20 @@ fn products_are_those_of_the_elastic_subdomains() {
 }
 
 #[test]
+fn subdomains_without_nodes_are_refused() {
+    let b = common::Brick::new(1, 2);
+    let cut = b
+        .decomposition
+        .clone()
+        .with_rigid(vec![vec![]])
+        .expect("no unknown node");
+    let materials = Materials::uniform(Hooke::isotropic(2e11, 0.3).expect("steel"));
+    let built = TfetiBuilder::new(&b.mesh, &cut, &materials).build();
+    let subdomain = b.decomposition.subdomains().len();
+    assert_eq!(built.map(|_| ()), Err(TfetiError::Collinear { subdomain }));
+}
+
+#[test]
 fn what_is_refused() {
     let refused = |support: RigidSupport| system(&[support]).map(|_| ()).expect_err("refused");
     let elastic = RigidSupport {
