@@ -34,6 +34,17 @@ pub fn is_finite(a: Vec3) -> bool {
     a.iter().all(|x| x.is_finite())
 }
 
+/// The first two of these vectors whose scalar product is not that of unit vectors at right angles, within an error, and
+/// the product.
+pub fn skewed(axes: [Vec3; 3], within: f64) -> Option<(usize, usize, f64)> {
+    let pairs = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+    let mut products = pairs.into_iter().map(|(i, j)| (i, j, dot(axes[i], axes[j])));
+    products.find(|(i, j, product)| {
+        let off = (product - if i == j { 1.0 } else { 0.0 }).abs();
+        off.is_nan() || off > within
+    })
+}
+
 /// The sum of the components of `v` times these vectors.
 pub fn combine(vectors: &[Vec3; 3], v: Vec3) -> Vec3 {
     let parts = vectors.iter().zip(v).map(|(vector, part)| scale(part, *vector));

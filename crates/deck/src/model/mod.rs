@@ -29,7 +29,7 @@ pub(crate) use orientation::Orientation;
 pub(crate) use step::{
     COMPONENT, Components, Condition, Conditions, DistributedKind, FORCE, Given, INCREMENTS, Step, Target, VolumeLaw,
 };
-pub(crate) use transform::{Axes, Transform};
+pub(crate) use transform::{Axes, Transform, rectangular};
 
 /// A request of the deck that has no meaning here.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -2,6 +2,7 @@
 
 use signorini_fem_mesh::vec3::{Vec3, add, cross, norm, scale};
 
+use super::transform::{rectangular, two_points};
 use super::{MaterialAxes, Model, Section};
 use crate::error::{DeckError, Word};
 use crate::lexer::Card;
@@ -24,21 +25,13 @@ pub(super) fn orientation(model: &mut Model, card: &Card) -> Result<(), DeckErro
         number of an axis and an angle in degrees by which all turn about it";
     card.lines_at_most(2, wanted)?;
     let line = card.lines.first().ok_or_else(|| card.word.expected(wanted))?;
-    let fields = line.at_most(6, wanted)?;
-    let mut points = [[0.0; 3]; 2];
-    for (at, value) in points.as_flattened_mut().iter_mut().enumerate() {
-        *value = line.real(&fields, at, wanted)?;
-    }
-    let [a, b] = points;
-    let normal = cross(a, b);
+    let [a, b] = two_points(line, wanted)?;
     let size = norm(a) * norm(b);
-    let in_line = norm(normal) <= ROUNDING * size || !size.is_finite();
+    let in_line = norm(cross(a, b)) <= ROUNDING * size || !size.is_finite();
     if in_line && !cylindrical {
         return Err(line.cannot("these points give no axes; they and the origin must not be in line"));
     }
-    let unit = |v: Vec3| scale(1.0 / norm(v), v);
-    let (x, z) = (unit(a), unit(normal));
-    let mut axes = [x, cross(z, x), z];
+    let mut axes = rectangular([a, b]);
     if let Some(line) = card.lines.get(1) {
         let fields = line.at_most(2, wanted)?;
         let axis = line.label(&fields, 0, wanted)?;

@@ -1,9 +1,9 @@
 //! `*TRANSFORM`: axes of nodes, along which supports and forces at nodes are.
 
-use signorini_fem_mesh::vec3::{cross, norm, sub};
+use signorini_fem_mesh::vec3::{Vec3, cross, norm, scale, sub};
 
 use super::Model;
-use crate::error::DeckError;
+use crate::error::{DeckError, Word};
 use crate::lexer::{Card, Named};
 
 /// Axes of the nodes of a set.
@@ -21,17 +21,30 @@ pub(crate) enum Axes {
     Cylindrical([[f64; 3]; 2]),
 }
 
+/// The two points of a line of axes.
+pub(super) fn two_points(line: &Word, wanted: &'static str) -> Result<[Vec3; 2], DeckError> {
+    let fields = line.at_most(6, wanted)?;
+    let mut points = [[0.0; 3]; 2];
+    for (at, value) in points.as_flattened_mut().iter_mut().enumerate() {
+        *value = line.real(&fields, at, wanted)?;
+    }
+    Ok(points)
+}
+
+/// Unit vectors along axes: the first goes through the first point, the second one lies in the plane of both.
+pub(crate) fn rectangular([a, b]: [Vec3; 2]) -> [Vec3; 3] {
+    let unit = |v: Vec3| scale(1.0 / norm(v), v);
+    let (first, third) = (unit(a), unit(cross(a, b)));
+    [first, cross(third, first), third]
+}
+
 /// `*TRANSFORM`.
 pub(super) fn transform(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["NSET", "TYPE"])?;
     let cylindrical = card.choice("TYPE", &["R", "C"], "TYPE=R or TYPE=C")? == Some(1);
     let wanted = "two points: on the first axis and in the plane of the first two, or with TYPE=C both on the axis";
     let line = card.only_line(wanted)?;
-    let fields = line.at_most(6, wanted)?;
-    let mut points = [[0.0; 3]; 2];
-    for (at, value) in points.as_flattened_mut().iter_mut().enumerate() {
-        *value = line.real(&fields, at, wanted)?;
-    }
+    let points = two_points(line, wanted)?;
     let [a, b] = points;
     let size = if cylindrical {
         norm(sub(b, a))

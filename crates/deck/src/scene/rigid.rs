@@ -392,15 +392,11 @@ pub(super) fn rigid_components<T: Clone>(
 
 /// All of them, or the first that is free, from 1.
 pub(super) fn all_components<T>(held: [Option<T>; 6]) -> Result<[T; 6], usize> {
-    let [a, b, c, d, e, f] = held;
-    Ok([
-        a.ok_or(1_usize)?,
-        b.ok_or(2_usize)?,
-        c.ok_or(3_usize)?,
-        d.ok_or(4_usize)?,
-        e.ok_or(5_usize)?,
-        f.ok_or(6_usize)?,
-    ])
+    let free = held.iter().position(Option::is_none);
+    match held {
+        [Some(a), Some(b), Some(c), Some(d), Some(e), Some(f)] => Ok([a, b, c, d, e, f]),
+        _ => Err(free.map_or(0, |component| component + 1)),
+    }
 }
 
 /// The contact of the facets with a tag with a rigid surface that `word` names, and whether it is a half-space. `over`

@@ -5,14 +5,14 @@ use std::collections::BTreeMap;
 use signorini_contact::{Directions, Support};
 use signorini_fem_mesh::History;
 use signorini_fem_mesh::internal::cylindrical;
-use signorini_fem_mesh::vec3::{Vec3, combine, cross, norm, scale, sub};
+use signorini_fem_mesh::vec3::{Vec3, combine, norm, scale, sub};
 
 use super::couplings::Couplings;
 use super::mesh::Raw;
 use super::numbers::Sets;
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Word};
-use crate::model::{Axes, Target};
+use crate::model::{Axes, Target, rectangular};
 
 /// The axes of the nodes of the mesh that have their own.
 #[derive(Debug, Default)]
@@ -111,10 +111,4 @@ impl Transforms {
 
 fn unit(v: Vec3) -> Vec3 {
     scale(1.0 / norm(v), v)
-}
-
-/// Unit vectors of the axes.
-fn rectangular([a, b]: [Vec3; 2]) -> [Vec3; 3] {
-    let (first, third) = (unit(a), unit(cross(a, b)));
-    [first, cross(third, first), third]
 }

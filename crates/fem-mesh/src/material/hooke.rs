@@ -1,7 +1,7 @@
 //! Hooke's law with a general elasticity tensor.
 
 use crate::tolerances::{ASYMMETRY, ELLIPTICITY, INCOMPRESSIBLE};
-use crate::vec3::dot;
+use crate::vec3::skewed;
 use nalgebra::SMatrix;
 
 errors! {
@@ -142,13 +142,8 @@ impl Hooke {
     /// # Errors
     /// [`HookeError::Axes`] if they are no such vectors.
     pub fn rotated(&self, axes: [[f64; 3]; 3]) -> Result<Self, HookeError> {
-        for (first, second) in [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)] {
-            let product = dot(axes[first], axes[second]);
-            let expected = f64::from(u8::from(first == second));
-            let off = (product - expected).abs();
-            if off.is_nan() || off > ASYMMETRY {
-                return Err(HookeError::Axes { first, second, product });
-            }
+        if let Some((first, second, product)) = skewed(axes, ASYMMETRY) {
+            return Err(HookeError::Axes { first, second, product });
         }
         // strain along the axes from that along x, y, z
         let of = |row: usize, column: usize| {

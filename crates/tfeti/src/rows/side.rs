@@ -5,7 +5,7 @@ use crate::rows::supports::check_node;
 use crate::tolerances::{SAME, UNIT};
 use nalgebra::Matrix3;
 use signorini_fem_mesh::SurfaceFrame;
-use signorini_fem_mesh::vec3::dot;
+use signorini_fem_mesh::vec3::{dot, skewed};
 
 /// One side of a contact constraint: nodes with weights that sum to one. It moves by the weighted mean of their
 /// displacements.
@@ -200,15 +200,10 @@ impl ContactConstraint {
             });
         }
         let [t1, t2] = self.frame.tangents;
-        let axes = [self.frame.normal, t1, t2];
-        for (i, j) in [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)] {
-            let expected = if i == j { 1.0 } else { 0.0 };
-            let error = (dot(axes[i], axes[j]) - expected).abs();
-            if error.is_nan() || error > UNIT {
-                return Err(TfetiError::BadFrame { point, node });
-            }
+        match skewed([self.frame.normal, t1, t2], UNIT) {
+            Some(_) => Err(TfetiError::BadFrame { point, node }),
+            None => Ok(()),
         }
-        Ok(())
     }
 }
 

@@ -110,7 +110,7 @@ impl Tfeti {
 
     /// The stiffness of the copies of each node, whether or not they differ.
     pub fn all_copy_stiffness(&self) -> CopyStiffness {
-        CopyStiffness::new(&self.parts.subdomains, &self.node_of)
+        CopyStiffness::new(&self.parts.subdomains, self.node_of.iter().copied())
     }
 
     /// The classes of subdomains.
