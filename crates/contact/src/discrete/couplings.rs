@@ -3,13 +3,14 @@
 use super::points::ContactPoint;
 use super::supports::Supports;
 use crate::error::ContactError;
-use crate::scene::{Coupling, CouplingLoad, Place, Scene};
+use crate::scene::{Coupled, Coupling, CouplingLoad, Place, Scene};
 use crate::tolerances::{ALONG, FAR};
-use signorini_fem_mesh::Decomposition;
+use signorini_fem_mesh::decomposition::Rigid;
 use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, cross, dot, is_finite, norm, sub};
-use signorini_tfeti::RigidSupport;
+use signorini_fem_mesh::{Decomposition, SurfaceFrame};
 use signorini_tfeti::internal::{PrescribedDirection, forces_at_three};
+use signorini_tfeti::{RigidSupport, Side};
 use std::collections::BTreeMap;
 
 /// The couplings of a scene.
@@ -21,7 +22,11 @@ pub(crate) struct Couplings {
     pub(crate) supports: Vec<RigidSupport>,
     /// The coupling of each node that has one.
     of_node: BTreeMap<u32, usize>,
+    /// Of tied contacts whose sides move relative to each other the coupling that says how.
+    relative: BTreeMap<usize, usize>,
 }
+
+const AXES: [Vec3; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 impl Couplings {
     /// With the decomposition of all subdomains; `supports` get the histories of their motions.
@@ -34,13 +39,14 @@ impl Couplings {
             first: decomposition.subdomains().len(),
             supports: Vec::new(),
             of_node: BTreeMap::new(),
+            relative: BTreeMap::new(),
         };
         if scene.couplings.is_empty() {
             return Ok((decomposition, out));
         }
         let mut rigid = Vec::with_capacity(scene.couplings.len());
         for (index, coupling) in scene.couplings.iter().enumerate() {
-            let nodes = nodes_of(scene, index)?;
+            let nodes = out.nodes_of(scene, index)?;
             let point = coupling.reference;
             let places: Vec<_> = nodes.iter().map(|&n| scene.mesh.points()[n as usize]).collect();
             let refuse = |node, reason| {
@@ -48,6 +54,12 @@ impl Couplings {
                 Err(ContactError::Coupling { coupling, node, reason })
             };
             let motions = || coupling.motions.iter().flat_map(|m| m.0.iter().zip(&coupling.held));
+            let Some(axes) = axes(coupling) else {
+                return refuse(
+                    None,
+                    "its axis has no direction; give it one of finite length, not zero",
+                );
+            };
             if !is_finite(point) || motions().any(|(way, _)| !way.is_finite()) {
                 return refuse(None, "its reference point and its motions must be finite");
             }
@@ -70,18 +82,25 @@ impl Couplings {
                     rounding is all that its motions tell; give it a nearer one";
                 return refuse(None, why);
             }
-            for &node in &nodes {
+            let relative = matches!(coupling.coupled, Coupled::Tied(_));
+            for &node in nodes.iter().filter(|_| !relative) {
                 if out.of_node.insert(node, index).is_some() {
                     let why = "it is in another coupling, too; give it to one of them, or make one coupling of both";
                     return refuse(Some(node), why);
                 }
-                if !says_the_same(scene, coupling, (node, extent), supports) {
+                let held = supports.directions.get(&node).into_iter().flatten();
+                if !held
+                    .clone()
+                    .all(|d| says_the_same(scene, (coupling, &axes), (node, extent), d))
+                {
                     let why = "a support holds it in a direction that the coupling leaves free, or moves it; hold the \
                         coupling so (with_held), or leave the node out of one of them";
                     return refuse(Some(node), why);
                 }
             }
-            supports.release(&nodes);
+            if !relative {
+                supports.release(&nodes);
+            }
             if supports.nodes.iter().any(|s| s.nodes.is_empty()) {
                 let why = "a support holds nothing but some of its nodes, and says the same; leave the support out";
                 return refuse(nodes.first().copied(), why);
@@ -89,18 +108,66 @@ impl Couplings {
             let subdomain = (out.first + index) as u32;
             let cases: Vec<u32> = coupling.motions.iter().map(|(_, h)| supports.case(h)).collect();
             for component in (0..6).filter(|&c| coupling.held[c]) {
+                let mut direction = [[0.0; 3]; 2];
+                direction[component / 3] = axes[component % 3];
                 let values = cases.iter().zip(&coupling.motions);
                 let values = values.map(|(&case, (motion, _))| (case, motion[component]));
                 out.supports.push(RigidSupport {
                     subdomain,
                     point,
-                    component,
+                    direction,
                     values: values.filter(|v| v.1 != 0.0).collect(),
                 });
             }
-            rigid.push(nodes);
+            rigid.push(match relative {
+                true => Rigid::Places(nodes),
+                false => Rigid::Nodes(nodes),
+            });
         }
         Ok((decomposition.with_rigid(rigid)?, out))
+    }
+
+    /// The subdomain of the motion that the sides of a tied contact have relative to each other, if they have.
+    pub(crate) fn relative(&self, contact: usize) -> Option<u32> {
+        self.relative
+            .get(&contact)
+            .map(|coupling| (self.first + coupling) as u32)
+    }
+
+    /// Nodes of a coupling, ascending; of a relative one those of both sides.
+    fn nodes_of(&mut self, scene: &Scene, coupling: usize) -> Result<Vec<u32>, ContactError> {
+        let count = scene.mesh.points().len();
+        let refuse = |node, reason| ContactError::Coupling { coupling, node, reason };
+        match &scene.couplings[coupling].coupled {
+            Coupled::Nodes(Place::Tag(tag)) => match scene.mesh.nodes_on(*tag) {
+                nodes if nodes.is_empty() => Err(scene.unknown_tag("coupling", coupling, *tag)),
+                nodes => Ok(nodes),
+            },
+            Coupled::Nodes(Place::Nodes(nodes)) => match nodes.iter().find(|n| **n as usize >= count) {
+                None => Ok(distinct(nodes.iter().copied())),
+                Some(&node) => Err(refuse(
+                    Some(node),
+                    "the mesh has no such node; they are numbered from 0",
+                )),
+            },
+            Coupled::Tied(contact) => {
+                let tied = scene.contacts.get(*contact).filter(|c| c.tied);
+                let tied = tied.ok_or_else(|| {
+                    refuse(
+                        None,
+                        "there is no tied contact of its number; they are numbered from 0, with the others",
+                    )
+                })?;
+                if self.relative.insert(*contact, coupling).is_some() {
+                    return Err(refuse(
+                        None,
+                        "another coupling says how the sides of its contact move, too",
+                    ));
+                }
+                let tags = tied.tags.iter().chain(&tied.partner);
+                Ok(distinct(tags.flat_map(|tag| scene.mesh.nodes_on(*tag))))
+            }
+        }
     }
 
     /// Whether a node is in a coupling.
@@ -135,6 +202,41 @@ impl Couplings {
                     node: Some(node),
                     reason,
                 });
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses ties whose sides supports hold both where their relative motion is free: no row would say what it is there.
+    pub(super) fn check_ties(
+        &self,
+        scene: &Scene,
+        ties: &[ContactPoint],
+        supports: &Supports,
+    ) -> Result<(), ContactError> {
+        for tie in ties {
+            let Some(&index) = self.relative.get(&tie.surface) else {
+                continue;
+            };
+            let coupling = &scene.couplings[index];
+            // the axes are checked
+            let axes = axes(coupling).unwrap_or(AXES);
+            let held = |node: u32| supports.directions.get(&node).into_iter().flatten();
+            let nodes = |side: Option<&Side>| side.map_or(&[][..], |side| side.nodes()).to_vec();
+            let [own, other] = [Some(&tie.sides.own), tie.sides.partner.as_ref()].map(nodes);
+            for (node, d) in own.iter().flat_map(|&(node, _)| held(node).map(move |d| (node, d))) {
+                let both = |e: &PrescribedDirection| dot(d.direction, e.direction).abs() >= 1.0 - ALONG;
+                let extent = norm(sub(scene.mesh.points()[node as usize], coupling.reference));
+                if other.iter().any(|(node, _)| held(*node).any(both))
+                    && !says_the_same(scene, (coupling, &axes), (node, extent), d)
+                {
+                    let reason = "supports hold both sides in a direction in which they may move relative to each other;                         hold the coupling so (with_held), or leave the nodes of one side out of the supports";
+                    return Err(ContactError::Coupling {
+                        coupling: index,
+                        node: Some(node),
+                        reason,
+                    });
+                }
             }
         }
         Ok(())
@@ -175,43 +277,38 @@ impl Couplings {
     }
 }
 
-/// Nodes of a coupling, ascending.
-fn nodes_of(scene: &Scene, coupling: usize) -> Result<Vec<u32>, ContactError> {
-    let count = scene.mesh.points().len();
-    match &scene.couplings[coupling].place {
-        Place::Tag(tag) => match scene.mesh.nodes_on(*tag) {
-            nodes if nodes.is_empty() => Err(scene.unknown_tag("coupling", coupling, *tag)),
-            nodes => Ok(nodes),
-        },
-        Place::Nodes(nodes) => match nodes.iter().find(|n| **n as usize >= count) {
-            None => Ok(distinct(nodes.iter().copied())),
-            Some(&node) => Err(ContactError::Coupling {
-                coupling,
-                node: Some(node),
-                reason: "the mesh has no such node; they are numbered from 0",
-            }),
-        },
-    }
+/// Along and about which it is told what is held; `None` if its axis has no direction.
+fn axes(coupling: &Coupling) -> Option<[Vec3; 3]> {
+    let Some(axis) = coupling.axis else {
+        return Some(AXES);
+    };
+    let SurfaceFrame {
+        normal,
+        tangents: [t1, t2],
+    } = SurfaceFrame::from_normal(axis)?;
+    Some([normal, t1, t2])
 }
 
-/// Whether supports hold a node only where what is held of a coupling, whose nodes are so far from one another, holds it,
-/// too, and neither moves it there.
-fn says_the_same(scene: &Scene, coupling: &Coupling, (node, extent): (u32, f64), supports: &Supports) -> bool {
-    let Some(held) = supports.directions.get(&node) else {
-        return true;
-    };
+/// Whether what is held of a coupling, whose nodes are so far from one another, holds a node, too, where a support does,
+/// and neither moves it there.
+fn says_the_same(
+    scene: &Scene,
+    (coupling, axes): (&Coupling, &[Vec3; 3]),
+    (node, extent): (u32, f64),
+    held: &PrescribedDirection,
+) -> bool {
     let arm = sub(scene.mesh.points()[node as usize], coupling.reference);
-    held.iter().all(|PrescribedDirection { direction, support, .. }| {
-        // what each motion of the coupling does to the node along the direction
-        let parts: Vec<f64> = [*direction, cross(arm, *direction)].concat();
-        let size = |c: usize| if c < 3 { 1.0 } else { extent };
-        let stays = |motion: &[f64; 6]| {
-            let all = || (0..6).map(|c| (motion[c] * parts[c], (motion[c] * size(c)).abs()));
-            let (way, most) = all().fold((0.0, 0.0_f64), |(way, most), (own, size)| (way + own, most.max(size)));
-            way.abs() <= ALONG * most
-        };
-        scene.supports[*support].motion.is_none()
-            && (0..6).all(|c| coupling.held[c] || parts[c].abs() <= ALONG * size(c))
-            && coupling.motions.iter().all(|(motion, _)| stays(motion))
-    })
+    let direction = held.direction;
+    // what each motion of the coupling does to the node along the direction
+    let parts = [direction, cross(arm, direction)].map(|part| axes.map(|axis| dot(axis, part)));
+    let parts = parts.as_flattened();
+    let size = |c: usize| if c < 3 { 1.0 } else { extent };
+    let stays = |motion: &[f64; 6]| {
+        let all = || (0..6).map(|c| (motion[c] * parts[c], (motion[c] * size(c)).abs()));
+        let (way, most) = all().fold((0.0, 0.0_f64), |(way, most), (own, size)| (way + own, most.max(size)));
+        way.abs() <= ALONG * most
+    };
+    scene.supports[held.support].motion.is_none()
+        && (0..6).all(|c| coupling.held[c] || parts[c].abs() <= ALONG * size(c))
+        && coupling.motions.iter().all(|(motion, _)| stays(motion))
 }

@@ -89,11 +89,12 @@ impl DiscreteScene {
         }
         let (points, stands) = points(scene, &conditions, rounding)?;
         couplings.check_contact(points.iter().chain(&ties), &supports)?;
+        couplings.check_ties(scene, &ties, &supports)?;
         let [softest, stiffest] = check_materials(scene)?;
         check_motions(scene, stiffest)?;
         check_gaps(scene, &conditions, &poses)?;
         check_compliance(&points)?;
-        let constraints = constraints(scene, &points, &ties);
+        let constraints = constraints(scene, &points, &ties, &couplings);
         let nodes = scene.mesh.points().len();
         let prescribed = prescribed_points(&constraints, &supports.nodes, nodes)?;
         check_penetration(scene, &points, &prescribed, (&supports.motions, &poses), rounding)?;
@@ -127,7 +128,12 @@ impl DiscreteScene {
 }
 
 /// The contact points as `tfeti` wants them, and behind them the tied ones.
-fn constraints(scene: &Scene, points: &[ContactPoint], ties: &[ContactPoint]) -> Vec<ContactConstraint> {
+fn constraints(
+    scene: &Scene,
+    points: &[ContactPoint],
+    ties: &[ContactPoint],
+    couplings: &Couplings,
+) -> Vec<ContactConstraint> {
     let point = |p: &ContactPoint| {
         let contact = &scene.contacts[p.surface];
         ContactConstraint {
@@ -135,6 +141,9 @@ fn constraints(scene: &Scene, points: &[ContactPoint], ties: &[ContactPoint]) ->
             friction: contact.friction().is_some(),
             moving: contact.moves() && !contact.tied,
             tied: contact.tied,
+            relative: couplings
+                .relative(p.surface)
+                .map(|subdomain| (subdomain, p.sides.sign())),
             stretch: p.stretch,
             compliance: p.compliance.map(|c| c / p.area),
             ..ContactConstraint::new(p.sides.own.clone(), p.frame)

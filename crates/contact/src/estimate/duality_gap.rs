@@ -93,10 +93,11 @@ impl Solved<'_> {
     pub(crate) fn algebraic_error(&self) -> AlgebraicError {
         let (model, tfeti) = (self.model, &self.model.tfeti);
         let weights = self.caches.weights.get_or_init(|| Weights::new(model));
-        let offset = &*self.offset();
+        let motions = self.motions();
+        let offset = &*self.offset(&motions);
         let mut v = tfeti.mean_by(model.copies(), &self.recovered.torn);
         let mean = (tfeti.subdomains() > 1).then(|| tfeti.nodal_mean(&self.recovered.torn));
-        self.couple(offset, &mut v);
+        self.couple(&motions, &mut v);
         let points = || self.recovered.points.iter().zip(&weights.nodes);
         let moved: Vec<Correction> = match &weights.shared {
             None => points()
@@ -120,7 +121,7 @@ impl Solved<'_> {
         self.support(offset, &mut v);
         if weights.shared.is_none() {
             self.agree(&moved, &weights.nodes, offset, &mut v);
-            self.tie(&mut v);
+            self.tie(offset, &mut v);
         }
         let (mut terms, mut change) = (0.0, 0.0);
         for ((state, node), moved) in points().zip(&moved) {
@@ -259,17 +260,42 @@ impl Solved<'_> {
     }
 
     /// What rows have to measure of an admissible displacement, in row units. Springs and compliant contact are held
-    /// where their multipliers put them: they then add nothing to the gap.
-    fn offset(&self) -> Cow<'_, [f64]> {
+    /// where their multipliers put them: they then add nothing to the gap. Likewise sides that move relative to each
+    /// other where they moved.
+    fn offset(&self, motions: &[[Vec3; 2]]) -> Cow<'_, [f64]> {
         let (offset, gives_way) = (&self.problem.offset, &self.recovered.gives_way);
-        match &gives_way[..] {
+        let mut out: Cow<'_, [f64]> = match &gives_way[..] {
             [] => offset.into(),
             _ => offset.iter().zip(gives_way).map(|(c, given)| c - given).collect(),
+        };
+        let model = self.model;
+        for (tied, tie) in model.tied() {
+            if let Some(subdomain) = model.discrete.couplings.relative(tie.surface) {
+                let by = |row: usize| self.acts(row, subdomain as usize, motions);
+                for row in tied.rows.clone() {
+                    out.to_mut()[row] -= by(row);
+                }
+            }
         }
+        out
+    }
+
+    /// What the motion of a coupling does to a row.
+    fn acts(&self, row: usize, subdomain: usize, motions: &[[Vec3; 2]]) -> f64 {
+        let (scene, discrete) = (&self.model.scene, &self.model.discrete);
+        let coupling = subdomain - discrete.couplings.first;
+        let (motion, point) = (motions[coupling], scene.couplings[coupling].reference());
+        let nodes = &discrete.decomposition.subdomains()[subdomain].nodes;
+        let own = self.model.tfeti.gluing().row(row).into_iter();
+        let own = own.filter(|entry| entry.0 == subdomain).map(|(_, dof, coefficient)| {
+            let arm = sub(scene.mesh.points()[nodes[dof / 3] as usize], point);
+            coefficient * moved(motion, arm)[dof % 3]
+        });
+        own.sum()
     }
 
     /// Moves the nodes of tied contacts to where their partners want them.
-    fn tie(&self, v: &mut [f64]) {
+    fn tie(&self, offset: &[f64], v: &mut [f64]) {
         let gluing = self.model.tfeti.gluing();
         for row in gluing.ranges().tied.clone() {
             let Some(own) = gluing.node(row) else {
@@ -284,37 +310,48 @@ impl Solved<'_> {
             }
             let square = dot(&part, &part);
             if square > FREEDOM_TAKEN {
-                let by = (self.problem.offset[row] - value) / square;
+                let by = (offset[row] - value) / square;
                 (0..3).for_each(|c| v[3 * own as usize + c] += by * part[c]);
             }
         }
     }
 
-    /// Moves the nodes of couplings as rigid bodies, of which what is held has its prescribed values.
-    fn couple(&self, offset: &[f64], v: &mut [f64]) {
+    /// The motions of couplings, of which what is held has its prescribed values.
+    fn motions(&self) -> Vec<[Vec3; 2]> {
         let (model, couplings) = (self.model, &self.model.discrete.couplings);
-        let mut rows = model
-            .tfeti
-            .gluing()
-            .ranges()
-            .rigid
-            .clone()
-            .zip(&couplings.supports)
-            .peekable();
-        let subdomains = &model.discrete.decomposition.subdomains()[couplings.first..];
-        for (k, (coupling, rigid)) in model.scene.couplings.iter().zip(subdomains).enumerate() {
-            let (point, subdomain) = (coupling.reference(), couplings.first + k);
-            let arm = |node: u32| sub(model.scene.mesh.points()[node as usize], point);
-            let mut motion = model.tfeti.rigid_motion(subdomain, &self.recovered.torn, point);
-            while let Some((row, held)) = rows.next_if(|(_, held)| held.subdomain as usize == subdomain) {
-                let mut unit = [[0.0; 3]; 2];
-                unit[held.component / 3][held.component % 3] = 1.0;
-                let entries = model.row(row);
-                let scale: f64 = entries.map(|(node, c, value)| value * moved(unit, arm(node))[c]).sum();
-                motion[held.component / 3][held.component % 3] = offset[row] / scale;
+        let own = model.scene.couplings.iter().enumerate();
+        let own = own.map(|(k, coupling)| {
+            let torn = &self.recovered.torn;
+            model
+                .tfeti
+                .rigid_motion(couplings.first + k, torn, coupling.reference())
+        });
+        let mut motions: Vec<[Vec3; 2]> = own.collect();
+        let rows = model.tfeti.gluing().ranges().rigid.clone();
+        for (row, held) in rows.zip(&couplings.supports) {
+            let subdomain = held.subdomain as usize;
+            let mut unit = vec![[[0.0; 3]; 2]; motions.len()];
+            unit[subdomain - couplings.first] = held.direction;
+            let value = self.problem.offset[row] / self.acts(row, subdomain, &unit);
+            let motion = &mut motions[subdomain - couplings.first];
+            // one of the two directions is zero
+            let off = value - dot(&motion[0], &held.direction[0]) - dot(&motion[1], &held.direction[1]);
+            for (motion, direction) in motion.iter_mut().zip(held.direction) {
+                (0..3).for_each(|c| motion[c] += off * direction[c]);
             }
+        }
+        motions
+    }
+
+    /// Moves the nodes of couplings as rigid bodies.
+    fn couple(&self, motions: &[[Vec3; 2]], v: &mut [f64]) {
+        let model = self.model;
+        let subdomains = &model.discrete.decomposition.subdomains()[model.discrete.couplings.first..];
+        let own = motions.iter().zip(&model.scene.couplings).zip(subdomains);
+        for ((motion, coupling), rigid) in own.filter(|(_, rigid)| !rigid.is_relative) {
             for &node in &rigid.nodes {
-                v[3 * node as usize..][..3].copy_from_slice(&moved(motion, arm(node)));
+                let arm = sub(model.scene.mesh.points()[node as usize], coupling.reference());
+                v[3 * node as usize..][..3].copy_from_slice(&moved(*motion, arm));
             }
         }
     }

@@ -45,9 +45,10 @@ impl SharedNodes {
         let mut rows: Vec<_> = of_points.map(|(_, number, scale)| row(number, scale)).collect();
         rows.extend(tied.clone().map(|number| row(number, 1.0)));
         let mut stiffness = vec![0.0; discrete.decomposition.nodes()];
-        let copies = discrete.decomposition.subdomains().iter().flat_map(|s| &s.nodes);
-        for (k, &node) in copies.enumerate() {
-            stiffness[node as usize] += model.copies().weight(k);
+        for (k, node) in discrete.decomposition.torn_nodes().enumerate() {
+            if let Some(node) = node {
+                stiffness[node as usize] += model.copies().weight(k);
+            }
         }
         let compliance: Vec<f64> = stiffness.iter().flat_map(|s| [1.0 / s; 3]).collect();
         let square = |row: &Vec<(usize, f64)>| row.iter().map(|&(at, v)| v * v * compliance[at]).sum::<f64>();

@@ -92,7 +92,9 @@ fn joined(tfeti: &Tfeti, discrete: &DiscreteScene) -> Vec<u32> {
     };
     let pairs = discrete.points.iter().filter(|p| p.sides.partner.is_some());
     for point in pairs.chain(&discrete.ties) {
-        let mut bodies = point.sides.nodes().map(body);
+        let relative = discrete.couplings.relative(point.surface);
+        let relative = relative.map(|subdomain| coarse.body_of()[subdomain as usize] as usize);
+        let mut bodies = point.sides.nodes().map(body).chain(relative);
         if let Some(first) = bodies.next() {
             bodies.for_each(|other| sets.join(first, other));
         }

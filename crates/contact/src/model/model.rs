@@ -84,10 +84,11 @@ impl Model {
         tied.filter_map(move |t| Some((t, self.discrete.ties.get(t.point.checked_sub(points)?)?)))
     }
 
-    /// The entries of a row: mesh node, component and coefficient.
+    /// The entries of a row on nodes: mesh node, component and coefficient.
     pub(crate) fn row(&self, row: usize) -> impl Iterator<Item = (u32, usize, f64)> {
         let subdomains = self.discrete.decomposition.subdomains();
         let entries = self.tfeti.gluing().row(row).into_iter();
+        let entries = entries.filter(|entry| !subdomains[entry.0].is_relative);
         entries.map(|(subdomain, dof, value)| (subdomains[subdomain].nodes[dof / 3], dof % 3, value))
     }
 

@@ -83,7 +83,8 @@ pub struct Reactions {
     pub supports: Vec<SupportReaction>,
     /// Reactions of the [elastic foundations](crate::Spring), in the order of the scene.
     pub springs: Vec<SupportReaction>,
-    /// Reactions of what holds the [couplings](crate::Coupling), in the order of the scene.
+    /// Reactions of what holds the [couplings](crate::Coupling), in the order of the scene; zero of relative ones, whose
+    /// forces are those of their contacts.
     pub couplings: Vec<Resultant>,
     /// Contact pressure and friction of obstacles. Forces between bodies cancel; so do their moments, except that of
     /// friction across an initial gap between matching or plane sides, because moments use the undeformed state.
@@ -237,11 +238,10 @@ pub(crate) fn reactions_about(
 fn loads(model: &Model, problem: &StepProblem, arm: impl Fn(u32) -> [f64; 3]) -> Resultant {
     let mut sum = Resultant::default();
     for (factor, load) in problem.factors.iter().zip(&model.loads) {
-        let nodes = model.discrete.decomposition.subdomains().iter();
-        let nodes = nodes.flat_map(|s| &s.nodes);
-        for (&node, force) in nodes.zip(load.force.as_chunks::<3>().0) {
-            // most loads act on a surface
-            if *force != [0.0; 3] {
+        let nodes = model.discrete.decomposition.torn_nodes();
+        for (node, force) in nodes.zip(load.force.as_chunks::<3>().0) {
+            // most loads act on a surface; those between two sides have no resultant
+            if let Some(node) = node.filter(|_| *force != [0.0; 3]) {
                 sum.add(arm(node), force.map(|f| factor * f));
             }
         }

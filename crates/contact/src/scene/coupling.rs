@@ -36,21 +36,76 @@ use signorini_fem_mesh::History;
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Coupling {
-    pub(crate) place: Place,
+    pub(crate) coupled: Coupled,
     pub(crate) reference: [f64; 3],
+    pub(crate) axis: Option<[f64; 3]>,
     pub(crate) held: [bool; 6],
     pub(crate) motions: Vec<([f64; 6], History)>,
+}
+
+/// What moves as a coupling says.
+#[derive(Debug, Clone)]
+pub(crate) enum Coupled {
+    Nodes(Place),
+    /// The first side of a tied contact relative to the other.
+    Tied(usize),
 }
 
 impl Coupling {
     /// A free coupling of the nodes of a tag, or of single nodes, with its reference point, m.
     pub fn rigid(place: impl Into<Place>, reference: [f64; 3]) -> Self {
+        Self::of(Coupled::Nodes(place.into()), reference)
+    }
+
+    /// How the first side of a [tied](crate::Contact::tied) contact, by its number in the scene, moves relative to the
+    /// other: nothing but a rigid motion about the reference point, m, which loads push or turn with the opposite on the
+    /// other side. The forces that the sides transfer are those of the contact.
+    ///
+    /// A bolt that is cut across, and tightened: the sides may move towards each other along its axis, and are pulled by
+    /// the preload along the outward normal of the first. Without rotations that are held it is a ball joint, with one
+    /// that is free a hinge. Elsewhere: pretension section, connector, joint.
+    ///
+    /// ```
+    /// use signorini_contact::{Contact, Coupling, Load, Scene, Settings, Simulation, Support};
+    /// use signorini_fem_mesh::{Brick, FacetTag, Hooke, Materials, brick};
+    ///
+    /// // a bolt between two walls, cut in the middle
+    /// let bolt = Brick::new([0.1, 0.02, 0.02], [10, 2, 2]).build()?;
+    /// let is_left = |tet: usize| Some(bolt.tet_points(tet).iter().map(|p| p[0]).sum::<f64>() < 4.0 * 0.05);
+    /// let (left, right) = (FacetTag(7), FacetTag(8));
+    /// let (bolt, _) = bolt.cut(is_left, [left, right])?;
+    /// let scene = Scene::new(bolt, Materials::uniform(Hooke::isotropic(2e11, 0.3)?))
+    ///     .with_support(Support::fixed(brick::X_MIN))
+    ///     .with_support(Support::fixed(brick::X_MAX))
+    ///     .with_contact(Contact::tied(left, right))
+    ///     .with_coupling(Coupling::relative(0, [0.05, 0.01, 0.01]).with_held([false, true, true, true, true, true]))
+    ///     .with_load(Load::on_coupling(0, [4e4, 0.0, 0.0], [0.0; 3]));
+    /// let mut simulation = Simulation::new(scene, Settings::default())?;
+    /// let result = simulation.step()?;
+    /// // it is shortened by about force times length over stiffness
+    /// assert!((result.couplings()[0].displacement[0] / 5e-5 - 1.0).abs() < 0.1);
+    /// assert!((result.reactions().supports[1].resultant.force[0] - 4e4).abs() < 1e-2);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn relative(contact: usize, reference: [f64; 3]) -> Self {
+        Self::of(Coupled::Tied(contact), reference)
+    }
+
+    fn of(coupled: Coupled, reference: [f64; 3]) -> Self {
         Self {
-            place: place.into(),
+            coupled,
             reference,
+            axis: None,
             held: [false; 6],
             motions: Vec::new(),
         }
+    }
+
+    /// What is held, and how it moves, is told along and about this axis, of any length, in the place of x, and two at
+    /// right angles to it ([`SurfaceFrame`](signorini_fem_mesh::SurfaceFrame)).
+    pub fn with_axis(mut self, axis: [f64; 3]) -> Self {
+        self.axis = Some(axis);
+        self
     }
 
     /// Which of its motions are held: displacements of the reference point along x, y, z, and rotations about them.
@@ -66,9 +121,12 @@ impl Coupling {
         self
     }
 
-    /// Its nodes.
-    pub fn place(&self) -> &Place {
-        &self.place
+    /// Its nodes; `None` of a relative one.
+    pub fn place(&self) -> Option<&Place> {
+        match &self.coupled {
+            Coupled::Nodes(place) => Some(place),
+            Coupled::Tied(_) => None,
+        }
     }
 
     /// Its reference point, m.

@@ -25,6 +25,7 @@ mod validate;
 
 pub use contact::Contact;
 pub(crate) use contact::ContactNormal;
+pub(crate) use coupling::Coupled;
 pub use coupling::Coupling;
 pub(crate) use friction::check_laws;
 pub use friction::{Coefficient, Friction, SlipBound};

@@ -31,7 +31,10 @@ impl Fingerprint {
         let tets = mesh.tets().iter().flatten().chain(mesh.mids().iter().flatten());
         let decomposition = &model.discrete.decomposition;
         let rigid = decomposition.subdomains().iter().filter(|s| s.is_rigid());
-        let rigid = rigid.flat_map(|s| std::iter::once(s.nodes.len() as u32).chain(s.nodes.iter().copied()));
+        let rigid = rigid.flat_map(|s| {
+            let kind = [u32::from(s.is_relative), s.nodes.len() as u32];
+            kind.into_iter().chain(s.nodes.iter().copied())
+        });
         let parts = decomposition.parts().iter().copied().chain(rigid);
         Self {
             points: hash(coordinates.map(|x| number(*x))),
@@ -178,8 +181,8 @@ fn supports(model: &Model) -> u64 {
         std::iter::once(u64::from(node)).chain(rounded)
     });
     let couplings = model.discrete.couplings.supports.iter().flat_map(|s| {
-        let whose = [u64::from(s.subdomain), s.component as u64];
-        whose.into_iter().chain(s.point.map(number))
+        let what = s.direction.iter().flatten().chain(&s.point);
+        std::iter::once(u64::from(s.subdomain)).chain(what.map(|v| number(*v)))
     });
     hash(nodes.chain(couplings))
 }

@@ -62,7 +62,7 @@ fn norm(v: [f64; 3]) -> f64 {
     v.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
-fn assert_close(a: &[f64], b: &[f64], within: f64, what: &str) {
+pub(crate) fn assert_close(a: &[f64], b: &[f64], within: f64, what: &str) {
     let size = b.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
     for (k, (a, b)) in a.iter().zip(b).enumerate() {
         assert!(
@@ -93,7 +93,7 @@ fn held_in_all_motions_it_is_a_support() {
         let coupled = floor(bar([3, 1, 2])).with_coupling(above().with_held([true; 6]).with_motion(MOTION, moved()));
         let ([x, y, z, a, b, c], mesh) = (MOTION, coupled.mesh().clone());
         let nodes: Vec<u32> = match above().place() {
-            Place::Nodes(nodes) => nodes.clone(),
+            Some(Place::Nodes(nodes)) => nodes.clone(),
             _ => Vec::new(),
         };
         let at = |n: &u32| add([x, y, z], cross([a, b, c], sub(mesh.points()[*n as usize], POINT)));
@@ -301,7 +301,7 @@ fn states_know_their_couplings() {
     };
     let mut other = resume(scene(above(), false)).expect("the same scene");
     assert_eq!(bits(&step(&mut other)), bits(&step(&mut whole)));
-    let Place::Nodes(nodes) = above().place().clone() else {
+    let Some(Place::Nodes(nodes)) = above().place().cloned() else {
         panic!("single nodes")
     };
     let fewer = Coupling::rigid(&nodes[1..], POINT);

@@ -41,6 +41,7 @@ mod processes;
 mod quadratic;
 mod reactions;
 mod refusals;
+mod relative;
 mod restart;
 mod sanity;
 mod shapes;

@@ -14,4 +14,4 @@ mod subdomains;
 pub use compact::compact_parts;
 pub use even::{PartCount, even_parts, is_strongly_graded};
 pub use parts::split_disconnected;
-pub use subdomains::{Decomposition, DecompositionError, NodeCopy, Subdomain};
+pub use subdomains::{Decomposition, DecompositionError, NodeCopy, Rigid, Subdomain};

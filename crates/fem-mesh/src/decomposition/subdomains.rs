@@ -18,6 +18,8 @@ pub struct Subdomain {
     pub mids: Vec<[u32; 6]>,
     /// Global number of each tetrahedron, ascending.
     pub elements: Vec<u32>,
+    /// Whether its nodes are places only, which it does not move: its motion is one of two parts relative to each other.
+    pub is_relative: bool,
 }
 
 impl Subdomain {
@@ -47,10 +49,19 @@ impl Subdomain {
     }
 }
 
+/// The nodes of a subdomain [without elements](Decomposition::with_rigid).
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Rigid {
+    /// It moves them.
+    Nodes(Vec<u32>),
+    /// It is the motion of one part relative to another, told where they are.
+    Places(Vec<u32>),
+}
+
 /// The copies of each of so many nodes, by ascending subdomain.
 fn copies_of(subdomains: &[Subdomain], nodes: usize) -> Lists<NodeCopy> {
     let (mut torn, mut node_of) = (Vec::new(), Vec::new());
-    for (subdomain, own) in (0..).zip(subdomains) {
+    for (subdomain, own) in (0..).zip(subdomains).filter(|(_, own)| !own.is_relative) {
         let copies = (0..own.nodes.len() as u32).map(|local| NodeCopy { subdomain, local });
         torn.extend(copies);
         node_of.extend_from_slice(&own.nodes);
@@ -132,6 +143,7 @@ impl Decomposition {
                         tets,
                         mids,
                         elements,
+                        is_relative: false,
                     }
                 },
             )
@@ -144,19 +156,24 @@ impl Decomposition {
         }
     }
 
-    /// Adds subdomains without elements behind the others, one for each list of nodes. They are rigid: nothing but their
-    /// six motions moves them, and the nodes, which stay those of elements too, move with them.
+    /// Adds subdomains without elements behind the others. They are rigid: nothing but their six motions moves them, and
+    /// their nodes, which stay those of elements too, move with them, unless they are [places](Rigid::Places).
     ///
     /// # Errors
     /// [`DecompositionError::RigidNode`] for a node that does not exist.
-    pub fn with_rigid(mut self, rigid: Vec<Vec<u32>>) -> Result<Self, DecompositionError> {
+    pub fn with_rigid(mut self, rigid: Vec<Rigid>) -> Result<Self, DecompositionError> {
         let nodes = self.nodes();
-        for list in rigid {
+        for own in rigid {
+            let (list, is_relative) = match own {
+                Rigid::Nodes(list) => (list, false),
+                Rigid::Places(list) => (list, true),
+            };
             if let Some(&node) = list.iter().find(|&&n| n as usize >= nodes) {
                 return Err(DecompositionError::RigidNode { node, nodes });
             }
             self.subdomains.push(Subdomain {
                 nodes: distinct(list),
+                is_relative,
                 ..Subdomain::default()
             });
         }
@@ -186,6 +203,13 @@ impl Decomposition {
 
     /// Number of displacement unknowns of all subdomains together, the paper's n_p.
     pub fn torn_dofs(&self) -> usize {
-        3 * self.copies.items().len()
+        self.subdomains.iter().map(Subdomain::dofs).sum()
+    }
+
+    /// The mesh node that each node of each subdomain is a copy of, one after another; none of places.
+    pub fn torn_nodes(&self) -> impl Iterator<Item = Option<u32>> {
+        let of = |s: &'_ Subdomain| s.is_relative;
+        let subdomains = self.subdomains.iter();
+        subdomains.flat_map(move |s| s.nodes.iter().map(move |&node| (!of(s)).then_some(node)))
     }
 }

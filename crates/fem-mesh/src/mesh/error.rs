@@ -62,6 +62,10 @@ errors! {
             remesh finer around it";
         MixedOrder { first: usize, second: usize } =
             "a mesh of order {first} and one of order {second} cannot be one; raise_order the linear one";
+        NoCut = "no face lies between tetrahedra of the first side of the cut and of the other; check what tells the sides";
+        CutEnds { node: u32 } =
+            "the cut ends inside a body, at node {node}, around which both sides are still joined; let it go through to \
+            the boundary";
         RegionCount { given: usize, tets: usize } =
             "{given} region numbers for {tets} tetrahedra; give exactly one each";
     }

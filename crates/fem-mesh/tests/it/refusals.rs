@@ -2,7 +2,7 @@
 
 use approx::assert_abs_diff_eq;
 use signorini_fem_mesh::brick::{Brick, BrickError, Z_MIN};
-use signorini_fem_mesh::decomposition::split_disconnected;
+use signorini_fem_mesh::decomposition::{Rigid, split_disconnected};
 use signorini_fem_mesh::fields::{FieldError, nodal_average, strains, stresses};
 use signorini_fem_mesh::mesh::{drop_unused_nodes, orient_tets};
 use signorini_fem_mesh::recovery::discretisation_error;
@@ -303,7 +303,7 @@ fn decompositions() {
     assert_eq!(parts(&gap), DecompositionError::EmptyPart { part: 1, parts: 3 });
     let huge = [0, 0, 0, 0, 0, 0, 0, 0, 0, u32::MAX];
     assert!(matches!(parts(&huge), DecompositionError::EmptyPart { part: 1, .. }));
-    let rigid = |nodes: Vec<u32>| Decomposition::whole(&mesh).with_rigid(vec![nodes]);
+    let rigid = |nodes: Vec<u32>| Decomposition::whole(&mesh).with_rigid(vec![Rigid::Nodes(nodes)]);
     let nodes = mesh.points().len();
     let error = rigid(vec![0, nodes as u32]).unwrap_err();
     assert!(matches!(error, DecompositionError::RigidNode { node, nodes: n } if n == nodes && node as usize == n));

@@ -13,7 +13,7 @@ use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::tolerances::{SAME, SOFTEST};
 use signorini_fem_mesh::Decomposition;
 use signorini_fem_mesh::decomposition::NodeCopy;
-use signorini_fem_mesh::vec3::dot;
+use signorini_fem_mesh::vec3::{combine, dot};
 
 impl Gluing {
     /// Builds the rows. `stiffness` weighs the copies of a node in contact and support rows. Those that hold rigid
@@ -50,7 +50,7 @@ impl Gluing {
         builder.contact(contact, &found.rows);
         builder.dependent(contact, &found, &merged);
         builder.interface(nodes);
-        builder.tied(contact, &found.tied);
+        builder.tied(contact, &found.tied)?;
         let tied = builder.gluing.nodal_rows() - builder.gluing.ranges.contact().len();
         builder.rigid(rigid);
         builder.dirichlet(&merged);
@@ -192,12 +192,13 @@ impl Builder<'_> {
         self.gluing.contact_compliance = out;
     }
 
-    fn tied(&mut self, contact: &[ContactConstraint], tied: &[PointRows]) {
+    fn tied(&mut self, contact: &[ContactConstraint], tied: &[PointRows]) -> Result<(), TfetiError> {
         for p in tied {
             let of = &contact[p.point];
             let first = self.gluing.nodal_rows();
             let mut directions = Vec::with_capacity(3);
             for row in std::iter::once(&p.normal).chain(&p.tangential) {
+                self.relative(p.point, of, row)?;
                 self.contact_row(of, row, &p.prescribed);
                 directions.push((row.direction, row.scale));
             }
@@ -208,6 +209,31 @@ impl Builder<'_> {
             });
             self.gluing.is_aligned &= is_aligned(of, p);
         }
+        Ok(())
+    }
+
+    /// What a tied row does to the motion that its side has beside that of the partner.
+    fn relative(&mut self, point: usize, tied: &ContactConstraint, row: &ContactRow) -> Result<(), TfetiError> {
+        let Some((subdomain, factor)) = tied.relative else {
+            return Ok(());
+        };
+        let own = self.decomposition.subdomains().get(subdomain as usize);
+        let own = own.filter(|own| own.is_relative);
+        let factor = -factor * row.scale;
+        for (k, &(node, weight)) in tied.side.nodes().iter().enumerate() {
+            let what = "the subdomain of its relative motion does not have its nodes";
+            let local = own.and_then(|own| own.local(node));
+            let local = local.ok_or(TfetiError::BadSide { point, what })? as u32;
+            let turn = tied.side.turn().get(k);
+            let turned = turn.map_or([0.0; 3], |turn| combine(turn, row.direction));
+            let vector = [0, 1, 2].map(|c| factor * (weight * row.direction[c] + turned[c]));
+            self.entries.push(CopyEntry {
+                subdomain,
+                local,
+                vector,
+            });
+        }
+        Ok(())
     }
 
     /// Notes which nodes belong together, and those whose rows may depend on one another.

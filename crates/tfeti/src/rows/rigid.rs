@@ -15,8 +15,8 @@ pub struct RigidSupport {
     pub subdomain: u32,
     /// The point, m.
     pub point: [f64; 3],
-    /// 0 to 2 for the displacement along x, y, z in m, 3 to 5 for the rotation about them in radians.
-    pub component: usize,
+    /// A unit vector along its displacement, or, as the second, the axis of a rotation; the other one is zero.
+    pub direction: [[f64; 3]; 2],
     /// Prescribed values by displacement case, m or radians; zero in others.
     pub values: Vec<(u32, f64)>,
 }
@@ -45,7 +45,7 @@ pub fn forces_at_three(points: &[Vec3], place: Vec3, force: Vec3, moment: Vec3) 
         _ => moment[k - 3] / size,
     });
     let wrenches: SMatrix<f64, 6, 9> = SMatrix::from_fn(|row, column| {
-        let unit = unit(column % 3);
+        let unit: Vec3 = [0, 1, 2].map(|c| f64::from(u8::from(c == column % 3)));
         match row {
             0..3 => unit[row],
             _ => cross(arms[column / 3], unit)[row - 3] / size,
@@ -56,22 +56,13 @@ pub fn forces_at_three(points: &[Vec3], place: Vec3, force: Vec3, moment: Vec3) 
     Some([0, 1, 2].map(|k| (chosen[k], [0, 1, 2].map(|c| forces[3 * k + c]))))
 }
 
-fn unit(axis: usize) -> Vec3 {
-    [0, 1, 2].map(|c| f64::from(u8::from(c == axis)))
-}
-
 impl RigidSupport {
     /// A row of length one at three nodes of the subdomain.
     pub(crate) fn row(&self, mesh: &TetMesh, decomposition: &Decomposition) -> Result<RigidRow, TfetiError> {
         let subdomain = self.subdomain as usize;
         let own = decomposition.subdomains().get(subdomain).filter(|s| s.is_rigid());
-        let (Some(own), 0..6) = (own, self.component) else {
-            return Err(TfetiError::RigidSupport { subdomain });
-        };
-        let [force, moment] = match self.component {
-            0..3 => [unit(self.component), [0.0; 3]],
-            _ => [[0.0; 3], unit(self.component - 3)],
-        };
+        let own = own.ok_or(TfetiError::RigidSupport { subdomain })?;
+        let [force, moment] = self.direction;
         let forces = forces_at_three(&own.points(mesh), self.point, force, moment);
         let forces = forces.ok_or(TfetiError::Collinear { subdomain })?;
         let scale = forces.iter().map(|(_, f)| dot(*f, *f)).sum::<f64>().sqrt().recip();

@@ -22,8 +22,8 @@ pub struct CopyStiffness {
 
 impl CopyStiffness {
     /// With the mesh node of each copy in torn order. Copies in rigid subdomains are as much stiffer than the others of their
-    /// node.
-    pub(crate) fn new(subdomains: &Subdomains, node_of: impl Iterator<Item = u32>) -> Self {
+    /// node, places than all.
+    pub(crate) fn new(subdomains: &Subdomains, node_of: impl Iterator<Item = Option<u32>>) -> Self {
         let by_class = |base: &ClassBase| -> Vec<f64> {
             let mean = |node: usize| {
                 let diagonal = (3 * node..3 * node + 3).map(|i| base.diagonal[i]);
@@ -42,11 +42,13 @@ impl CopyStiffness {
         }
         let is_rigid = |s: usize| subdomains.classes.classes()[subdomains.class(s)].is_rigid;
         if (0..subdomains.count()).any(is_rigid) {
-            let node_of: Vec<u32> = node_of.collect();
-            let mut largest: HashMap<u32, f64> = HashMap::new();
+            let node_of: Vec<Option<u32>> = node_of.collect();
+            let mut largest: HashMap<Option<u32>, f64> = HashMap::new();
             for (node, value) in node_of.iter().zip(&values) {
-                let most = largest.entry(*node).or_default();
-                *most = most.max(*value);
+                for node in [*node, None] {
+                    let most = largest.entry(node).or_default();
+                    *most = most.max(*value);
+                }
             }
             for s in (0..subdomains.count()).filter(|s| is_rigid(*s)) {
                 for k in first[s]..first[s] + by_class[subdomains.class(s)].len() {

@@ -190,8 +190,7 @@ impl<'a> TfetiBuilder<'a> {
 
     /// The rows, and the stiffness of copies by which they weigh these.
     fn glue(&self, subdomains: &Subdomains) -> Result<(Arc<Gluing>, CopyStiffness), TfetiError> {
-        let nodes = self.decomposition.subdomains().iter().flat_map(|s| &s.nodes);
-        let all = CopyStiffness::new(subdomains, nodes.copied());
+        let all = CopyStiffness::new(subdomains, self.decomposition.torn_nodes());
         let counts = has_several_laws(self.mesh, self.materials) || all.differs(self.decomposition);
         let stiffness = if counts { all.clone() } else { CopyStiffness::default() };
         let springs = (self.springs, &all);

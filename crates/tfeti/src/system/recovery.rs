@@ -205,7 +205,8 @@ impl Tfeti {
     pub fn mean_by(&self, copies: &CopyStiffness, u: &[f64]) -> Vec<f64> {
         let mut out = vec![0.0; 3 * self.nodes];
         let mut sums = vec![0.0; self.nodes];
-        for (k, &node) in self.node_of.iter().enumerate() {
+        let copied = self.node_of.iter().enumerate();
+        for (k, node) in copied.filter_map(|(k, node)| Some((k, (*node)?))) {
             let weight = copies.weight(k);
             sums[node as usize] += weight;
             for c in 0..3 {

@@ -47,8 +47,8 @@ pub struct Tfeti {
     pub(super) torn_pieces: Vec<(usize, Range<usize>)>,
     /// First unknown of each subdomain in torn vectors, and their length.
     offsets: Vec<usize>,
-    /// Mesh node of each node copy, in torn order.
-    pub(super) node_of: Vec<u32>,
+    /// Mesh node of each node copy, in torn order; none of places.
+    pub(super) node_of: Vec<Option<u32>>,
     /// Mesh nodes.
     pub(super) nodes: usize,
 }
@@ -62,10 +62,9 @@ impl Tfeti {
         decomposition: &Decomposition,
         stiffness: CopyStiffness,
     ) -> Self {
-        let (mut offsets, mut node_of) = (vec![0], Vec::new());
+        let mut offsets = vec![0];
         for subdomain in decomposition.subdomains() {
-            node_of.extend_from_slice(&subdomain.nodes);
-            offsets.push(3 * node_of.len());
+            offsets.push(offsets[offsets.len() - 1] + subdomain.dofs());
         }
         let nodes = decomposition.nodes();
         let (classes, ownership) = (&parts.subdomains.classes, &parts.subdomains.ownership);
@@ -91,7 +90,7 @@ impl Tfeti {
             report,
             stiffness,
             offsets,
-            node_of,
+            node_of: decomposition.torn_nodes().collect(),
             nodes,
         }
     }

@@ -1,6 +1,7 @@
 //! Rigid subdomains: their rows measure motions, products know nothing of their stiffness, and what is refused.
 
 use crate::common::{self, dot, noise};
+use signorini_fem_mesh::decomposition::Rigid;
 use signorini_fem_mesh::vec3::{add, cross, sub};
 use signorini_fem_mesh::{Hooke, Materials, brick};
 use signorini_qp::SymmetricOperator;
@@ -13,7 +14,7 @@ fn system(held: &[RigidSupport]) -> Result<Tfeti, TfetiError> {
     let b = common::Brick::new(1, 2);
     let cut = b.decomposition.clone();
     let cut = cut
-        .with_rigid(vec![b.mesh.nodes_on(brick::X_MAX)])
+        .with_rigid(vec![Rigid::Nodes(b.mesh.nodes_on(brick::X_MAX))])
         .expect("nodes of the mesh");
     let materials = Materials::uniform(Hooke::isotropic(2e11, 0.3).expect("steel"));
     let supports = [NodeSupport::fixed(b.mesh.nodes_on(brick::X_MIN))];
@@ -26,7 +27,7 @@ fn held(component: usize) -> RigidSupport {
     RigidSupport {
         subdomain: number,
         point: POINT,
-        component,
+        direction: [0, 1].map(|part| [0, 1, 2].map(|c| f64::from(u8::from(3 * part + c == component)))),
         values: vec![(1, 2.0 + component as f64)],
     }
 }
@@ -95,7 +96,7 @@ fn subdomains_without_nodes_are_refused() {
     let cut = b
         .decomposition
         .clone()
-        .with_rigid(vec![vec![]])
+        .with_rigid(vec![Rigid::Nodes(vec![])])
         .expect("no unknown node");
     let materials = Materials::uniform(Hooke::isotropic(2e11, 0.3).expect("steel"));
     let built = TfetiBuilder::new(&b.mesh, &cut, &materials).build();
