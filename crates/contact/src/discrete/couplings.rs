@@ -8,7 +8,7 @@ use crate::tolerances::{ALONG, FAR};
 use signorini_fem_mesh::decomposition::Rigid;
 use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, cross, dot, is_finite, norm, sub};
-use signorini_fem_mesh::{Decomposition, SurfaceFrame};
+use signorini_fem_mesh::{Decomposition, History, SurfaceFrame};
 use signorini_tfeti::internal::{PrescribedDirection, forces_at_three};
 use signorini_tfeti::{RigidSupport, Side};
 use std::collections::BTreeMap;
@@ -69,6 +69,12 @@ impl Couplings {
                     "a motion that it does not hold is prescribed; hold it (with_held), or make it zero",
                 );
             }
+            if coupling
+                .lock
+                .is_some_and(|(_, time)| !(time.is_finite() && time >= 0.0))
+            {
+                return refuse(None, "the time from which it is locked must be finite and not negative");
+            }
             if forces_at_three(&places, point, [0.0; 3], [0.0; 3]).is_none() {
                 return refuse(
                     None,
@@ -107,11 +113,15 @@ impl Couplings {
             }
             let subdomain = (out.first + index) as u32;
             let cases: Vec<u32> = coupling.motions.iter().map(|(_, h)| supports.case(h)).collect();
-            for component in (0..6).filter(|&c| coupling.held[c]) {
+            let holds = coupling.holds();
+            let locked = coupling.locked.iter().any(Option::is_some);
+            let still = locked.then(|| supports.case(&History::constant(1.0)));
+            for component in (0..6).filter(|&c| holds[c]) {
                 let mut direction = [[0.0; 3]; 2];
                 direction[component / 3] = axes[component % 3];
                 let values = cases.iter().zip(&coupling.motions);
                 let values = values.map(|(&case, (motion, _))| (case, motion[component]));
+                let values = values.chain(still.zip(coupling.locked[component]));
                 out.supports.push(RigidSupport {
                     subdomain,
                     point,
@@ -278,7 +288,7 @@ impl Couplings {
 }
 
 /// Along and about which it is told what is held; `None` if its axis has no direction.
-fn axes(coupling: &Coupling) -> Option<[Vec3; 3]> {
+pub(crate) fn axes(coupling: &Coupling) -> Option<[Vec3; 3]> {
     let Some(axis) = coupling.axis else {
         return Some(AXES);
     };
@@ -303,12 +313,14 @@ fn says_the_same(
     let parts = [direction, cross(arm, direction)].map(|part| axes.map(|axis| dot(axis, part)));
     let parts = parts.as_flattened();
     let size = |c: usize| if c < 3 { 1.0 } else { extent };
+    let holds = coupling.holds();
     let stays = |motion: &[f64; 6]| {
         let all = || (0..6).map(|c| (motion[c] * parts[c], (motion[c] * size(c)).abs()));
         let (way, most) = all().fold((0.0, 0.0_f64), |(way, most), (own, size)| (way + own, most.max(size)));
         way.abs() <= ALONG * most
     };
     scene.supports[held.support].motion.is_none()
-        && (0..6).all(|c| coupling.held[c] || parts[c].abs() <= ALONG * size(c))
+        && (0..6).all(|c| holds[c] || parts[c].abs() <= ALONG * size(c))
         && coupling.motions.iter().all(|(motion, _)| stays(motion))
+        && stays(&coupling.locked.map(|value| value.unwrap_or(0.0)))
 }

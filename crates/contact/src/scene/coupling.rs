@@ -41,6 +41,10 @@ pub struct Coupling {
     pub(crate) axis: Option<[f64; 3]>,
     pub(crate) held: [bool; 6],
     pub(crate) motions: Vec<([f64; 6], History)>,
+    /// What is held from a time on, s.
+    pub(crate) lock: Option<([bool; 6], f64)>,
+    /// The motions at which it is held then.
+    pub(crate) locked: [Option<f64>; 6],
 }
 
 /// What moves as a coupling says.
@@ -98,6 +102,8 @@ impl Coupling {
             axis: None,
             held: [false; 6],
             motions: Vec::new(),
+            lock: None,
+            locked: [None; 6],
         }
     }
 
@@ -119,6 +125,32 @@ impl Coupling {
     pub fn with_motion(mut self, motion: [f64; 6], history: History) -> Self {
         self.motions.push((motion, history));
         self
+    }
+
+    /// These of its motions are free, or loaded, until a time, s, and from then on held as they are at the last step until
+    /// then: a bolt is tightened by a force, and then keeps its length. Loads on it in their directions act no longer on
+    /// anything else. Between the two steps the scene is set up anew.
+    pub fn with_lock(mut self, locked: [bool; 6], time: f64) -> Self {
+        self.lock = Some((locked, time));
+        self
+    }
+
+    /// Its motions that are locked later, and the time, s.
+    pub fn lock(&self) -> Option<([bool; 6], f64)> {
+        self.lock
+    }
+
+    /// What is held now.
+    pub(crate) fn holds(&self) -> [bool; 6] {
+        [0, 1, 2, 3, 4, 5].map(|c| self.held[c] || self.locked[c].is_some())
+    }
+
+    /// Motions that are to be locked yet, and when, s.
+    pub(crate) fn pending(&self) -> Option<([bool; 6], f64)> {
+        let (locked, time) = self.lock?;
+        let holds = self.holds();
+        let left = [0, 1, 2, 3, 4, 5].map(|c| locked[c] && !holds[c]);
+        left.contains(&true).then_some((left, time))
     }
 
     /// Its nodes; `None` of a relative one.

@@ -19,6 +19,13 @@ impl Simulation {
     /// [`ContactError::Checkpoint`] if the state does not fit; it says which part differs.
     pub fn resume(&mut self, mut state: State) -> Result<(), ContactError> {
         let refuse = |reason| Err(ContactError::Checkpoint { reason });
+        let here = self.model.scene.couplings.iter().map(|c| c.locked);
+        let locked = |list: &[[Option<f64>; 6]]| list.iter().flatten().any(Option::is_some);
+        if !here.clone().eq(state.locked.iter().copied())
+            && (locked(&state.locked) || here.flatten().any(|v| v.is_some()))
+        {
+            self.set_up_locked(&state.locked)?;
+        }
         let analysis = &self.model.scene.analysis;
         if state.step() > analysis.steps() {
             return refuse("it has more steps than this scene".to_owned());
@@ -43,7 +50,7 @@ impl Simulation {
 
     /// `F lambda` is made anew where it was stored with another F, or is not what was stored: solvers take it at its
     /// word.
-    fn check_products(&self, state: &mut State) {
+    pub(super) fn check_products(&self, state: &mut State) {
         let dual = self.model.tfeti.dual();
         state.renew_products(self.operator, |lambda, f_lambda| {
             dual.apply(lambda, f_lambda, &mut dual.scratch());

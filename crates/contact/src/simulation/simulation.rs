@@ -60,7 +60,7 @@ impl Simulation {
         on_pool(|| Self::set_up(scene, settings)).map_err(|error| names.tell(error))
     }
 
-    fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
+    pub(super) fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
         let start = Instant::now();
         let mut model = Model::new(scene, &settings)?;
         check_equilibrium(&model)?;

@@ -30,6 +30,8 @@ impl Simulation {
         if let Some(last) = self.result.take().and_then(Arc::into_inner) {
             self.spare = last.recovered;
         }
+        let locked = on_pool(|| self.lock_due());
+        locked.map_err(|error| self.model.scene.names.tell(error))?;
         let result = on_pool(|| self.take_step(whole)).map_err(|error| self.model.scene.names.tell(error))?;
         let result = Arc::new(result);
         self.total += result.report.counters;
@@ -193,6 +195,10 @@ impl Simulation {
             let slides = |p: &PointState| p.state == ContactState::Slip;
             kept.sliding = recovered.points.iter().map(slides).collect();
         }
+        kept.motions = Self::motions_to_lock(&model.scene, |k| {
+            let (subdomain, point) = (model.discrete.couplings.first + k, model.scene.couplings[k].reference);
+            model.tfeti.rigid_motion(subdomain, &recovered.torn, point)
+        });
         if history && model.any_law(Friction::depends_on_rate) {
             kept.rate = recovered.points.iter().map(|p| p.slip_rate).collect();
             result.report.counters.rate_updates += 1;
@@ -207,7 +213,7 @@ impl Simulation {
             // what did not converge is no scale for later steps
             let peaks: Vec<Peak> = recovered.sizes.iter().map(Sizes::peak).collect();
             state.raise(&peaks);
-        } else if history {
+        } else if history || !kept.motions.is_empty() {
             state.note_unconverged();
         }
         let old = state.advance(self.settings.extrapolate, self.operator, kept);

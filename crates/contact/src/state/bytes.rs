@@ -5,7 +5,7 @@ use crate::error::ContactError;
 use std::path::Path;
 
 /// Marks the format of stored states.
-const MAGIC: u32 = 0x5349_470e;
+const MAGIC: u32 = 0x5349_470f;
 
 /// FNV-1a of 64 bits: any one changed byte changes it.
 fn checksum(bytes: &[u8]) -> u64 {

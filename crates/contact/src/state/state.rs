@@ -38,6 +38,10 @@ pub struct State {
     pub(crate) effort: usize,
     /// The shortest step of conjugate gradients in the last solve; 0 if there was none.
     pub(crate) shortest_step: f64,
+    /// With motions of couplings that are to be locked: those at the last step, along their axes.
+    pub(crate) motions: Vec<[f64; 6]>,
+    /// Motions at which couplings are locked; none where none are.
+    pub(crate) locked: Vec<[Option<f64>; 6]>,
     /// What its numbers refer to; `None` if that is not to be compared.
     pub(crate) origin: Option<Fingerprint>,
     /// Of each product what it was made from and came to be, see [`seal`].
@@ -90,6 +94,8 @@ pub(crate) struct Kept {
     pub(crate) effort: usize,
     /// The shortest step of conjugate gradients.
     pub(crate) shortest_step: f64,
+    /// Motions of couplings that are to be locked.
+    pub(crate) motions: Vec<[f64; 6]>,
 }
 
 impl State {
@@ -164,6 +170,7 @@ impl State {
         self.halved = new.halved;
         self.effort = new.effort;
         self.shortest_step = new.shortest_step;
+        self.motions = new.motions;
         if !new.between {
             self.step += 1;
             if let Some(origin) = &mut self.origin {
@@ -178,6 +185,15 @@ impl State {
         self.peaks.resize(sizes.len(), Peak::default());
         for (peak, size) in self.peaks.iter_mut().zip(sizes) {
             *peak = peak.or(*size);
+        }
+    }
+
+    /// Puts others in the place of some rows of dual vectors: these of them, or such that nothing acts on.
+    pub(crate) fn replace_rows(&mut self, rows: std::ops::Range<usize>, others: &[Option<usize>]) {
+        let vectors = self.lambda.iter_mut().chain(&mut self.f_lambda);
+        for vector in vectors.filter(|v| !v.is_empty()) {
+            let before = vector[rows.clone()].to_vec();
+            vector.splice(rows.clone(), others.iter().map(|k| k.map_or(0.0, |k| before[k])));
         }
     }
 

@@ -2,6 +2,7 @@
 //! subdomains, bodies at rest, pairs, errors that add up over the steps.
 
 use crate::common::*;
+use signorini_fem_mesh::vec3;
 
 /// Steps with their estimates.
 pub(crate) fn estimated(scene: &Scene, settings: Settings) -> Vec<(Solved, AlgebraicError, AccumulatedError)> {
@@ -126,6 +127,35 @@ fn random_coupled(seed: u64) -> Scene {
         .with_coupling(coupling.with_held(held).with_motion(motion, ramp()))
         .with_load(Load::on_coupling(0, force, moment).with_history(ramp()));
     scene.loads().iter().cloned().fold(plain, Scene::with_load)
+}
+
+/// The same with the end held, and cut across, where the sides move relative to each other as a coupling says.
+fn random_relative(seed: u64) -> Scene {
+    let scene = random_coupled(seed);
+    let mesh = scene.mesh();
+    let (_, high) = mesh.extent();
+    let middle = |t: usize| vec3::centroid(&mesh.tet_points(t))[0];
+    let sides = [FacetTag(31), FacetTag(32)];
+    let (mesh, _) = mesh.cut(|t| Some(middle(t) < 0.6 * high[0]), sides).expect("cut");
+    let coupling = &scene.couplings()[0];
+    let mut own = Coupling::relative(1, coupling.reference()).with_held(coupling.held());
+    for (motion, history) in coupling.motions() {
+        own = own.with_motion(*motion, history.clone());
+    }
+    let plain = Scene::new(mesh, scene.materials().clone())
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_support(Support::fixed(brick::X_MAX))
+        .with_contact(scene.contacts()[0].clone())
+        .with_contact(Contact::tied(sides[0], sides[1]))
+        .with_analysis(scene.analysis().clone())
+        .with_subdomains(2 + seed as usize % 5)
+        .with_coupling(own);
+    scene.loads().iter().cloned().fold(plain, Scene::with_load)
+}
+
+#[test]
+fn random_relative_couplings_keep_what_they_promise() {
+    keep_what_they_promise(random_relative, 0);
 }
 
 #[test]

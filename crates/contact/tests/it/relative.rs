@@ -5,6 +5,7 @@ use crate::couplings::{POINT, YOUNG, assert_close, moved};
 use signorini_contact::result::CouplingMotion;
 use signorini_fem_mesh::mesh::drop_unused_nodes;
 use signorini_fem_mesh::{SurfaceFrame, vec3};
+use signorini_tfeti::internal::on_ranks;
 
 /// The sides of a cut.
 const FIRST: FacetTag = FacetTag(31);
@@ -237,35 +238,196 @@ fn joint(friction: f64, order: usize) -> Scene {
         .with_contact(rough(ABOVE_NUT, LOWER_BOTTOM))
 }
 
+/// The bolt tightened to 10 kN until 1 s, then a force on the upper plate until 2 s.
+fn tightened(scene: Scene, coupling: Coupling, factors: [f64; 3], pull: Load) -> Scene {
+    let history =
+        |[start, middle, end]: [f64; 3]| History::table(vec![(0.0, start), (1.0, middle), (2.0, end)]).expect("table");
+    scene
+        .with_coupling(coupling)
+        .with_load(Load::on_coupling(0, [0.0, 0.0, 1e4], [0.0; 3]).with_history(history(factors)))
+        .with_load(pull.with_history(history([0.0, 0.0, 1.0])))
+        .with_analysis(Analysis::quasistatic(2.0, 4))
+}
+
+fn bolt() -> Coupling {
+    Coupling::relative(0, [0.0; 3])
+        .with_axis([0.0, 0.0, 1.0])
+        .with_held(ALONG)
+}
+
+const AXIAL: [bool; 6] = [true, false, false, false, false, false];
+
+/// Forces of the contacts at each step, and products.
+fn forces(simulation: &mut Simulation) -> Vec<(Vec<[f64; 3]>, usize)> {
+    let mut out = Vec::new();
+    while !simulation.is_finished() {
+        let one = step(simulation);
+        assert_certified(&one, &format!("{} s", one.time));
+        let result = simulation.result().expect("a step");
+        let reactions = result.reactions();
+        let rest = norm(reactions.imbalance().force);
+        assert!(rest < 1e-2, "{rest:e} N are left");
+        out.push((
+            reactions.contacts.iter().map(|c| c.force).collect(),
+            one.report.counters.products,
+        ));
+    }
+    out
+}
+
+fn norm(v: [f64; 3]) -> f64 {
+    vec3::norm(v)
+}
+
+/// The preload presses the plates onto each other, and friction between them holds a force across.
 #[test]
-fn probe() {
+fn a_bolted_joint_holds_by_friction() {
     for order in [1, 2] {
-        let ramp = History::ramp(1.0, 1.0).expect("ramp");
-        let scene = joint(0.2, order)
-            .with_coupling(
-                Coupling::relative(0, [0.0; 3])
-                    .with_axis([0.0, 0.0, 1.0])
-                    .with_held(ALONG),
-            )
-            .with_load(Load::on_coupling(0, [0.0, 0.0, 1e4], [0.0; 3]).with_history(ramp))
-            .with_load(
-                Load::force(UPPER_END, [1.5e3, 0.0, 0.0])
-                    .with_history(History::table(vec![(0.0, 0.0), (1.0, 0.0), (2.0, 1.0)]).expect("table")),
-            )
-            .with_analysis(Analysis::quasistatic(2.0, 4));
+        let across = Load::force(UPPER_END, [1.5e3, 0.0, 0.0]);
+        let scene = tightened(joint(0.2, order), bolt(), [0.0, 1.0, 1.0], across);
         let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
-        println!("{}", simulation.plan());
-        while !simulation.is_finished() {
-            let one = step(&mut simulation);
-            println!("{}", simulation.result().expect("step"));
-            let result = simulation.result().expect("a step");
-            let reactions = result.reactions();
-            println!(
-                "{} products, {:?}, contacts {:?}",
-                one.report.counters.products,
-                result.couplings()[0],
-                reactions.contacts.iter().map(|c| c.force).collect::<Vec<_>>()
+        let found = forces(&mut simulation);
+        for ((forces, products), [bolt, pull]) in found.iter().zip([[5e3, 0.0], [1e4, 0.0], [1e4, 750.0], [1e4, 1.5e3]])
+        {
+            for (force, sign) in forces.iter().zip([1.0, 1.0, 1.0, -1.0]) {
+                assert!((force[2] - sign * bolt).abs() < 1e-3 * bolt, "{forces:?}");
+            }
+            // the bolt bends a little, and takes a part of it
+            assert!((forces[1][0] - forces[0][0] + pull).abs() < 1.0, "{forces:?}");
+            assert!(
+                forces[1][0].abs() <= 0.2 * bolt && forces[0][0].abs() < 50.0,
+                "{forces:?}"
             );
+            assert!(*products < 150, "{products} products");
+        }
+        // more than friction holds, on both sides of the upper plate
+        let across = Load::force(UPPER_END, [5e3, 0.0, 0.0]);
+        let scene = tightened(joint(0.2, order), bolt(), [0.0, 1.0, 1.0], across);
+        let error = Simulation::new(scene, Settings::default())
+            .map(|_| ())
+            .expect_err("slides");
+        assert!(matches!(error, ContactError::NotHeld { step: 3, .. }), "{error}");
+    }
+}
+
+/// A locked bolt keeps its length, as if it had been prescribed: the force that tightened it may go, and one that pulls
+/// the plates apart is shared by bolt and plates.
+#[test]
+fn a_locked_bolt_shares_what_pulls() {
+    let pull = || Load::force(UPPER_TOP, [0.0, 0.0, 4e3]);
+    let run = |coupling: Coupling, factors| {
+        let mut simulation = Simulation::new(
+            tightened(joint(0.2, 1), coupling, factors, pull()),
+            Settings::default().with_tolerance(1e-8),
+        )
+        .expect("set-up");
+        let found = forces(&mut simulation);
+        let result = simulation.result().expect("a step");
+        (found, result.displacement(), result.couplings()[0])
+    };
+    let (unlocked, ..) = run(bolt(), [0.0, 1.0, 1.0]);
+    assert!((unlocked[3].0[0][2] - 1e4).abs() < 1.0);
+    let (locked, displacement, motion) = run(bolt().with_lock(AXIAL, 1.0), [0.0, 1.0, 1.0]);
+    let (alone, other, _) = run(bolt().with_lock(AXIAL, 1.0), [0.0, 1.0, 0.0]);
+    let length = History::table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, 1.0)]).expect("table");
+    let moved = [motion.displacement[2], 0.0, 0.0, 0.0, 0.0, 0.0];
+    let (prescribed, third, _) = run(bolt().with_held([true; 6]).with_motion(moved, length), [0.0; 3]);
+    for k in 0..4 {
+        for c in 0..4 {
+            for others in [&alone, &prescribed] {
+                assert!(
+                    norm(vec3::sub(locked[k].0[c], others[k].0[c])) < 1.0,
+                    "step {k}, contact {c}"
+                );
+            }
         }
     }
+    let [rises, falls] = [locked[3].0[0][2] - 1e4, 1e4 - locked[3].0[1][2]];
+    assert!(rises > 200.0 && (rises + falls - 4e3).abs() < 1.0, "{rises} {falls}");
+    assert_close(
+        other.as_flattened(),
+        displacement.as_flattened(),
+        1e-5,
+        "without the force",
+    );
+    assert_close(third.as_flattened(), displacement.as_flattened(), 1e-5, "prescribed");
+}
+
+/// A state that is stored before or after the lock continues with the same bits.
+#[test]
+fn states_know_what_is_locked() {
+    let scene = || {
+        let pull = Load::force(UPPER_TOP, [0.0, 0.0, 4e3]);
+        tightened(joint(0.2, 1), bolt().with_lock(AXIAL, 1.0), [0.0, 1.0, 0.0], pull)
+    };
+    let mut whole = Simulation::new(scene(), Settings::default()).expect("set-up");
+    let mut states = vec![whole.state().clone()];
+    let mut last = None;
+    while !whole.is_finished() {
+        last = Some(step(&mut whole));
+        states.push(whole.state().clone());
+    }
+    let last = last.expect("steps");
+    // each in a simulation of its own, and one in the place of the other
+    let mut used = Simulation::new(scene(), Settings::default()).expect("set-up");
+    for state in states.into_iter().take(4).rev() {
+        let mut fresh = Simulation::new(scene(), Settings::default()).expect("set-up");
+        for simulation in [&mut fresh, &mut used] {
+            simulation.resume(state.clone()).expect("its state");
+            let found = rest(simulation).pop().expect("steps");
+            assert_eq!(found.displacement, last.displacement, "after step {}", state.step());
+        }
+    }
+}
+
+/// Ranks and methods agree: the same bits, and the same state.
+#[test]
+fn ranks_and_methods_agree() {
+    let scene = || {
+        let pull = Load::force(UPPER_END, [1.5e3, 0.0, 0.0]);
+        tightened(joint(0.2, 1), bolt().with_lock(AXIAL, 1.0), [0.0, 1.0, 0.0], pull)
+    };
+    let last = |settings: Settings| {
+        let mut simulation = Simulation::new(scene(), settings).expect("set-up");
+        rest(&mut simulation).pop().expect("steps").displacement
+    };
+    let alone = last(Settings::default());
+    for count in [2, 3] {
+        for run in on_ranks(count, |c| last(Settings::default().with_communicator(c))) {
+            assert!(run.expect("no panic") == alone, "{count} ranks");
+        }
+    }
+    let found = last(Settings::default().with_method(Method::paper()).with_tolerance(1e-7));
+    assert_close(&found, &alone, 1e-3, "SMALSE");
+}
+
+#[test]
+fn what_is_refused_says_why() {
+    let refused = |scene: Scene| {
+        let error = Simulation::new(scene, Settings::default())
+            .map(|_| ())
+            .expect_err("refused");
+        error.to_string()
+    };
+    let bar = || bar(1, [2, 1, 1]);
+    for (coupling, why) in [
+        (Coupling::relative(1, POINT), "no tied contact of its number"),
+        (end().with_axis([0.0; 3]), "its axis has no direction"),
+        (end().with_lock(AXIAL, f64::NAN), "the time from which it is locked"),
+        (
+            end().with_motion([1e-3, 0.0, 0.0, 0.0, 0.0, 0.0], moved()),
+            "a motion that it does not hold",
+        ),
+    ] {
+        let message = refused(bar().with_coupling(coupling));
+        assert!(message.contains(why), "{message}");
+    }
+    let message = refused(bar().with_coupling(end()).with_coupling(end()));
+    assert!(message.contains("another coupling says how"), "{message}");
+    // held on both sides where the sides may turn
+    let both = Support::components(brick::Y_MIN, [false, true, false]);
+    let plane = bar().with_support(both.clone()).with_coupling(end().with_held(ALONG));
+    assert!(Simulation::new(plane, Settings::default()).is_ok());
+    let message = refused(bar().with_support(both).with_coupling(end()));
+    assert!(message.contains("supports hold both sides"), "{message}");
 }
