@@ -17,12 +17,14 @@ pub(crate) struct Coupling {
     pub(crate) law: Option<CouplingLaw>,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum CouplingLaw {
     /// Loads are spread over the surface, forces always and these moments.
     Distributing { moments: [bool; 3] },
     /// The surface keeps its shape and moves as the node.
     Kinematic,
+    /// The body is cut at the surface, and its sides move against each other along a normal, which may be given.
+    Pretension { normal: Option<[f64; 3]> },
 }
 
 /// `*COUPLING`.
@@ -38,6 +40,30 @@ pub(super) fn coupling(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         reference: node_of(card.need("REFNODE")?),
         surface: card.need("SURFACE")?,
         law: None,
+    });
+    Ok(())
+}
+
+/// `*PRE-TENSION SECTION`.
+pub(super) fn pretension(model: &mut Model, card: &Card) -> Result<(), DeckError> {
+    card.allow(&["SURFACE", "NODE"])?;
+    card.lines_at_most(1, "the normal")?;
+    let wanted = "the three components of the normal";
+    let normal = card.lines.first().map(|line| {
+        let fields = line.at_most(3, wanted)?;
+        Ok::<_, DeckError>([
+            line.real(&fields, 0, wanted)?,
+            line.real(&fields, 1, wanted)?,
+            line.real(&fields, 2, wanted)?,
+        ])
+    });
+    model.couplings.push(Coupling {
+        word: card.word.clone(),
+        reference: node_of(card.need("NODE")?),
+        surface: card.need("SURFACE")?,
+        law: Some(CouplingLaw::Pretension {
+            normal: normal.transpose()?,
+        }),
     });
     Ok(())
 }

@@ -11,7 +11,7 @@ use crate::lexer::Card;
 /// What is read, as an error lists it.
 const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, *EXPANSION, \
 *INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *ORIENTATION, *TRANSFORM, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, \
-*CLEARANCE, *TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *PART, *ASSEMBLY, *INSTANCE, \
+*CLEARANCE, *TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *PRE-TENSION SECTION, *PART, *ASSEMBLY, *INSTANCE, \
 *SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
 which are ignored and reported";
 
@@ -47,7 +47,7 @@ const IDLE_PARAMETERS: [(&str, &str, &str); 14] = [
 ];
 
 /// Keywords of these programs that have no counterpart here, and what to do.
-const REFUSED: [(&str, &str); 8] = [
+const REFUSED: [(&str, &str); 7] = [
     ("EQUATION MPC", "equations between nodes are not here"),
     (
         "DISTRIBUTINGCOUPLING KINEMATICCOUPLING",
@@ -58,7 +58,6 @@ const REFUSED: [(&str, &str); 8] = [
         "SHELLSECTION BEAMSECTION MEMBRANESECTION SPRING MASS",
         "only solid elements C3D4 and C3D10 are read",
     ),
-    ("PRE-TENSIONSECTION", "bolts cannot be tightened from a deck"),
     (
         "MODELCHANGE CHANGEFRICTION",
         "bodies, contacts and coefficients of friction hold for all steps",
@@ -74,13 +73,8 @@ const REFUSED: [(&str, &str); 8] = [
 ];
 
 /// Parameters of keywords that are read, likewise.
-const PARAMETERS: [(&str, &str, &str); 4] = [
+const PARAMETERS: [(&str, &str, &str); 3] = [
     ("COUPLING", "ORIENTATION", "components are along x, y, z; remove it"),
-    (
-        "BOUNDARY",
-        "FIXED",
-        "give the displacement that the steps before reached, and remove it",
-    ),
     (
         "FRICTION",
         "ROUGH",
@@ -159,6 +153,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         "COUPLING" => Some(coupling::coupling),
         "DISTRIBUTING" => Some(|model, card| coupling::law(model, card, false)),
         "KINEMATIC" => Some(|model, card| coupling::law(model, card, true)),
+        "PRE-TENSIONSECTION" => Some(coupling::pretension),
         "TRANSFORM" => Some(transform::transform),
         // they come here only after a step has begun
         "PART" | "ENDPART" | "ASSEMBLY" | "ENDASSEMBLY" | "INSTANCE" | "ENDINSTANCE" => {

@@ -54,6 +54,8 @@ pub(crate) struct Condition<K> {
 pub(crate) struct Components {
     /// Those of displacement or force, then of rotation or moment, which nodes of rigid bodies and couplings have.
     pub(crate) on: [bool; 6],
+    /// Whether they stay as the step before left them.
+    pub(crate) stays: bool,
     /// The word that asks for one of the latter by its number.
     pub(crate) rotation: Option<Word>,
 }
@@ -257,14 +259,15 @@ pub(super) fn amplitude(model: &Model, card: &Card) -> Result<Option<usize>, Dec
 /// `*BOUNDARY`, in a step or before the first.
 pub(super) fn boundary(model: &mut Model, step: Option<&mut Step>, card: &Card) -> Result<(), DeckError> {
     card.allow(match &step {
-        Some(_) => &["OP", "AMPLITUDE", "TYPE"],
+        Some(_) => &["OP", "AMPLITUDE", "TYPE", "FIXED"],
         None => &["TYPE"],
     })?;
     card.choice("TYPE", &["DISPLACEMENT"], "DISPLACEMENT; other types are not supported")?;
     let amplitude = amplitude(model, card)?;
     let mut lines = Vec::with_capacity(card.lines.len());
     for line in &card.lines {
-        let given = boundary_line(line, amplitude)?;
+        let mut given = boundary_line(line, amplitude)?;
+        given.kind.stays = card.param("FIXED").is_some();
         if step.is_none() && given.given.value != 0.0 {
             let why = "before the first *STEP a support cannot move; give its value in a step";
             return Err(line.cannot(why));
@@ -334,7 +337,11 @@ fn boundary_line(line: &Word, amplitude: Option<usize>) -> Result<Condition<Comp
     Ok(Condition {
         word: line.part(fields[0]),
         target,
-        kind: Components { on, rotation },
+        kind: Components {
+            on,
+            stays: false,
+            rotation,
+        },
         given: Given { value, amplitude },
     })
 }
@@ -361,6 +368,7 @@ pub(super) fn forces(model: &Model, step: &mut Step, card: &Card) -> Result<(), 
             target,
             kind: Components {
                 on: [1, 2, 3, 4, 5, 6].map(|c| c == number),
+                stays: false,
                 rotation: (number > 3).then(|| line.part(fields[1])),
             },
             given: Given {

@@ -57,8 +57,9 @@ impl Couplings {
         self.0.iter().enumerate().find(|(_, coupling)| coupling.node == node)
     }
 
-    /// Whether a surface has the displacement of a node.
+    /// Whether a surface, or one side of a section, has the displacement of a node.
     pub(super) fn moves(&self, node: u32) -> bool {
-        self.of(node).is_some_and(|(_, c)| c.law == CouplingLaw::Kinematic)
+        let law = self.of(node).map(|(_, c)| c.law);
+        matches!(law, Some(CouplingLaw::Kinematic | CouplingLaw::Pretension { .. }))
     }
 }

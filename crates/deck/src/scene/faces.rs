@@ -13,6 +13,7 @@ use super::boundary::Boundary;
 use super::couplings::Couplings;
 use super::mesh::Raw;
 use super::numbers::Sets;
+use super::pretension::Sections;
 use super::rigid::{RigidBodies, RigidFace};
 use super::timeline::Timeline;
 use super::transforms::Transforms;
@@ -51,6 +52,7 @@ pub(super) struct Known<'a> {
     pub(super) timeline: &'a Timeline<'a>,
     pub(super) couplings: &'a Couplings,
     pub(super) transforms: &'a Transforms,
+    pub(super) sections: &'a Sections,
 }
 
 fn key(mut nodes: [u32; 3]) -> [u32; 3] {
@@ -100,6 +102,11 @@ impl FaceTable {
         let mut boundary = None;
         for (index, (_, faces)) in (0..).zip(known.model.surfaces.iter()) {
             let (mut all, mut rigid) = (Vec::new(), Vec::new());
+            if known.sections.is_across(index as usize) {
+                out.push(all);
+                self.rigid.push(rigid);
+                continue;
+            }
             if faces.iter().any(|faces| faces.side == Side::Nodes) {
                 let boundary = boundary.get_or_insert_with(|| Boundary::new(known.raw));
                 for (tet, number) in of_nodes(known, boundary, faces, ignored)? {

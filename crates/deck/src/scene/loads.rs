@@ -10,6 +10,7 @@ use signorini_fem_mesh::{FacetTag, LoadDensity};
 
 use super::faces::{FaceTable, Known};
 use super::history::{Histories, Tracks};
+use super::pretension::{ONE, Sections};
 use super::spread::Spread;
 use super::supports::Rigid;
 use super::volume::Volume;
@@ -154,7 +155,12 @@ impl Loads {
 
     /// The loads of the scene, in the order of the deck, each with the first word that asks for it; `tags` are those of
     /// the faces, `rigid` the couplings of the scene.
-    pub(super) fn lower(self, faces: &FaceTable, tags: &[FacetTag], rigid: &[Rigid]) -> Vec<(Load, Word)> {
+    pub(super) fn lower(
+        self,
+        faces: &FaceTable,
+        tags: &[FacetTag],
+        (rigid, sections): (&[Rigid], &Sections),
+    ) -> Vec<(Load, Word)> {
         let mut out: Vec<(usize, Load, usize)> = Vec::new();
         for (number, (value, history, order)) in (0..).zip(&self.pressures) {
             let with = faces.list.iter().zip(tags);
@@ -175,7 +181,8 @@ impl Loads {
         for ((reference, history), (order, [a, b, c, d, e, f])) in self.rigid {
             // loaded ones are couplings
             let number = rigid.iter().position(|r| r.reference == reference);
-            let load = |number| (order, Load::on_coupling(number, [a, b, c], [d, e, f]), history);
+            let force = sections.of(reference).map_or([a, b, c], |section| section.force(a));
+            let load = |number| (order, Load::on_coupling(number, force, [d, e, f]), history);
             out.extend(number.map(load));
         }
         out.sort_by_key(|load| load.0);
@@ -225,8 +232,12 @@ impl Known<'_> {
     fn place_of_force(self, node: u32, line: &Condition<Components>) -> Result<(Place, usize), DeckError> {
         let rotation = line.kind.rotation.as_ref();
         if let Some((index, coupling)) = self.couplings.of(node) {
-            let CouplingLaw::Distributing { moments } = coupling.law else {
-                return Ok((Place::Rigid(node), 0));
+            let moments = match coupling.law {
+                CouplingLaw::Distributing { moments } => moments,
+                CouplingLaw::Pretension { .. } if line.kind.on[1..].contains(&true) => {
+                    return Err(line.word.cannot(ONE));
+                }
+                _ => return Ok((Place::Rigid(node), 0)),
             };
             return match rotation.filter(|_| (0..3).any(|c| line.kind.on[3 + c] && !moments[c])) {
                 Some(word) => {

@@ -1,5 +1,6 @@
 //! Nodes and elements as a mesh.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use signorini_contact::{ContactError, Part};
@@ -24,6 +25,8 @@ pub(super) struct Raw {
     of_element: Vec<Option<u32>>,
     /// Numbers in the deck of the nodes of the mesh.
     pub(super) node_labels: Vec<u32>,
+    /// Copies of nodes where the mesh is cut; its tetrahedra here do not know of them.
+    copies: BTreeMap<u32, Vec<u32>>,
     /// Positions and numbers in the deck of the tetrahedra.
     pub(super) elements: Vec<u32>,
     pub(super) element_labels: Vec<u32>,
@@ -85,6 +88,7 @@ impl Raw {
             of_node,
             of_element,
             node_labels,
+            copies: BTreeMap::new(),
             element_labels: elements.iter().map(label).collect(),
             elements,
         })
@@ -95,6 +99,22 @@ impl Raw {
         self.of_element[element as usize]
     }
 
+    /// Adds copies of nodes behind the others, as cuts make them.
+    pub(super) fn copy(&mut self, nodes: &[u32]) {
+        for &node in nodes {
+            let copy = self.points.len() as u32;
+            self.copies.entry(node).or_default().push(copy);
+            self.points.push(self.points[node as usize]);
+            self.node_labels.push(self.node_labels[node as usize]);
+        }
+    }
+
+    /// A node of the mesh and its copies.
+    pub(super) fn with_copies(&self, node: u32) -> impl Iterator<Item = u32> {
+        let copies = self.copies.get(&node).into_iter().flatten();
+        std::iter::once(node).chain(copies.copied())
+    }
+
     /// The number in the mesh of a node of the deck, by its position; `None` if no elastic element uses it.
     pub(super) fn in_mesh(&self, node: u32) -> Option<u32> {
         self.of_node[node as usize]
@@ -102,7 +122,13 @@ impl Raw {
 
     /// Nodes of the mesh by their numbers in the deck.
     pub(super) fn mesh_numbers(&self) -> Numbers {
-        Numbers::new(self.node_labels.iter().copied().zip(0..).collect()).unwrap_or_default()
+        let nodes = self.node_labels.iter().copied().take(self.uncut());
+        Numbers::new(nodes.zip(0..).collect()).unwrap_or_default()
+    }
+
+    /// Nodes without copies.
+    fn uncut(&self) -> usize {
+        self.points.len() - self.copies.values().map(Vec::len).sum::<usize>()
     }
 
     pub(super) fn tet_points(&self, tet: u32) -> [[f64; 3]; 4] {
@@ -191,11 +217,12 @@ impl Raw {
     ) -> Result<TetMesh, DeckError> {
         let whole =
             |(tet, mids): (&[u32; 4], &[u32; 6])| std::array::from_fn(|k| if k < 4 { tet[k] } else { mids[k - 4] });
+        let points = self.points[..self.uncut()].to_vec();
         let mesh = match self.mids[..] {
-            [] => TetMesh::new(self.points.clone(), self.tets.clone(), facets),
+            [] => TetMesh::new(points, self.tets.clone(), facets),
             _ => {
                 let tets = self.tets.iter().zip(&self.mids).map(whole);
-                TetMesh::quadratic(self.points.clone(), tets.collect(), facets)
+                TetMesh::quadratic(points, tets.collect(), facets)
             }
         };
         let mesh = mesh.and_then(|mesh| mesh.with_regions(regions));

@@ -14,6 +14,7 @@ mod materials;
 mod mesh;
 mod numbers;
 mod parts;
+mod pretension;
 mod rigid;
 mod spread;
 mod supports;
@@ -57,9 +58,16 @@ pub(crate) struct Translated {
 pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckError> {
     let sets = numbers::Sets::new(model)?;
     let bodies = rigid::RigidBodies::new(&sets)?;
-    let raw = mesh::Raw::new(path, &sets, &bodies)?;
+    let mut raw = mesh::Raw::new(path, &sets, &bodies)?;
     let timeline = timeline::Timeline::new(model)?;
     let couplings = couplings::Couplings::new(&sets, &bodies, &raw)?;
+    let sections = pretension::Sections::new(&couplings.0, &sets, &raw)?;
+    if !sections.0.is_empty() {
+        let regions = vec![0; raw.tets.len()];
+        let whole = raw.mesh(path, model, Vec::new(), regions, |_| None)?;
+        let copied = sections.cut(whole, 0, &raw)?.1;
+        raw.copy(&copied);
+    }
     let transforms = transforms::Transforms::new(&sets, &bodies, &couplings, &raw)?;
     let known = faces::Known {
         model,
@@ -69,6 +77,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         timeline: &timeline,
         couplings: &couplings,
         transforms: &transforms,
+        sections: &sections,
     };
     let mut faces = faces::FaceTable::default();
     let mut notes = Vec::new();
@@ -79,13 +88,19 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     let (regions, materials) = materials::materials(&raw, &sets)?;
     let mut parts = parts::Parts::new(&raw, &sets, &regions);
     let mesh = raw.mesh(path, model, faces.facets(&tags), regions, |part| parts.name(part))?;
+    let next = tags.iter().max().map_or(1, |last| last.0 + 1);
+    let (mesh, _) = sections.cut(mesh, next, &raw)?;
     let surfaces = faces.tags_of(&tags, model);
 
-    let mut supports = supports::supports(known, &faces, &loads.on_rigid())?;
+    let mut supports = supports::supports(known, &faces, &loads.on_rigid(), model.pairs.len())?;
     supports.ignored.append(&mut notes);
-    let contacts = contacts::contacts(known, &faces, &surfaces, &supports.leads, &mut supports.ignored)?;
+    let mut contacts = contacts::contacts(known, &faces, &surfaces, &supports.leads, &mut supports.ignored)?;
+    contacts.extend((next..).step_by(2).take(sections.0.len()).map(pretension::tie));
     let warm = temperatures::temperatures(known, &mut supports.ignored)?;
-    let loads = loads.lower(&faces, &tags, &supports.rigid).into_iter().chain(warm);
+    let loads = loads
+        .lower(&faces, &tags, (&supports.rigid, &sections))
+        .into_iter()
+        .chain(warm);
     let (loads, words): (Vec<_>, Vec<_>) = loads.unzip();
     let (support_names, held): (Vec<_>, Vec<_>) = supports.names.into_iter().unzip();
     parts.steps = timeline.steps();

@@ -5,8 +5,10 @@ use std::collections::BTreeMap;
 use signorini_contact::{Coupling, Support};
 use signorini_fem_mesh::History;
 
+use super::couplings::Coupling as Node;
 use super::faces::{FaceTable, Known};
 use super::history::{Histories, Track};
+use super::pretension::ONE;
 use super::rigid::{FreeLead, Lead, all_components, rigid_components};
 use super::spread::coupled_nodes;
 use crate::error::{DeckError, Word};
@@ -32,6 +34,8 @@ struct Held {
 struct Table {
     held: BTreeMap<(u32, usize), Held>,
     rigid: BTreeMap<(u32, usize), Held>,
+    /// The step in which the node of a section is locked.
+    locks: BTreeMap<u32, usize>,
     owners: Vec<Owner>,
     ignored: Vec<Ignored>,
 }
@@ -55,7 +59,13 @@ pub(super) struct Supports {
 }
 
 /// One support for each target and its moving or fixed components; `loaded` are the reference nodes that have loads.
-pub(super) fn supports(known: Known, faces: &FaceTable, loaded: &BTreeMap<u32, Word>) -> Result<Supports, DeckError> {
+/// `contacts` is the number of those before the sections.
+pub(super) fn supports(
+    known: Known,
+    faces: &FaceTable,
+    loaded: &BTreeMap<u32, Word>,
+    contacts: usize,
+) -> Result<Supports, DeckError> {
     let mut table = Table::default();
     for line in &known.model.supports {
         table.add(known, None, line)?;
@@ -86,7 +96,7 @@ pub(super) fn supports(known: Known, faces: &FaceTable, loaded: &BTreeMap<u32, W
     }
     let track = |node, component| table.rigid.get(&(node, component)).map(|held| &held.track);
     known.bodies.check_rotations(known.timeline, track)?;
-    let rigid = table.couple(known, faces, loaded)?;
+    let rigid = table.couple(known, faces, (loaded, contacts))?;
     let held = std::mem::take(&mut table.rigid);
     let held = held.into_iter().map(|(key, held)| (key, held.track)).collect();
     let leads = known.bodies.leads(known.model, &held);
@@ -141,6 +151,25 @@ impl Table {
         let owner = self.owner(&line.target, &line.word);
         let (mut found, mut turned) = (false, None);
         for node in known.sets.nodes.find(&line.target, &line.word)? {
+            let section = known.sections.of(node).is_some();
+            if section && line.kind.on[1..].contains(&true) {
+                return Err(line.word.cannot(ONE));
+            }
+            match (line.kind.stays, step) {
+                (false, _) => {}
+                (true, Some(step)) if section && line.given.value == 0.0 => {
+                    let first = self.locks.entry(node).or_insert(step);
+                    *first = step.min(*first);
+                    found = true;
+                    continue;
+                }
+                _ => {
+                    return Err(line.word.cannot(
+                        "with FIXED only component 1 of the node of a *PRE-TENSION SECTION stays as the steps before left \
+                        it; give the displacement that they reached, and remove FIXED",
+                    ));
+                }
+            }
             let (map, key, components) = match known.raw.in_mesh(node) {
                 _ if known.bodies.has(node) || known.couplings.moves(node) => (&mut self.rigid, node, 6),
                 Some(inside) => (&mut self.held, inside, 3),
@@ -161,7 +190,6 @@ impl Table {
             for component in (0..components).filter(|&c| line.kind.on[c]) {
                 let label = known.model.nodes[node as usize].label;
                 let what = format!("component {} of node {label}", component + 1);
-                let next = map.len();
                 let new = !map.contains_key(&(key, component));
                 if new && step.is_some_and(|step| step > 0) {
                     return Err(line.word.cannot(format!(
@@ -169,13 +197,17 @@ impl Table {
                         the first one on"
                     )));
                 }
-                let held = map.entry((key, component)).or_insert_with(|| Held {
-                    owner,
-                    track: Track::new(next, &line.word),
-                    before: step.is_none(),
-                });
-                held.give(step, line.given, &what)
-                    .map_err(|why| line.word.cannot(why))?;
+                let copies = (components == 3).then(|| known.raw.with_copies(key).skip(1));
+                for key in std::iter::once(key).chain(copies.into_iter().flatten()) {
+                    let next = map.len();
+                    let held = map.entry((key, component)).or_insert_with(|| Held {
+                        owner,
+                        track: Track::new(next, &line.word),
+                        before: step.is_none(),
+                    });
+                    held.give(step, line.given, &what)
+                        .map_err(|why| line.word.cannot(why))?;
+                }
             }
         }
         if let Some(word) = turned {
@@ -195,10 +227,17 @@ impl Table {
         &mut self,
         known: Known,
         faces: &FaceTable,
-        loaded: &BTreeMap<u32, Word>,
+        (loaded, contacts): (&BTreeMap<u32, Word>, usize),
     ) -> Result<Vec<Rigid>, DeckError> {
         let mut out = Vec::new();
+        let mut sections = contacts..;
         for coupling in known.couplings.0.iter().filter(|c| known.couplings.moves(c.node)) {
+            if let Some(section) = known.sections.of(coupling.node) {
+                let whole = section.coupling(sections.next().unwrap_or(contacts));
+                out.push(self.tighten(known, coupling, whole)?);
+                (0..6).for_each(|c| drop(self.rigid.remove(&(coupling.node, c))));
+                continue;
+            }
             let nodes = coupled_nodes(coupling, known, faces)?.into_keys().collect();
             let leads = (coupling.node, None);
             out.extend(self.move_rigidly(known, nodes, (leads, loaded), ("surface", &coupling.word))?);
@@ -235,27 +274,24 @@ impl Table {
         leads: (u32, Option<u32>),
         word: &Word,
     ) -> Result<Rigid, DeckError> {
-        let reference = leads.0;
+        let place = known.model.nodes[leads.0 as usize].point;
         let held = rigid_components(&self.rigid, leads);
-        let mut histories = Histories::default();
-        let mut coupling = Coupling::rigid(nodes, known.model.nodes[reference as usize].point)
-            .with_held(held.each_ref().map(Option::is_some));
-        for (component, held) in held.iter().enumerate() {
-            let Some(held) = held else {
-                continue;
-            };
-            if let Some((value, history)) = histories.add(known.timeline, &held.track)? {
-                let mut motion = [0.0; 6];
-                motion[component] = value;
-                coupling = coupling.with_motion(motion, histories.at(history));
-            }
+        let coupling = Coupling::rigid(nodes, place).with_held(held.each_ref().map(Option::is_some));
+        moved(known, (leads.0, coupling), &held, word)
+    }
+
+    /// The coupling of a section, which moves along its axis only.
+    fn tighten(&self, known: Known, section: &Node, coupling: Coupling) -> Result<Rigid, DeckError> {
+        let [first, ..] = rigid_components(&self.rigid, (section.node, None));
+        let held = [first, None, None, None, None, None];
+        let mut on = [true; 6];
+        on[0] = held[0].is_some();
+        let mut coupling = coupling.with_held(on);
+        if let Some(&step) = self.locks.get(&section.node) {
+            let start = known.timeline.spans.get(step).map_or(0.0, |span| span.start);
+            coupling = coupling.with_lock([true, false, false, false, false, false], start);
         }
-        let word = word.clone();
-        Ok(Rigid {
-            reference,
-            coupling,
-            word,
-        })
+        moved(known, (section.node, coupling), &held, &section.word)
     }
 
     /// Gives nodes of the mesh the displacement of a reference node and its rotation; `what` they are, and its word. A
@@ -354,4 +390,30 @@ impl Table {
         }
         Ok((supports, names))
     }
+}
+
+/// A coupling whose components that are held move as the steps say.
+fn moved(
+    known: Known,
+    (reference, mut coupling): (u32, Coupling),
+    held: &[Option<Held>; 6],
+    word: &Word,
+) -> Result<Rigid, DeckError> {
+    let mut histories = Histories::default();
+    for (component, held) in held.iter().enumerate() {
+        let Some(held) = held else {
+            continue;
+        };
+        if let Some((value, history)) = histories.add(known.timeline, &held.track)? {
+            let mut motion = [0.0; 6];
+            motion[component] = value;
+            coupling = coupling.with_motion(motion, histories.at(history));
+        }
+    }
+    let word = word.clone();
+    Ok(Rigid {
+        reference,
+        coupling,
+        word,
+    })
 }

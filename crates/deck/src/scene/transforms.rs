@@ -35,9 +35,11 @@ impl Transforms {
                     return Err(word.cannot(why));
                 }
                 let Some(inside) = raw.in_mesh(node) else { continue };
-                if out.of_node.insert(inside, index).is_some() {
-                    let why = format!("node {label} has axes already; give each node one *TRANSFORM");
-                    return Err(word.cannot(why));
+                for inside in raw.with_copies(inside) {
+                    if out.of_node.insert(inside, index).is_some() {
+                        let why = format!("node {label} has axes already; give each node one *TRANSFORM");
+                        return Err(word.cannot(why));
+                    }
                 }
             }
             out.axes.push(transform.axes);

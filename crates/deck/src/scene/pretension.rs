@@ -1,0 +1,163 @@
+//! Sections across which bolts are tightened: the mesh is cut there, and its sides are tied but for a motion along the
+//! normal.
+
+use std::collections::BTreeMap;
+
+use signorini_contact::{Contact, Coupling};
+use signorini_fem_mesh::vec3::{Vec3, add, area_vector, centroid, norm, scale};
+use signorini_fem_mesh::{FacetTag, MeshError, SurfaceFrame, TetMesh};
+
+use super::couplings::Coupling as Node;
+use super::mesh::Raw;
+use super::numbers::Sets;
+use crate::error::{DeckError, Word};
+use crate::model::{CouplingLaw, FACES, Side};
+
+/// Why other components are refused.
+pub(super) const ONE: &str = "the node of a *PRE-TENSION SECTION has component 1 only, along the normal; give that";
+
+/// Where the mesh is cut.
+#[derive(Debug)]
+pub(super) struct Section {
+    /// Its node and its surface, by position in the deck.
+    pub(super) node: u32,
+    pub(super) surface: usize,
+    word: Word,
+    /// Whether a tetrahedron at the cut is one of the surface, or on the other side.
+    sides: BTreeMap<u32, bool>,
+    /// Along which it is tightened, out of the elements of the surface.
+    axis: Vec3,
+    centre: Vec3,
+}
+
+impl Section {
+    fn new(node: &Node, normal: Option<Vec3>, sets: &Sets, raw: &Raw) -> Result<Self, DeckError> {
+        let word = &node.word;
+        let mut own: BTreeMap<[u32; 3], u32> = BTreeMap::new();
+        let (mut area, mut areas, mut centre) = ([0.0; 3], 0.0, [0.0; 3]);
+        for faces in sets.model.surfaces.at(node.surface) {
+            let Side::Face(number) = faces.side else {
+                return Err(faces
+                    .word
+                    .expected("faces S1 to S4 of solid elements, all on one side of the section"));
+            };
+            for element in sets.elements.find(&faces.target, &faces.word)? {
+                let tet = raw.tet(element);
+                let tet = tet.ok_or_else(|| faces.word.cannot("a section is across elastic elements"))?;
+                let nodes = raw.face(tet, number);
+                let points = nodes.map(|n| raw.points[n as usize]);
+                // these faces are numbered counter-clockwise seen from inside
+                let out = scale(-1.0, area_vector(&points));
+                area = add(area, out);
+                areas += norm(out);
+                centre = add(centre, scale(norm(out), centroid(&points)));
+                own.insert(key(nodes), tet);
+            }
+        }
+        let mut sides: BTreeMap<u32, bool> = own.values().map(|tet| (*tet, true)).collect();
+        let mut found = 0;
+        for (tet, corners) in (0..).zip(&raw.tets) {
+            for face in FACES {
+                match own.get(&key(face.map(|i| corners[i]))) {
+                    Some(first) if *first != tet => {
+                        found += 1;
+                        if sides.insert(tet, false) == Some(true) {
+                            let label = raw.element_labels[tet as usize];
+                            let why = format!(
+                                "element {label} of the section lies behind another face of it, too; give faces of \
+                                elements on one side"
+                            );
+                            return Err(word.cannot(why));
+                        }
+                    }
+                    _ => {}
+                }
+            }
+        }
+        if found < own.len() {
+            return Err(
+                word.cannot("a face of the section is on the boundary; give faces between elements, across the bolt")
+            );
+        }
+        let axis = SurfaceFrame::from_normal(normal.unwrap_or(area))
+            .ok_or_else(|| word.cannot("the section has no normal; give one below *PRE-TENSION SECTION"))?;
+        Ok(Self {
+            node: node.node,
+            surface: node.surface,
+            word: word.clone(),
+            sides,
+            axis: axis.normal,
+            centre: scale(1.0 / areas, centre),
+        })
+    }
+
+    /// Cuts a mesh here.
+    fn cut(&self, mesh: &TetMesh, tags: [FacetTag; 2], raw: &Raw) -> Result<(TetMesh, Vec<u32>), DeckError> {
+        let cut = mesh.cut(|tet| self.sides.get(&(tet as u32)).copied(), tags);
+        cut.map_err(|error| match error {
+            MeshError::CutEnds { node } => {
+                let label = raw.node_labels[node as usize];
+                let why = format!("the section ends inside the body, at node {label}; give all faces across the bolt");
+                self.word.cannot(why)
+            }
+            other => self.word.cannot(other.to_string()),
+        })
+    }
+}
+
+fn key(mut nodes: [u32; 3]) -> [u32; 3] {
+    nodes.sort_unstable();
+    nodes
+}
+
+/// All sections.
+#[derive(Debug, Default)]
+pub(super) struct Sections(pub(super) Vec<Section>);
+
+impl Sections {
+    pub(super) fn new(nodes: &[Node], sets: &Sets, raw: &Raw) -> Result<Self, DeckError> {
+        let section = |node: &Node| match node.law {
+            CouplingLaw::Pretension { normal } => Some(Section::new(node, normal, sets, raw)),
+            _ => None,
+        };
+        Ok(Self(nodes.iter().filter_map(section).collect::<Result<_, _>>()?))
+    }
+
+    /// Whether a surface is one of them.
+    pub(super) fn is_across(&self, surface: usize) -> bool {
+        self.0.iter().any(|section| section.surface == surface)
+    }
+
+    /// That of a node.
+    pub(super) fn of(&self, node: u32) -> Option<&Section> {
+        self.0.iter().find(|section| section.node == node)
+    }
+
+    /// The mesh cut at each, with two tags for each from `next` on; the nodes that were copied.
+    pub(super) fn cut(&self, mut mesh: TetMesh, next: u32, raw: &Raw) -> Result<(TetMesh, Vec<u32>), DeckError> {
+        let mut copied = Vec::new();
+        for (section, tag) in self.0.iter().zip((next..).step_by(2)) {
+            let (cut, own) = section.cut(&mesh, [FacetTag(tag), FacetTag(tag + 1)], raw)?;
+            mesh = cut;
+            copied.extend(own);
+        }
+        Ok((mesh, copied))
+    }
+}
+
+/// The tie of the sides of a cut, of which the first one has this tag.
+pub(super) fn tie(tag: u32) -> Contact {
+    Contact::tied(FacetTag(tag), FacetTag(tag + 1))
+}
+
+impl Section {
+    /// The motion of one side of a contact relative to the other.
+    pub(super) fn coupling(&self, contact: usize) -> Coupling {
+        Coupling::relative(contact, self.centre).with_axis(self.axis)
+    }
+
+    /// A force that tightens it.
+    pub(super) fn force(&self, value: f64) -> Vec3 {
+        scale(value, self.axis)
+    }
+}
