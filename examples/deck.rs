@@ -138,8 +138,12 @@ fn print_reactions(deck: &Deck, step: &StepResult) {
         );
     }
     for (k, (name, motion)) in deck.coupling_names().iter().zip(step.couplings()).enumerate() {
-        let point = step.scene().couplings()[k].reference();
-        let held = step.reactions_about(point).couplings[k];
+        let coupling = &step.scene().couplings()[k];
+        let reactions = step.reactions_about(coupling.reference());
+        let (what, held) = match coupling.tied() {
+            Some(contact) => ("transfers", reactions.contacts[contact]),
+            None => ("held by", reactions.couplings[k]),
+        };
         let six = |[a, b]: [[f64; 3]; 2]| {
             [a, b]
                 .concat()
@@ -149,7 +153,7 @@ fn print_reactions(deck: &Deck, step: &StepResult) {
                 .join(" ")
         };
         println!(
-            "coupling {k} ({name}): moved and turned by {}, held by {}",
+            "coupling {k} ({name}): moved and turned by {}, {what} {}",
             six([motion.displacement, motion.rotation]),
             six([held.force, held.moment])
         );

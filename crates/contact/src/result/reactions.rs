@@ -165,24 +165,18 @@ pub(crate) fn nodal_reactions(
     forces
 }
 
-/// The force on each point of tied contacts, N: what its rows do to a node that no support holds, over the weight of
-/// the node.
+/// The force on each point of tied contacts, N, along the directions that its rows have.
 pub(crate) fn tied_forces<'a>(model: &'a Model, recovered: &Recovered) -> Vec<(&'a ContactPoint, [f64; 3])> {
     let first = model.tfeti.gluing().ranges().tied.start;
-    let supported = |node: u32| model.discrete.supports.directions.contains_key(&node);
     let force = |(tied, tie): (&TiedRows, &'a ContactPoint)| {
-        let free = tie.sides.nodes().filter(|n| !supported(n.0));
-        let (node, weight) = free.reduce(|a, b| if b.1.abs() > a.1.abs() { b } else { a })?;
         let mut force = [0.0; 3];
-        for row in tied.rows.clone() {
+        for (row, (direction, scale)) in tied.rows.clone().zip(&tied.directions) {
             let lambda = recovered.tied_multipliers[row - first];
-            for (_, c, coefficient) in model.row(row).filter(|e| e.0 == node) {
-                force[c] += lambda * coefficient / weight;
-            }
+            (0..3).for_each(|c| force[c] += lambda * scale * direction[c]);
         }
-        Some((tie, force))
+        (tie, force)
     };
-    model.tied().filter_map(force).collect()
+    model.tied().map(force).collect()
 }
 
 /// Takes from `rest` what the rows of a point do to a node, where `whole` is the force of the point.

@@ -153,6 +153,14 @@ impl Coupling {
         left.contains(&true).then_some((left, time))
     }
 
+    /// The tied contact of a [relative](Self::relative) one, by its number in the scene.
+    pub fn tied(&self) -> Option<usize> {
+        match self.coupled {
+            Coupled::Tied(contact) => Some(contact),
+            Coupled::Nodes(_) => None,
+        }
+    }
+
     /// Its nodes; `None` of a relative one.
     pub fn place(&self) -> Option<&Place> {
         match &self.coupled {

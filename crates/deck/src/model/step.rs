@@ -54,8 +54,8 @@ pub(crate) struct Condition<K> {
 pub(crate) struct Components {
     /// Those of displacement or force, then of rotation or moment, which nodes of rigid bodies and couplings have.
     pub(crate) on: [bool; 6],
-    /// Whether they stay as the step before left them.
-    pub(crate) stays: bool,
+    /// FIXED, where they stay as the steps before left them.
+    pub(crate) fixed: Option<Word>,
     /// The word that asks for one of the latter by its number.
     pub(crate) rotation: Option<Word>,
 }
@@ -267,7 +267,7 @@ pub(super) fn boundary(model: &mut Model, step: Option<&mut Step>, card: &Card) 
     let mut lines = Vec::with_capacity(card.lines.len());
     for line in &card.lines {
         let mut given = boundary_line(line, amplitude)?;
-        given.kind.stays = card.param("FIXED").is_some();
+        given.kind.fixed = card.param("FIXED").map(|param| param.word.clone());
         if step.is_none() && given.given.value != 0.0 {
             let why = "before the first *STEP a support cannot move; give its value in a step";
             return Err(line.cannot(why));
@@ -339,7 +339,7 @@ fn boundary_line(line: &Word, amplitude: Option<usize>) -> Result<Condition<Comp
         target,
         kind: Components {
             on,
-            stays: false,
+            fixed: None,
             rotation,
         },
         given: Given { value, amplitude },
@@ -368,7 +368,7 @@ pub(super) fn forces(model: &Model, step: &mut Step, card: &Card) -> Result<(), 
             target,
             kind: Components {
                 on: [1, 2, 3, 4, 5, 6].map(|c| c == number),
-                stays: false,
+                fixed: None,
                 rotation: (number > 3).then(|| line.part(fields[1])),
             },
             given: Given {

@@ -36,6 +36,8 @@ pub(super) fn contacts(
         let (dependent, other) = (surface(&pair.slave)?, surface(&pair.master)?);
         let (slave, master) = (surfaces.at(dependent), surfaces.at(other));
         let [own, partner] = [&pair.slave.word, &pair.master.word];
+        known.sections.check_outside(dependent, own)?;
+        known.sections.check_outside(other, partner)?;
         if slave.is_empty() {
             return Err(own.cannot("a rigid surface has to be the second (independent) one of a pair; swap them"));
         }

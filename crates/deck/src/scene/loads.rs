@@ -288,6 +288,7 @@ impl Known<'_> {
                     return Ok(());
                 };
                 let found = self.model.surfaces.find("surface", name, word)?;
+                self.sections.check_outside(found, word)?;
                 if surfaces[found].is_empty() {
                     return Err(word.cannot("a pressure on a rigid surface acts on nothing; load an elastic one"));
                 }

@@ -128,6 +128,14 @@ impl Sections {
         self.0.iter().any(|section| section.surface == surface)
     }
 
+    /// Refuses one where a surface at the boundary is meant.
+    pub(super) fn check_outside(&self, surface: usize, word: &Word) -> Result<(), DeckError> {
+        match self.is_across(surface) {
+            true => Err(word.cannot("this is a *PRE-TENSION SECTION, inside the body; name a surface at the boundary")),
+            false => Ok(()),
+        }
+    }
+
     /// That of a node.
     pub(super) fn of(&self, node: u32) -> Option<&Section> {
         self.0.iter().find(|section| section.node == node)

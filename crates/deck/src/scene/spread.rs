@@ -25,9 +25,10 @@ pub(super) struct Spread {
 /// Nodes of the surface of a coupling, with their parts of its area: none at the corners of quadratic faces.
 pub(super) fn coupled_nodes(
     coupling: &Coupling,
-    Known { raw, .. }: Known,
+    Known { raw, sections, .. }: Known,
     faces: &FaceTable,
 ) -> Result<BTreeMap<u32, f64>, DeckError> {
+    sections.check_outside(coupling.surface, &coupling.word)?;
     let mut nodes = BTreeMap::new();
     for face in faces.of_surface(coupling.surface as u32) {
         let part = norm(face.area_vector(raw)) / 3.0;

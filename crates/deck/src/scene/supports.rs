@@ -155,20 +155,17 @@ impl Table {
             if section && line.kind.on[1..].contains(&true) {
                 return Err(line.word.cannot(ONE));
             }
-            match (line.kind.stays, step) {
-                (false, _) => {}
-                (true, Some(step)) if section && line.given.value == 0.0 => {
-                    let first = self.locks.entry(node).or_insert(step);
-                    *first = step.min(*first);
-                    found = true;
-                    continue;
-                }
-                _ => {
-                    return Err(line.word.cannot(
-                        "with FIXED only component 1 of the node of a *PRE-TENSION SECTION stays as the steps before left \
-                        it; give the displacement that they reached, and remove FIXED",
+            if let Some(fixed) = &line.kind.fixed {
+                let Some(step) = step.filter(|_| section && line.given.value == 0.0) else {
+                    return Err(fixed.cannot(
+                        "only the node of a *PRE-TENSION SECTION stays as the steps before left it; give the displacement \
+                        that the steps before reached, and remove it",
                     ));
-                }
+                };
+                let first = self.locks.entry(node).or_insert(step);
+                *first = step.min(*first);
+                found = true;
+                continue;
             }
             let (map, key, components) = match known.raw.in_mesh(node) {
                 _ if known.bodies.has(node) || known.couplings.moves(node) => (&mut self.rigid, node, 6),

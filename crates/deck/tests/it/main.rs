@@ -7,6 +7,7 @@ mod gaps;
 mod meaning;
 mod names;
 mod orientation;
+mod pretension;
 mod reading;
 mod refusals;
 mod rigid;

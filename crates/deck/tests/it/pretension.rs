@@ -1,0 +1,152 @@
+//! Bolts that are tightened.
+
+use signorini_contact::{Settings, Simulation};
+use signorini_fem_mesh::vec3::centroid;
+use signorini_fem_mesh::{Brick, TetMesh, brick};
+use std::fmt::Write as _;
+
+use crate::write::{STEEL, mesh, read};
+
+/// A bar of 40 mm, held at both ends and cut in the middle.
+fn bar(order: usize) -> TetMesh {
+    let brick = Brick::new([40.0, 10.0, 10.0], [8, 2, 2]).build().expect("a brick");
+    if order == 2 {
+        brick.raise_order().expect("quadratic")
+    } else {
+        brick
+    }
+}
+
+/// The section of the elements on its left, whose node has no place in the mesh.
+fn section(mesh: &TetMesh) -> String {
+    let mut deck = String::from("*NODE\n9000, 0., 0., 0.\n*SURFACE, NAME=CUT\n");
+    const FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
+    for tet in 0..mesh.tets().len() {
+        let points = mesh.tet_points(tet);
+        for (number, face) in (1..).zip(FACES) {
+            if centroid(&points)[0] < 20.0 && face.iter().all(|i| (points[*i][0] - 20.0).abs() < 1e-9) {
+                writeln!(deck, "{}, S{number}", tet + 1).expect("text");
+            }
+        }
+    }
+    deck
+}
+
+const HELD: &str = "*BOUNDARY\nN1, 1, 3\n";
+
+fn deck(mesh_: &TetMesh, steps: &str) -> String {
+    let node = "*PRE-TENSION SECTION, SURFACE=CUT, NODE=9000\n";
+    format!("{}{STEEL}{}{node}{HELD}{steps}", mesh(mesh_), section(mesh_))
+}
+
+const FORCE: &str = "*STEP\n*STATIC\n1., 1.\n*BOUNDARY\nN2, 1, 3\n*CLOAD\n9000, 1, 1000.\n*END STEP\n";
+const LENGTH: &str = "*STEP\n*STATIC\n1., 1.\n*BOUNDARY\nN2, 1, 3\n9000, 1, 1, 0.01\n*END STEP\n";
+const FIXED: &str =
+    "*STEP\n*STATIC\n1., 1.\n*BOUNDARY\nN2, 1, 1, 0.02\nN2, 3, 3, 0.05\n*BOUNDARY, FIXED\n9000, 1\n*END STEP\n";
+const PULLED: &str = "*STEP\n*STATIC\n1., 1.\n*BOUNDARY\nN2, 1, 1, 0.02\nN2, 3, 3, 0.05\n*END STEP\n";
+
+/// Forces that the section transfers after each step.
+fn forces(text: &str) -> Vec<[f64; 3]> {
+    let scene = read(text).expect("deck").scene().expect("scene");
+    let settings = Settings::default().with_tolerance(1e-9);
+    let mut simulation = Simulation::new(scene, settings).expect("set-up");
+    let mut out = Vec::new();
+    while !simulation.is_finished() {
+        let step = simulation.step().expect("step");
+        let reactions = step.reactions();
+        let rest = reactions.imbalance().force;
+        assert!(rest.iter().all(|f| f.abs() < 1e-3), "{rest:?}");
+        out.push(reactions.contacts[0].force);
+    }
+    out
+}
+
+/// What CalculiX 2.20 makes of the same bars with doubled nodes and an *EQUATION for each component. (Its own keyword is
+/// wrong for tetrahedra, of which some meet a section with an edge or a corner only: 218 N for 1000 N.)
+#[test]
+fn a_tightened_bar_has_the_forces_of_calculix() {
+    let cases = [
+        (1, [FORCE, FIXED], [1000.0, 11905.79, 2128.667]),
+        (1, [LENGTH, PULLED], [5452.896, 16358.69, 2128.667]),
+        (2, [FORCE, FIXED], [1000.0, 11706.82, 1449.295]),
+        (2, [LENGTH, PULLED], [5353.412, 16060.24, 1449.295]),
+    ];
+    for (order, steps, [first, second, across]) in cases {
+        let found = forces(&deck(&bar(order), &steps.concat()));
+        assert!((found[0][0] / first - 1.0).abs() < 1e-6, "{found:?}");
+        assert!((found[1][0] / second - 1.0).abs() < 1e-6, "{found:?}");
+        // sides of quadratic elements are tied in the mean
+        let within = if order == 1 { 1e-6 } else { 2e-4 };
+        assert!((found[1][2] / across - 1.0).abs() < within, "{found:?}");
+    }
+}
+
+/// On a plane of symmetry copies of nodes are held as these, also along axes of their own; a normal may be given.
+#[test]
+fn copies_of_nodes_are_held_as_they_are() {
+    let mesh_ = bar(1);
+    let text = deck(&mesh_, &[FORCE, FIXED].concat());
+    let held = |plane: &str| forces(&text.replace(HELD, &format!("*BOUNDARY\nN1, 1, 3\n{plane}")));
+    let expected = held("N3, 2, 2\n");
+    assert!((expected[0][0] - 1000.0).abs() < 1e-3, "{expected:?}");
+    // y is the first of these axes; the ends are held in all directions
+    let inner: Vec<String> = (mesh_.nodes_on(brick::Y_MIN).into_iter())
+        .filter(|n| (1e-9..40.0 - 1e-9).contains(&mesh_.points()[*n as usize][0]))
+        .map(|n| format!("{}", n + 1))
+        .collect();
+    let set = format!("*NSET, NSET=INNER\n{}\n", inner.join(",\n"));
+    let found = held(&format!(
+        "{set}*TRANSFORM, NSET=INNER\n0., 1., 0., 0., 0., 1.\n*BOUNDARY\nINNER, 1, 1\n"
+    ));
+    for (a, b) in found.iter().flatten().zip(expected.iter().flatten()) {
+        assert!((a - b).abs() < 1e-3, "{found:?} {expected:?}");
+    }
+    let along = text.replace("NODE=9000\n", "NODE=9000\n2., 0., 0.\n");
+    assert_eq!(forces(&along), forces(&text));
+    // the deck has each node once, the mesh the copies, too
+    let read = read(&text).expect("deck");
+    let copies = read.mesh().points().len() - mesh_.points().len();
+    assert_eq!(copies, 9);
+    assert_eq!(read.node_numbers().len(), read.mesh().points().len());
+    assert_eq!(read.coupling_names(), ["SURFACE=CUT"]);
+}
+
+#[test]
+fn what_is_no_section_is_refused() {
+    let mesh_ = bar(1);
+    let text = |steps: &str| deck(&mesh_, steps);
+    let refused = |text: String, part: &str| {
+        let error = read(&text).map(|_| ()).expect_err("refused").to_string();
+        assert!(error.contains(part), "{error}");
+    };
+    let step = |lines: &str| format!("*STEP\n*STATIC\n{lines}*END STEP\n");
+    refused(text(&step("*CLOAD\n9000, 2, 1.\n")), "component 1 only");
+    refused(text(&step("*BOUNDARY\n9000, 1, 3\n")), "component 1 only");
+    refused(
+        text(&step("*BOUNDARY, FIXED\nN2, 1\n")),
+        "displacement that the steps before reached",
+    );
+    let whole = text(FORCE);
+    let first = section(&mesh_);
+    let one = first.lines().take(4).collect::<Vec<_>>().join("\n") + "\n";
+    refused(whole.replace(&first, &one), "ends inside the body");
+    let outside = whole.replace("SURFACE=CUT, NODE", "SURFACE=S2, NODE");
+    refused(outside, "on the boundary");
+    refused(whole.replace("NODE=9000", "NODE=1"), "belongs to an elastic element");
+    refused(whole.replace("NODE=9000\n", "NODE=9000\n0., 0., 0.\n"), "no normal");
+    refused(
+        whole.replace("*SURFACE, NAME=CUT\n", "*SURFACE, NAME=CUT\nALL\n"),
+        "faces S1 to S4",
+    );
+    let twice = "*PRE-TENSION SECTION, SURFACE=CUT, NODE=9000\n";
+    refused(
+        whole.replace(twice, &format!("{twice}{twice}")),
+        "stands for another surface",
+    );
+    let tie = "*TIE, NAME=T\nCUT, S2\n";
+    refused(
+        whole.replace(HELD, &format!("{tie}{HELD}")),
+        "inside the body; name a surface",
+    );
+    refused(text(&step("*DSLOAD\nCUT, P, 1.\n")), "inside the body; name a surface");
+}
