@@ -8,7 +8,7 @@
 //! |---|---|
 //! | a body on a rigid obstacle | [`Scene`], [`Support`], [`Load`], [`Contact`] with a gap and a [`Friction`] law |
 //! | bodies that touch each other | [`Contact::between`] |
-//! | a part of a body that is rigid | [`Coupling`], loaded by [`Load::on_coupling`] |
+//! | a part of a body that is rigid; a bolt, a hinge | [`Coupling`], loaded by [`Load::on_coupling`] |
 //! | friction that depends on place or slip rate | [`Coefficient`], [`SlipBound`] |
 //! | time steps | [`Analysis`] with a [`DifferenceFormula`]; for one state [`Analysis::Static`] |
 //! | to know the cost in advance | [`Plan`], [`plan::Estimate`] |

@@ -121,9 +121,9 @@ impl Contact {
 
     /// Bonds two bodies, or two parts of one with non-matching meshes: both sides have the same displacement where they
     /// face each other. A distance between them, or between facets of curved sides, is bridged by linear extrapolation,
-    /// so that rigid rotations stay free. [`with_motion`](Self::with_motion) prescribes a jump: tie the two parts of a
-    /// bolt that is cut across, and a motion tightens it. Sides that penetrate each other by more than a facet size are
-    /// refused.
+    /// so that rigid rotations stay free. [`with_motion`](Self::with_motion) prescribes a jump,
+    /// [`Coupling::relative`](crate::Coupling::relative) any rigid motion between the sides: bolts, hinges. Sides that
+    /// penetrate each other by more than a facet size are refused.
     pub fn tied(tag: FacetTag, partner: FacetTag) -> Self {
         Self {
             partner: vec![partner],

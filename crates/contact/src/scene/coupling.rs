@@ -1,9 +1,9 @@
-//! Rigid couplings: parts of the boundary that move as one rigid body.
+//! Rigid couplings: parts of the boundary that move as one rigid body, or relative to each other.
 
 use super::support::Place;
 use signorini_fem_mesh::History;
 
-/// A rigid coupling: nodes that move together as a rigid body, for small rotations, with a reference point, which need not
+/// A rigid coupling, or one of tied sides ([`relative`](Self::relative)): nodes that move together as a rigid body, for small rotations, with a reference point, which need not
 /// be in the mesh. The point is free, or some of its motions are held or moved; [`Load::on_coupling`](crate::Load::on_coupling)
 /// loads it. A stiff plate under a press, a hub on its bore, the far end of a part that is not modelled.
 ///
