@@ -1,6 +1,7 @@
 //! The promises of this crate, one module each.
 
 mod compact;
+mod cut;
 mod decomposition;
 mod even_parts;
 mod fields;
