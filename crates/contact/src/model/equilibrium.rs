@@ -284,9 +284,15 @@ struct Part {
 
 /// The part that moves most in a sum of motions, and how: one of length one; its radius, and its length in the sum.
 fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, f64, f64) {
+    let subdomains = model.discrete.decomposition.subdomains();
     let mut parts: Vec<Part> = Vec::new();
     for (motion, factor) in motions.iter().zip(factors) {
-        for part in &motion.bodies {
+        // what moves relative to another is one of the bodies
+        for part in motion
+            .bodies
+            .iter()
+            .filter(|part| !subdomains[part.subdomain].is_relative)
+        {
             let at = match parts.iter().position(|p| p.subdomain == part.subdomain) {
                 Some(at) => at,
                 None => {
@@ -309,7 +315,7 @@ fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, 
     let most = parts.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
     let most = most.copied().unwrap_or_default();
     let (m, length) = (most.motion.map(|v| v / size(&most)), size(&most));
-    let node = |part: &Part| model.discrete.decomposition.subdomains()[part.subdomain].nodes[0];
+    let node = |part: &Part| subdomains[part.subdomain].nodes[0];
     let mut others = [None; 3];
     let far = parts
         .iter()

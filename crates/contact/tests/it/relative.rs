@@ -422,6 +422,18 @@ fn what_is_refused_says_why() {
         let message = refused(bar().with_coupling(coupling));
         assert!(message.contains(why), "{message}");
     }
+    // the part behind a free slide is named, and not its motion relative to the other
+    let slides = bar().with_coupling(end().with_held(ALONG));
+    let only_first = Scene::new(slides.mesh().clone(), slides.materials().clone())
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_contact(slides.contacts()[0].clone())
+        .with_coupling(slides.couplings()[0].clone())
+        .with_load(Load::force(brick::X_MAX, [1e5, 0.0, 0.0]));
+    let message = refused(only_first);
+    assert!(
+        message.contains("body 1 (with node") && !message.contains("together"),
+        "{message}"
+    );
     let message = refused(bar().with_coupling(end()).with_coupling(end()));
     assert!(message.contains("another coupling says how"), "{message}");
     // held on both sides where the sides may turn
