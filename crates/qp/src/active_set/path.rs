@@ -15,7 +15,7 @@ use super::iterate::Lengths;
 use super::run::{Place, Progress, Run};
 use super::view::ActiveSetPreconditioner;
 
-impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, '_, A, C, M> {
+impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, A, C, M> {
     /// Whether predictions run in circles, or away from a start that told nothing, and a path is to be tried.
     pub(crate) fn wants_path(&mut self, place: &Place) -> bool {
         if self.path.first.is_none() && !place.errors.within(place.limits) {

@@ -49,7 +49,7 @@ pub struct ActiveSetReport {
     pub preconditionings: usize,
     /// Factorisations of `G W Gᵀ`.
     pub factorisations: usize,
-    /// Calls of the hook.
+    /// How often the set may have moved.
     pub hook_calls: usize,
     /// Last estimated error of `x`, relative to the norm of `x`.
     pub error: f64,
