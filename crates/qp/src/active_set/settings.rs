@@ -54,7 +54,7 @@ pub struct ActiveSetReport {
     /// Last estimated error of `x`, relative to the norm of `x`.
     pub error: f64,
     /// Last estimated error of the constrained components, relative to their norm.
-    pub constrained_error: f64,
+    pub(crate) constrained_error: f64,
 }
 
 impl ActiveSetReport {
