@@ -6,7 +6,7 @@
 //! A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34, 2012). On quadratic facets it is half the sum
 //! of that and of the shape function of the corner; edges that are bent in the plane, as at the rim of a disc, count.
 
-use crate::tolerances::{BENT_STEPS, COVERED, FLAT};
+use crate::tolerances::{BENT_STEPS, COVERED, NO_EXTENT};
 use signorini_fem_mesh::internal::{facet_shape, triangle};
 
 type Point = [f64; 2];
@@ -307,7 +307,7 @@ fn place(corners: &[Point; 3], bend: Option<&[Point; 3]>, p: Point) -> [f64; 3] 
 fn pseudo_inverse([xx, xy, yy]: [f64; 3]) -> [f64; 3] {
     let (mean, half) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
     let (large, small) = (mean + half, (xx * yy - xy * xy) / (mean + half));
-    if small > FLAT * large {
+    if small > NO_EXTENT * large {
         let det = large * small;
         return [yy / det, -xy / det, xx / det];
     }

@@ -9,7 +9,9 @@ use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::{InnerAccuracy, Method, Settings, paper_smalse};
 use crate::status::StepStatus;
-use crate::tolerances::{BALANCED, BALANCING, INNER_FACTOR, INNER_LOOSEST, INNER_STALL, NEAR_BALANCE, SMALSE_SAFETY};
+use crate::tolerances::{
+    BALANCING, IMBALANCE_FALLS, INNER_FACTOR, INNER_LOOSEST, INNER_STALL, NEAR_BALANCE, SMALSE_SAFETY,
+};
 use signorini_qp::internal::Contraction;
 use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
@@ -104,7 +106,7 @@ impl SmalseSolver {
             if now <= NEAR_BALANCE * size {
                 // held: what is left needs longer solves
                 share *= 2;
-            } else if now > BALANCED * before[0] {
+            } else if now > IMBALANCE_FALLS * before[0] {
                 let (problem, lambda) = (task.problem, &iterate.lambda);
                 let bound = |k, point: &_| problem.slip_bound(k, point, lambda);
                 (share, stalls) = (2 * share, stalls + 1);
