@@ -26,6 +26,11 @@ pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
     ]
 }
 
+/// The displacement of a rigid motion, of a point and its rotation, at an arm from it.
+pub fn moved([displacement, rotation]: [Vec3; 2], arm: Vec3) -> Vec3 {
+    add(displacement, cross(rotation, arm))
+}
+
 pub fn norm(a: Vec3) -> f64 {
     dot(a, a).sqrt()
 }
