@@ -35,6 +35,11 @@ pub fn norm(a: Vec3) -> f64 {
     dot(a, a).sqrt()
 }
 
+/// Of length one; not finite if it has no length.
+pub fn unit(a: Vec3) -> Vec3 {
+    scale(1.0 / norm(a), a)
+}
+
 pub fn is_finite(a: Vec3) -> bool {
     a.iter().all(|x| x.is_finite())
 }

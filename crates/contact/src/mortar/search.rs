@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use signorini_fem_mesh::internal::{facet_normals, shape_gradients};
-use signorini_fem_mesh::vec3::{add, area_vector, centroid, dot, norm, scale, sub};
+use signorini_fem_mesh::vec3::{add, area_vector, centroid, dot, norm, scale, sub, unit};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 
 /// Distance over the size of a facet up to which others are looked for first: gaps are mostly small.
@@ -233,13 +233,7 @@ impl OtherSide {
         let boxes = boxes.map(|(c, k)| GeomWithData::new(Rectangle::from_aabb(AABB::from_points(c)), k));
         Self {
             tree: RTree::bulk_load(boxes.collect()),
-            normals: corners
-                .iter()
-                .map(|c| {
-                    let vector = area_vector(c);
-                    scale(norm(vector).recip(), vector)
-                })
-                .collect(),
+            normals: corners.iter().map(|c| unit(area_vector(c))).collect(),
             corners,
             triangles,
         }
