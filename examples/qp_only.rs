@@ -51,13 +51,13 @@ pub fn string(expansion: Expansion) -> Result<(KprgpReport, usize, f64), QpError
     let (norm, limit) = (2.0 + 2.0 * (PI * h).cos(), 1e-5);
     let settings = KprgpSettings::default().with_expansion(expansion);
     let (mut x, mut work) = ([0.0; 98], KprgpWorkspace::new(&Stiffness));
-    let a = &Stiffness;
-    let report = kprgp(a, &load, &set, norm, limit, &settings, &mut x, &mut work)?;
+    let cost = QuadraticCost::new(&Stiffness, &load, norm);
+    let report = kprgp(&cost, &set, limit, &settings, &mut x, &mut work)?;
     let mut resting = 0;
     set.for_each_block(&x, &mut |block| {
         resting += usize::from(block.state == BlockState::AtLower);
     });
-    let kkt = kkt::check(a, &load, &set, &x, norm)?.relative();
+    let kkt = kkt::check(&cost, &set, &x)?.relative();
     Ok((report, resting, kkt))
 }
 
@@ -71,12 +71,10 @@ pub fn disc() -> Result<([f64; 3], f64, f64), QpError> {
     let e = c.right_side(&[1.0])?;
     let settings = SmalseSettings::default().with_tolerance(1e-10).with_equality(1e-10);
     let (mut x, mut mu, mut work) = ([0.0; 3], [0.0], SmalseWorkspace::new(&a, &c));
-    let (s, hook) = (&settings, &mut |_: &[f64], _: &mut ProductSet| false);
-    let report = smalse(&a, &b, &c, &e, &mut set, 1.0, s, hook, &mut x, &mut mu, &mut work)?;
+    let cost = QuadraticCost::new(&a, &b, 1.0).with_equality(&c, &e);
+    let report = smalse(&cost, MovingSet::fixed(&mut set), &mut x, &mut mu, &settings, &mut work)?;
     assert!(report.status.converged(), "{report:?}");
     let multiplier = work.equality_multiplier();
-    let (c, e) = (&c, &e);
-    let equality = kkt::EqualityPart { c, e, multiplier };
-    let kkt = kkt::check_with(&a, &b, &set, Some(equality), &x, 1.0)?.relative();
+    let kkt = kkt::check_with(&cost, &set, &x, multiplier)?.relative();
     Ok((x, c.original_multiplier(multiplier)?[0], kkt))
 }

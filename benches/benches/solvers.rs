@@ -6,7 +6,7 @@
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use signorini::prelude::*;
 use signorini::qp::kprgp::KprgpWorkspace;
-use signorini::qp::{KprgpSettings, ProductSet, Segment, SymmetricOperator, kprgp};
+use signorini::qp::{KprgpSettings, ProductSet, QuadraticCost, Segment, SymmetricOperator, kprgp};
 use signorini_benches::Failure;
 use signorini_studies::brick::{Block, Loading};
 use std::f64::consts::PI;
@@ -42,7 +42,14 @@ fn string(c: &mut Criterion) -> Result<(), Failure> {
     c.bench_function("KPRGP, obstacle string of 98 nodes", |bench| {
         bench.iter(|| {
             let mut x = vec![0.0; n];
-            black_box(kprgp(&operator, &b, &set, 4.0, limit, &settings, &mut x, &mut work))
+            black_box(kprgp(
+                &QuadraticCost::new(&operator, &b, 4.0),
+                &set,
+                limit,
+                &settings,
+                &mut x,
+                &mut work,
+            ))
         });
     });
     Ok(())

@@ -91,8 +91,8 @@ impl ContactError {
                 Part::of_scene(what, *index).into_iter().collect()
             }
             Self::Coupling { coupling, node, .. } => {
-                let node = node.map(Part::Node);
-                [Part::Coupling(*coupling)].into_iter().chain(node).collect()
+                let coupling = [Part::Coupling(*coupling)].into_iter();
+                coupling.chain(node.map(Part::Node)).collect()
             }
             Self::UnknownCoupling { load, .. } => vec![Part::Load(*load)],
             Self::SpringStiffness { spring, .. } => vec![Part::Spring(*spring)],
@@ -107,49 +107,22 @@ impl ContactError {
             Self::NotConverged(failure) => {
                 let others = |s: &Slide| s.others.into_iter().flatten().map(|(_, node)| node);
                 let nodes = failure.slide.iter().flat_map(|s| [s.node].into_iter().chain(others(s)));
-                [Part::Step(failure.step)]
-                    .into_iter()
-                    .chain(nodes.map(Part::Node))
-                    .collect()
+                let step = [Part::Step(failure.step)].into_iter();
+                step.chain(nodes.map(Part::Node)).collect()
             }
-            Self::Load { index, source } => {
-                let node = match source {
-                    LoadError::UnknownNode { node, .. } => Some(Part::Node(*node)),
-                    _ => None,
-                };
-                [Part::Load(*index)].into_iter().chain(node).collect()
-            }
+            Self::Load { index, source } => match source {
+                LoadError::UnknownNode { node, .. } => vec![Part::Load(*index), Part::Node(*node)],
+                _ => vec![Part::Load(*index)],
+            },
             Self::Mesh(error) => of_mesh(error),
             Self::Material(MaterialError::Unknown { region, .. } | MaterialError::Repeated { region }) => {
                 vec![Part::Region(*region)]
             }
-            Self::Surface(error) => match error {
-                SurfaceError::NoNormal { node } => vec![Part::Node(*node)],
-                SurfaceError::RepeatedTag { tag } | SurfaceError::UnknownTag { tag, .. } => vec![Part::Tag(*tag)],
-                _ => Vec::new(),
-            },
-            Self::Tfeti(error) => match error {
-                TfetiError::Material { element, .. } => vec![Part::Tet(*element)],
-                TfetiError::Spring { node, .. }
-                | TfetiError::UnknownNode { node, .. }
-                | TfetiError::ContactNodeTwice { node }
-                | TfetiError::BadFrame { node, .. }
-                | TfetiError::BadCompliance { node, .. }
-                | TfetiError::BadStretch { node, .. }
-                | TfetiError::DependentRows { node } => vec![Part::Node(*node)],
-                TfetiError::EmptySupport { support, .. }
-                | TfetiError::BadDirection { support, .. }
-                | TfetiError::DirectionLists { support, .. }
-                | TfetiError::MotionLength { support, .. }
-                | TfetiError::CaseNumber { support, .. } => vec![Part::Support(*support)],
-                TfetiError::BadMotion { support, node } => vec![Part::Support(*support), Part::Node(*node)],
-                TfetiError::ContradictorySupports {
-                    node, first, second, ..
-                } => {
-                    vec![Part::Node(*node), Part::Support(*first), Part::Support(*second)]
-                }
-                _ => Vec::new(),
-            },
+            Self::Surface(SurfaceError::NoNormal { node }) => vec![Part::Node(*node)],
+            Self::Surface(SurfaceError::RepeatedTag { tag } | SurfaceError::UnknownTag { tag, .. }) => {
+                vec![Part::Tag(*tag)]
+            }
+            Self::Tfeti(error) => of_tfeti(error),
             Self::Named { source, .. } => source.parts(),
             _ => Vec::new(),
         };
@@ -161,6 +134,31 @@ impl ContactError {
             }
         });
         parts
+    }
+}
+
+fn of_tfeti(error: &TfetiError) -> Vec<Part> {
+    match error {
+        TfetiError::Material { element, .. } => vec![Part::Tet(*element)],
+        TfetiError::Spring { node, .. }
+        | TfetiError::UnknownNode { node, .. }
+        | TfetiError::ContactNodeTwice { node }
+        | TfetiError::BadFrame { node, .. }
+        | TfetiError::BadCompliance { node, .. }
+        | TfetiError::BadStretch { node, .. }
+        | TfetiError::DependentRows { node } => vec![Part::Node(*node)],
+        TfetiError::EmptySupport { support, .. }
+        | TfetiError::BadDirection { support, .. }
+        | TfetiError::DirectionLists { support, .. }
+        | TfetiError::MotionLength { support, .. }
+        | TfetiError::CaseNumber { support, .. } => vec![Part::Support(*support)],
+        TfetiError::BadMotion { support, node } => vec![Part::Support(*support), Part::Node(*node)],
+        TfetiError::ContradictorySupports {
+            node, first, second, ..
+        } => {
+            vec![Part::Node(*node), Part::Support(*first), Part::Support(*second)]
+        }
+        _ => Vec::new(),
     }
 }
 

@@ -10,7 +10,7 @@ pub(crate) const ROUNDING: f64 = 1e-12;
 
 /// Forces are measured against this part of displacement times stiffness at least: what is left of a rigid motion are
 /// rounding errors, 1e-16 of that product.
-pub(crate) const ROUNDED: f64 = 1e-8;
+pub(crate) const FORCE_ROUNDING: f64 = 1e-8;
 
 /// Rounding of forces over displacement times stiffness, below which no solver gets: what it is asked for is not smaller.
 pub(crate) const REACHED: f64 = 1e-14;
@@ -91,7 +91,7 @@ pub(crate) const COVERED: f64 = 1e-10;
 pub(crate) const OVERLAP: f64 = 0.05;
 
 /// Second moment of a covered part below which it has no extent, over that along it.
-pub(crate) const FLAT: f64 = 1e-13;
+pub(crate) const NO_EXTENT: f64 = 1e-13;
 
 /// Distance of a mid-node from the middle of its edge, over the size of the facet, from which on the edge is bent.
 pub(crate) const BENT: f64 = 1e-9;
@@ -264,7 +264,7 @@ pub(crate) const NULL_RANK: f64 = 1e-9;
 /// left after two of the imbalance before them to go on. Where other normal forces hold them 1e-4 of the loads is left
 /// after the first, where none do 0.01 to 0.7 in the end.
 pub(crate) const BALANCING: usize = 200;
-pub(crate) const BALANCED: f64 = 0.9;
+pub(crate) const IMBALANCE_FALLS: f64 = 0.9;
 /// Imbalance over the loads below which forces hold the bodies.
 pub(crate) const NEAR_BALANCE: f64 = 1e-3;
 
@@ -275,7 +275,7 @@ pub(crate) const SLENDER: f64 = 10.0;
 // ---- points and accumulated errors (result, report) ----
 
 /// Part of all forces that a vanishing contact force is measured against.
-pub(crate) const SMALL_PART: f64 = 1e-4;
+pub(crate) const SMALL_FORCE: f64 = 1e-4;
 
 /// Part of the slip bound from which friction counts as on it.
 pub(crate) const ON_BOUND: f64 = 1.0 - 1e-5;
@@ -325,7 +325,7 @@ pub(crate) const ERROR_FALLS: f64 = 0.85;
 pub(crate) const HELD_FACET: f64 = 1e-6;
 
 /// Strain over displacement by size below which it may be what the solver left of a rigid motion.
-pub(crate) const RIGID: f64 = 1e-6;
+pub(crate) const RIGID_STRAIN: f64 = 1e-6;
 
 // ---- steps (settings, simulation) ----
 

@@ -97,13 +97,12 @@ pub mod vec3;
 
 pub use assembly::{AssemblyError, assemble_stiffness};
 pub use decomposition::{Decomposition, DecompositionError};
-pub use element::{Element, TetNodes};
+pub use element::Element;
 pub use fields::FieldError;
 #[cfg(feature = "gmsh")]
 pub use files::gmsh;
 #[cfg(feature = "vtu")]
 pub use files::output;
-pub use files::replace_file;
 pub use loads::{History, HistoryError, LoadDensity, LoadError, assemble_eigenstrain, assemble_load};
 pub use material::{Eigenstrain, Hooke, HookeError, MaterialError, Materials};
 pub use mesh::brick::Brick;
@@ -112,7 +111,8 @@ pub use mesh::{Facet, FacetTag, MeshError, Surface, SurfaceError, SurfaceFrame, 
 /// What the crates of this workspace share beyond the interface.
 #[doc(hidden)]
 pub mod internal {
-    pub use crate::element::shape_gradients;
+    pub use crate::element::{TetNodes, shape_gradients};
+    pub use crate::files::replace_file;
     pub use crate::loads::interpolate;
     pub use crate::mesh::{EDGES, cylindrical, facet_normals, facet_shape, tag_list};
     pub use crate::quadrature::triangle;

@@ -4,7 +4,7 @@
 
 /// Six times the volume over the cube of the longest edge, below which a tetrahedron is flat. Coordinates carry about
 /// 16 digits, so less than this is mostly rounding.
-pub(crate) const FLAT: f64 = 1e-10;
+pub(crate) const FLAT_TET: f64 = 1e-10;
 /// Distance over the diagonal of the mesh below which two nodes are one.
 pub(crate) const COINCIDENT: f64 = 1e-12;
 /// Sine of the angle between normal and x axis below which the y axis is projected for the first tangent.
@@ -35,14 +35,14 @@ pub(crate) const INCOMPRESSIBLE: f64 = 0.4;
 
 /// Most sweeps, and the share of tetrahedra that a sweep has to move for another one. What moves last is at plane
 /// interfaces.
-pub(crate) const SWEEPS: usize = 40;
-pub(crate) const SETTLED: f64 = 1e-3;
+pub(crate) const MOST_SWEEPS: usize = 40;
+pub(crate) const SWEEP_MOVES: f64 = 1e-3;
 /// Part of a slab's tetrahedra by which its end may move to a gap between layers of tetrahedra.
 pub(crate) const SNAP: f64 = 0.15;
 /// Part of its box that a body fills at least to be cut into a grid of about so many cubes, and the edges of cubes that
 /// are tried: so many steps of two per cent more and less than the edge that the number asks for.
 pub(crate) const FILLED: f64 = 0.98;
-pub(crate) const REACH: i32 = 6;
+pub(crate) const EDGE_STEPS: i32 = 6;
 /// Part of its box that a part fills which is a box but for rounding.
 pub(crate) const BOX: f64 = 1.0 - 1e-9;
 /// How much longer some cells are along an axis than others, each relative to itself, where a mesh is graded along it:
@@ -73,7 +73,7 @@ pub(crate) const NO_WEIGHT: f64 = 1e-13;
 /// Tetrahedra below which a patch is joined with those of the neighbours: a linear polynomial has four coefficients.
 pub(crate) const SMALL_PATCH: usize = 8;
 /// Smallest over largest pivot below which a fit is not trusted.
-pub(crate) const PIVOT: f64 = 1e-6;
+pub(crate) const FIT_PIVOT: f64 = 1e-6;
 
 // Wanted sizes
 
@@ -83,7 +83,7 @@ pub(crate) const REFINED: f64 = 4.0;
 pub(crate) const COARSENED: f64 = 2.0;
 /// Most by which wanted edges grow over a distance, relative to it. Tetrahedra twice as large as their neighbours are
 /// slivers.
-pub(crate) const GROWTH: f64 = 0.5;
+pub(crate) const EDGE_GROWTH: f64 = 0.5;
 
 // Series of files
 

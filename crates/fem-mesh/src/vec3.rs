@@ -26,8 +26,18 @@ pub fn cross(a: Vec3, b: Vec3) -> Vec3 {
     ]
 }
 
+/// The displacement of a rigid motion, of a point and its rotation, at an arm from it.
+pub fn moved([displacement, rotation]: [Vec3; 2], arm: Vec3) -> Vec3 {
+    add(displacement, cross(rotation, arm))
+}
+
 pub fn norm(a: Vec3) -> f64 {
     dot(a, a).sqrt()
+}
+
+/// Of length one; not finite if it has no length.
+pub fn unit(a: Vec3) -> Vec3 {
+    scale(1.0 / norm(a), a)
 }
 
 pub fn is_finite(a: Vec3) -> bool {

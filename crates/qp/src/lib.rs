@@ -23,18 +23,18 @@
 //!
 //! # Parts of a problem
 //!
-//! - The operator: any [`SymmetricOperator`]; [`DenseOperator`] for small matrices.
-//! - The set: a [`ProductSet`] of [`Segment`]s, or any [`ConvexSet`].
+//! - The operator: any [`SymmetricOperator`]; [`DenseOperator`] for small matrices. With `b` and a bound of its norm it is a
+//!   [`QuadraticCost`], with an equality a [`ConstrainedCost`].
+//! - The set: a [`ProductSet`] of [`Segment`]s, or any [`ConvexSet`]; a [`MovingSet`] may follow the solution.
 //! - The equality: any [`Equality`], for [`active_set()`] any [`EqualityProjector`]; [`DenseEquality`] and
 //!   [`DenseProjector`] for small matrices.
-//! - The norm of `A` (of `P A P` with an equality, [`Projected`]): steps and penalties are relative to it.
 //! - [`laws`] has checkers for your own implementations of the three traits.
 //!
 //! # Example: a string over an obstacle
 //!
 //! ```
 //! use signorini_qp::{
-//!     ConvexSet, KprgpSettings, ProductSet, Segment, SymmetricOperator, kkt, kprgp, norm_estimate,
+//!     ConvexSet, KprgpSettings, ProductSet, QuadraticCost, Segment, SymmetricOperator, kkt, kprgp, norm_estimate,
 //! };
 //! use signorini_qp::kprgp::KprgpWorkspace;
 //! use signorini_qp::problem::BlockState;
@@ -65,13 +65,14 @@
 //! let mut x = vec![0.0; n];
 //! let mut work = KprgpWorkspace::new(&stiffness);
 //! let settings = KprgpSettings::default();
-//! let report = kprgp(&stiffness, &load, &obstacle, norm, 1e-8, &settings, &mut x, &mut work)?;
+//! let cost = QuadraticCost::new(&stiffness, &load, norm);
+//! let report = kprgp(&cost, &obstacle, 1e-8, &settings, &mut x, &mut work)?;
 //! assert!(report.status.converged());
 //!
 //! let mut resting = 0;
 //! obstacle.for_each_block(&x, &mut |block| resting += usize::from(block.state == BlockState::AtLower));
 //! assert!(resting > 10);
-//! assert!(kkt::check(&stiffness, &load, &obstacle, &x, norm)?.relative() < 1e-7);
+//! assert!(kkt::check(&cost, &obstacle, &x)?.relative() < 1e-7);
 //! # Ok::<(), signorini_qp::QpError>(())
 //! ```
 //!
@@ -105,8 +106,8 @@ pub use error::{QpError, SetError};
 pub use fixed_point::{FixedPointReport, Verdict, successive_approximations};
 pub use kprgp::{KprgpSettings, kprgp};
 pub use problem::{
-    ConvexSet, DenseEquality, DenseOperator, DenseProjector, Equality, EqualityProjector, ProductSet, Projected,
-    Segment, SymmetricOperator,
+    ConstrainedCost, ConvexSet, DenseEquality, DenseOperator, DenseProjector, Equality, EqualityProjector, MovingSet,
+    ProductSet, Projected, QuadraticCost, Segment, SymmetricOperator,
 };
 pub use report::{Products, Status, Steps};
 pub use smalse::{SmalseSettings, smalse};

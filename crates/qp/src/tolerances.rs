@@ -145,7 +145,7 @@ pub(crate) const COUPLED_LEAST: f64 = 0.03;
 // Active set: the path of compliant constraints
 
 /// Estimated error over the first one from which on predictions lead away, and on so many sets in a row.
-pub(crate) const FAR: f64 = 100.0;
+pub(crate) const LED_AWAY: f64 = 100.0;
 pub(crate) const AWAY: f64 = 20.0;
 pub(crate) const AWAY_SETS: usize = 3;
 /// The first compliance, in units of that of one component alone: plates of 20 to 50 times their thickness settle with

@@ -154,7 +154,7 @@ pub(crate) const SUBDOMAINS: usize = 16;
 /// Most branches of a coarse factor on a rank.
 pub(crate) const BRANCHES: usize = 4;
 /// Equal regions of a coarse factor from which on they are solved together.
-pub(crate) const TOGETHER: usize = 3;
+pub(crate) const ALIKE_REGIONS: usize = 3;
 /// Cuts of a grid of blocks stand in every fourth layer, so that the pieces between them are equal.
 pub(crate) const PERIOD: u32 = 4;
 /// What a node of the coarse factor costs a solve besides its numbers, in numbers: the node, and a block of its border.

@@ -9,9 +9,9 @@ use common::{Brick, build, noise};
 mod common;
 
 use allocation_counter::measure;
-use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
+use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::{
-    ActiveSetSettings, Equality, EqualityProjector, ProductSet, Segment, SymmetricOperator, active_set,
+    ActiveSetSettings, Equality, EqualityProjector, MovingSet, ProductSet, Segment, SymmetricOperator, active_set,
 };
 use signorini_tfeti::ActiveSetProjector;
 use signorini_tfeti::internal::{ActiveSetFactor, InverseKind};
@@ -77,17 +77,9 @@ fn iterations_of_the_active_set_method_allocate_nothing() {
             .with_max_products(products);
         let mut steps = 0;
         let count = measure(|| {
-            let report = active_set(
-                &problem,
-                &mut space,
-                &mut set,
-                &mut x,
-                &mut ax,
-                false,
-                &settings,
-                &mut work,
-                &mut |_, _| {},
-            );
+            let (x, ax, known) = (&mut x[..], &mut ax[..], false);
+            let (set, point) = (MovingSet::fixed(&mut set), ActiveSetPoint { x, ax, known });
+            let report = active_set(&problem, &mut space, set, point, &settings, &mut work);
             steps = report.unwrap().cg_steps;
         });
         (steps, count.count_total)

@@ -1,6 +1,8 @@
 //! Sides of a surface that meet at creases.
 
-use signorini_fem_mesh::vec3::{self, dot, norm};
+use crate::vec3::edge_cosine;
+use signorini_fem_mesh::internal::Lists;
+use signorini_fem_mesh::vec3::{self, norm};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use std::collections::HashMap;
 
@@ -14,12 +16,8 @@ pub(super) struct SurfaceSide {
 }
 
 /// The triangles around each node of a surface, ascending.
-pub(super) fn around(surface: &Surface) -> Vec<Vec<u32>> {
-    let mut around: Vec<Vec<u32>> = vec![Vec::new(); surface.nodes().len()];
-    for (k, triangle) in surface.triangles().iter().enumerate() {
-        triangle.iter().for_each(|&n| around[n as usize].push(k as u32));
-    }
-    around
+pub(super) fn around(surface: &Surface) -> Lists<u32> {
+    Lists::by_key(surface.nodes().len(), surface.triangles().as_flattened()).map(|corner| corner / 3)
 }
 
 /// The sides that meet at each node of a crease; keys are places in the surface.
@@ -34,8 +32,9 @@ pub(super) fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap
         .iter()
         .map(|t| area_vector(mesh, surface, t))
         .collect();
-    for (node, triangles) in around(surface).iter().enumerate() {
-        let sides = sides(surface, &vectors, triangles, limit);
+    let around = around(surface);
+    for node in 0..around.count() {
+        let sides = sides(surface, &vectors, around.of(node), limit);
         if sides.len() < 2 {
             continue;
         }
@@ -66,10 +65,8 @@ fn corner_area(mesh: &TetMesh, surface: &Surface, triangle: usize, node: usize) 
 /// Triangles around a node, grouped: those that share an edge and are not separated by a crease are of one side.
 fn sides(surface: &Surface, vectors: &[[f64; 3]], triangles: &[u32], limit: f64) -> Vec<Vec<u32>> {
     let smooth = |a: u32, b: u32| {
-        let [v, w] = [a, b].map(|t| vectors[t as usize]);
-        let [p, q] = [a, b].map(|t| surface.triangles()[t as usize]);
-        let shared = p.iter().filter(|n| q.contains(n)).count();
-        shared == 2 && dot(v, w) > limit * norm(v) * norm(w)
+        let nodes = [a, b].map(|t| &surface.triangles()[t as usize]);
+        edge_cosine(nodes, [a, b].map(|t| vectors[t as usize])).is_some_and(|cosine| cosine > limit)
     };
     let mut left: Vec<u32> = triangles.to_vec();
     let mut out = Vec::new();

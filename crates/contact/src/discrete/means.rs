@@ -9,6 +9,7 @@ use super::partners::{Partner, Partners};
 use super::side::{Sides, mean_place};
 use crate::error::ContactError;
 use crate::scene::Contact;
+use signorini_fem_mesh::internal::Lists;
 use signorini_fem_mesh::vec3::sub;
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
@@ -23,7 +24,7 @@ pub(super) struct Means<'a> {
     /// What of a gap may be rounding, m.
     rounding: f64,
     /// Triangles around each node.
-    around: Vec<Vec<u32>>,
+    around: Lists<u32>,
     /// Partner of each node of the surface, corners and mid-nodes; empty against a rigid obstacle.
     partners: HashMap<u32, u32>,
 }
@@ -55,7 +56,7 @@ impl<'a> Means<'a> {
 
     /// Where the force of a node acts that is one point, m: in the mean of its side.
     pub(super) fn place(&self, local: usize) -> [f64; 3] {
-        mean_place(&self.side(local, &self.around[local]), |node| {
+        mean_place(&self.side(local, self.around.of(local)), |node| {
             self.mesh.points()[node as usize]
         })
     }
@@ -72,7 +73,7 @@ impl<'a> Means<'a> {
     ) -> Result<(Sides, f64), ContactError> {
         let (index, contact) = self.contact;
         let triangles = if triangles.is_empty() {
-            &self.around[local]
+            self.around.of(local)
         } else {
             triangles
         };

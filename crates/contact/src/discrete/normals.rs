@@ -3,7 +3,7 @@
 use crate::error::ContactError;
 use crate::scene::{Contact, ContactNormal};
 use crate::tolerances::{ALONG, AXIS, FACING, GRADIENT, SAME_NORMAL};
-use signorini_fem_mesh::vec3::{cross, dot, norm, scale, sub};
+use signorini_fem_mesh::vec3::{cross, dot, norm, scale, sub, unit};
 use signorini_fem_mesh::{Surface, SurfaceFrame};
 
 /// Whether directions are not all one.
@@ -45,8 +45,7 @@ pub(super) fn along_axis(
     }
     // twice, against rounding where the axis is nearly normal
     let first = scale(1.0 / length, first);
-    let first = sub(first, scale(dot(first, normal), normal));
-    let first = scale(1.0 / norm(first), first);
+    let first = unit(sub(first, scale(dot(first, normal), normal)));
     let tangents = [first, cross(first, normal)];
     Ok(SurfaceFrame { normal, tangents })
 }

@@ -4,7 +4,7 @@ use crate::error::ContactError;
 use crate::scene::Scene;
 use signorini_fem_mesh::History;
 use signorini_fem_mesh::internal::cylindrical;
-use signorini_fem_mesh::vec3::{combine, is_finite, norm, scale, sub};
+use signorini_fem_mesh::vec3::{combine, is_finite, norm, sub, unit};
 use signorini_tfeti::internal::{PrescribedDirection, prescribed_directions};
 use signorini_tfeti::{Directions, Motion, NodeSupport};
 use std::collections::BTreeMap;
@@ -86,7 +86,7 @@ fn about_axis(
     nodes: &[u32],
 ) -> Result<Given, ContactError> {
     let support = &scene.supports[index];
-    let along = scale(1.0 / norm(axis), axis);
+    let along = unit(axis);
     if !is_finite(along) || !is_finite(point) {
         let support = index;
         return Err(ContactError::SupportAxis { support, point, axis });

@@ -21,7 +21,7 @@ use crate::tolerances::{FREEDOM_TAKEN, NO_STRAIN, PARALLEL, REST, ROUNDING};
 use crate::vec3::dot;
 use nalgebra::{DMatrix, DVector};
 use signorini_fem_mesh::recovery::StrainRecovery;
-use signorini_fem_mesh::vec3::{Vec3, add, cross, sub};
+use signorini_fem_mesh::vec3::{moved, sub};
 use signorini_qp::vector;
 use signorini_tfeti::{CoarseFactor, RowWeights, Tfeti};
 use std::borrow::Cow;
@@ -372,11 +372,6 @@ impl Solved<'_> {
             }
         }
     }
-}
-
-/// The displacement of a rigid motion, of a point and its rotation, at an arm from it.
-fn moved([displacement, rotation]: [Vec3; 2], arm: Vec3) -> Vec3 {
-    add(displacement, cross(rotation, arm))
 }
 
 /// Moves a point as little as possible onto planes `(n, d)`, `n . x = d`; next to all of them where they do not meet.

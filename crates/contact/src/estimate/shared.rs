@@ -6,9 +6,9 @@
 
 use crate::model::Model;
 use crate::tolerances::{SHARED_MOVES, SHARED_ROUNDS, SHARED_STOP};
-use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
+use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::problem::Diagonal;
-use signorini_qp::{ActiveSetSettings, DenseProjector, ProductSet, SymmetricOperator, active_set, vector};
+use signorini_qp::{ActiveSetSettings, DenseProjector, MovingSet, ProductSet, SymmetricOperator, active_set, vector};
 use std::collections::BTreeMap;
 
 /// The rows of points that share nodes.
@@ -90,17 +90,9 @@ impl SharedNodes {
             };
             let (mut y, mut product) = (vec![0.0; n], vec![0.0; n]);
             // as far as rows depend on one another the result is one of many
-            let solved = active_set(
-                &problem,
-                &mut projector,
-                &mut set,
-                &mut y,
-                &mut product,
-                true,
-                &settings,
-                &mut work,
-                &mut |_, _| {},
-            );
+            let (x, ax, known) = (&mut y[..], &mut product[..], true);
+            let (set, point) = (MovingSet::fixed(&mut set), ActiveSetPoint { x, ax, known });
+            let solved = active_set(&problem, &mut projector, set, point, &settings, &mut work);
             if solved.is_err() {
                 return;
             }

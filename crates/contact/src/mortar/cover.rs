@@ -6,7 +6,7 @@
 //! A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34, 2012). On quadratic facets it is half the sum
 //! of that and of the shape function of the corner; edges that are bent in the plane, as at the rim of a disc, count.
 
-use crate::tolerances::{BENT_STEPS, COVERED, FLAT};
+use crate::tolerances::{BENT_STEPS, COVERED, NO_EXTENT};
 use signorini_fem_mesh::internal::{facet_shape, triangle};
 
 type Point = [f64; 2];
@@ -22,6 +22,28 @@ pub(super) struct Laid {
     pub(super) bend: Option<[Point; 3]>,
     /// Where a displacement is to be taken from its tetrahedron to the facet, the way there.
     pub(super) way: Option<Way>,
+}
+
+impl Laid {
+    /// Nodes whose displacements count: its own, corners first, then those behind it.
+    fn all_nodes(&self) -> impl Iterator<Item = u32> {
+        let behind = if self.mids.is_some() { 4 } else { 1 };
+        let others = self
+            .way
+            .into_iter()
+            .flat_map(move |way| way.nodes.into_iter().take(behind));
+        let mids = self.mids.into_iter().flatten();
+        self.nodes.into_iter().chain(mids).chain(others)
+    }
+
+    /// Barycentric coordinates of a point, and the shape functions of its own nodes there.
+    fn shape(&self, p: Point) -> ([f64; 3], [f64; 6]) {
+        let l = place(&self.corners, self.bend.as_ref(), p);
+        match self.mids {
+            Some(_) => (l, facet_shape(&l)),
+            None => (l, [l[0], l[1], l[2], 0.0, 0.0, 0.0]),
+        }
+    }
 }
 
 /// The way from a triangle that is not in the plane of the facet to the facet, and what a displacement changes on it: as in
@@ -40,7 +62,7 @@ pub(super) struct Way {
 impl Way {
     /// The shape functions of the triangle and of the other nodes of the tetrahedron at barycentric coordinates, where
     /// the facet is `own` over its plane; and the way, m.
-    fn shape<const N: usize, const M: usize>(&self, l: &[f64; 3], plain: &[f64; N], own: f64) -> ([f64; M], f64) {
+    fn shape(&self, l: &[f64; 3], plain: &[f64; 6], own: f64) -> ([f64; 10], f64) {
         let height: f64 = plain.iter().zip(&self.heights).map(|(n, h)| n * h).sum();
         let far = height - own;
         let slope = |k: usize| (0..3).map(|c| l[c] * self.slopes[c][k]).sum::<f64>();
@@ -114,39 +136,42 @@ impl Piece {
         [0, 1].map(|c| self.polygon.iter().map(|p| p[c]).sum::<f64>() / count)
     }
 
-    /// Calls `f` at the points of a rule of degree 5, with their weights, m².
-    fn integrate_fifth(&self, rule: &[([f64; 3], f64)], mut f: impl FnMut(Point, f64)) {
+    /// Calls `f` at the points of a rule for triangles, or without one of that of the middles of edges, which is exact for
+    /// squares, with their weights, m².
+    fn integrate(&self, rule: Option<&[([f64; 3], f64)]>, mut f: impl FnMut(Point, f64)) {
         let first = self.polygon[0];
         for pair in self.polygon[1..].windows(2) {
             let triangle = [first, pair[0], pair[1]];
             let whole = area(&triangle);
-            for (l, weight) in rule {
-                let point = [0, 1].map(|c| (0..3).map(|k| l[k] * triangle[k][c]).sum());
-                f(point, weight * whole);
-            }
-        }
-    }
-
-    /// Calls `f` at the points of a rule that is exact for squares, with their weights, m².
-    fn integrate(&self, mut f: impl FnMut(Point, f64)) {
-        let first = self.polygon[0];
-        for pair in self.polygon[1..].windows(2) {
-            let triangle = [first, pair[0], pair[1]];
-            let weight = area(&triangle) / 3.0;
-            for k in 0..3 {
-                f(mean(triangle[k], triangle[(k + 1) % 3]), weight);
+            match rule {
+                Some(rule) => rule.iter().for_each(|(l, weight)| {
+                    let point = [0, 1].map(|c| (0..3).map(|k| l[k] * triangle[k][c]).sum());
+                    f(point, weight * whole);
+                }),
+                None => (0..3).for_each(|k| f(mean(triangle[k], triangle[(k + 1) % 3]), whole / 3.0)),
             }
         }
     }
 }
 
-impl Cover {
-    /// The cover of a facet by pieces that do not overlap; `None` without pieces.
-    pub(super) fn new(own: &Flat, pieces: &[Piece]) -> Option<Self> {
-        let (facet, bend) = (&own.corners, own.bend.as_ref());
+/// What the multipliers of the corners take of functions on a covered part, by the moments of these.
+struct Multipliers {
+    area: f64,
+    centre: Point,
+    areas: [f64; 3],
+    /// What is projected onto linear functions and evaluated at a corner is these times the moments of a function.
+    kernel: [[f64; 3]; 3],
+    /// The same of the shape functions of a quadratic facet.
+    hats: Option<[[f64; 3]; 3]>,
+}
+
+impl Multipliers {
+    /// `None` without pieces.
+    fn new(own: &Flat, pieces: &[Piece]) -> Option<Self> {
+        let facet = &own.corners;
         let (mut area, mut first) = (0.0, [0.0; 2]);
         for piece in pieces {
-            piece.integrate(|p, w| {
+            piece.integrate(None, |p, w| {
                 area += w;
                 (0..2).for_each(|c| first[c] += w * p[c]);
             });
@@ -157,7 +182,7 @@ impl Cover {
         let centre = first.map(|f| f / area);
         let mut second = [0.0; 3];
         for piece in pieces {
-            piece.integrate(|p, w| {
+            piece.integrate(None, |p, w| {
                 let [x, y] = sub(p, centre);
                 second[0] += w * x * x;
                 second[1] += w * x * y;
@@ -165,7 +190,6 @@ impl Cover {
             });
         }
         let inverse = pseudo_inverse(second);
-        // projected onto linear functions and evaluated at a corner: these times the moments of a function
         let kernel = facet.map(|corner| {
             let [x, y] = sub(corner, centre);
             [
@@ -175,81 +199,78 @@ impl Cover {
             ]
         });
         let areas = barycentric(facet, centre).map(|l| area * l);
-        let times = |a: &[f64; 3], b: &[f64; 3]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let weights_of = |moments: &[f64; 3]| [0, 1, 2].map(|j| areas[j] * times(&kernel[j], moments));
-        let moments_at = |moments: &mut [[f64; 3]], shape: &[f64], p: Point, w: f64| {
-            let [x, y] = sub(p, centre);
-            for (moments, shape) in moments.iter_mut().zip(shape) {
-                let value = w * shape;
-                moments[0] += value;
-                moments[1] += value * x;
-                moments[2] += value * y;
-            }
-        };
-        let mut out = Self {
-            area,
-            areas,
-            weights: Vec::new(),
-            own: Vec::new(),
-            ways: [0.0; 3],
-        };
-        let mut ways = [[0.0; 3]];
-        let Some(nodes) = own.nodes else {
-            for piece in pieces {
-                let mut there = [[0.0; 3]; 4];
-                let [a, b, c] = piece.laid.nodes;
-                piece.integrate(|p, w| {
-                    let l = barycentric(&piece.laid.corners, p);
-                    let Some(way) = &piece.laid.way else {
-                        return moments_at(&mut there, &l, p, w);
-                    };
-                    let (shape, far) = way.shape::<3, 4>(&l, &l, 0.0);
-                    moments_at(&mut there, &shape, p, w);
-                    moments_at(&mut ways, &[far], p, w);
-                });
-                let behind = piece.laid.way.map(|way| way.nodes[0]);
-                for (node, moments) in [a, b, c].into_iter().chain(behind).zip(&there) {
-                    add(&mut out.weights, node, weights_of(moments));
-                }
-            }
-            out.ways = weights_of(&ways[0]);
-            return Some(out);
-        };
-        // shape functions about the centroid
-        let hats = [0, 1, 2].map(|j| {
+        let hat = |j: usize| {
             let [from, to] = [facet[(j + 1) % 3], facet[(j + 2) % 3]];
             let [x, y] = sub(to, from).map(|d| d / cross(sub(to, from), sub(facet[j], from)));
             [areas[j] / area, -y, x]
-        });
-        let weights_of = |moments: &[f64; 3]| {
-            let dual = weights_of(moments);
-            [0, 1, 2].map(|j| 0.5 * (dual[j] + times(&hats[j], moments)))
         };
-        let (rule, mut here) = (triangle(), [[0.0; 3]; 6]);
+        Some(Self {
+            area,
+            centre,
+            areas,
+            kernel,
+            hats: own.nodes.map(|_| [0, 1, 2].map(hat)),
+        })
+    }
+
+    /// Adds to the moments of functions what these values at a point are, of some weight.
+    fn add(&self, moments: &mut [[f64; 3]], values: &[f64], p: Point, w: f64) {
+        let [x, y] = sub(p, self.centre);
+        for (moments, value) in moments.iter_mut().zip(values) {
+            let value = w * value;
+            moments[0] += value;
+            moments[1] += value * x;
+            moments[2] += value * y;
+        }
+    }
+
+    /// What they take of a function with these moments.
+    fn take(&self, moments: &[f64; 3]) -> [f64; 3] {
+        let times = |a: &[f64; 3]| a.iter().zip(moments).map(|(a, b)| a * b).sum::<f64>();
+        let dual = [0, 1, 2].map(|j| self.areas[j] * times(&self.kernel[j]));
+        match &self.hats {
+            Some(hats) => [0, 1, 2].map(|j| 0.5 * (dual[j] + times(&hats[j]))),
+            None => dual,
+        }
+    }
+}
+
+impl Cover {
+    /// The cover of a facet by pieces that do not overlap; `None` without pieces.
+    pub(super) fn new(own: &Flat, pieces: &[Piece]) -> Option<Self> {
+        let multipliers = Multipliers::new(own, pieces)?;
+        let rule = own.nodes.map(|_| triangle());
+        let (mut weights, mut here, mut ways) = (Vec::new(), [[0.0; 3]; 6], [[0.0; 3]]);
         for piece in pieces {
-            let [[a, b, c], [ab, bc, ca]] = [piece.laid.nodes, piece.laid.mids?];
+            let laid = &piece.laid;
             let mut there = [[0.0; 3]; 10];
-            piece.integrate_fifth(&rule, |p, w| {
-                let shape = facet_shape(&place(facet, bend, p));
-                moments_at(&mut here, &shape, p, w);
-                let other = place(&piece.laid.corners, piece.laid.bend.as_ref(), p);
-                let plain = facet_shape(&other);
-                let Some(way) = &piece.laid.way else {
-                    return moments_at(&mut there, &plain, p, w);
+            piece.integrate(rule.as_deref(), |p, w| {
+                let mut height = 0.0;
+                if own.nodes.is_some() {
+                    let shape = facet_shape(&place(&own.corners, own.bend.as_ref(), p));
+                    multipliers.add(&mut here, &shape, p, w);
+                    height = (0..3).map(|k| shape[3 + k] * own.heights[k]).sum();
+                }
+                let (l, plain) = laid.shape(p);
+                let Some(way) = &laid.way else {
+                    return multipliers.add(&mut there, &plain, p, w);
                 };
-                let height = (0..3).map(|k| shape[3 + k] * own.heights[k]).sum();
-                let (shape, far) = way.shape::<6, 10>(&other, &plain, height);
-                moments_at(&mut there, &shape, p, w);
-                moments_at(&mut ways, &[far], p, w);
+                let (shape, far) = way.shape(&l, &plain, height);
+                multipliers.add(&mut there, &shape, p, w);
+                multipliers.add(&mut ways, &[far], p, w);
             });
-            let behind = piece.laid.way.iter().flat_map(|way| way.nodes);
-            for (node, moments) in [a, b, c, ab, bc, ca].into_iter().chain(behind).zip(&there) {
-                add(&mut out.weights, node, weights_of(moments));
+            for (node, moments) in laid.all_nodes().zip(&there) {
+                add(&mut weights, node, multipliers.take(moments));
             }
         }
-        out.own = nodes.into_iter().zip(here.iter().map(weights_of)).collect();
-        out.ways = weights_of(&ways[0]);
-        Some(out)
+        let own = own.nodes.into_iter().flatten().zip(&here);
+        Some(Self {
+            area: multipliers.area,
+            areas: multipliers.areas,
+            weights,
+            own: own.map(|(node, moments)| (node, multipliers.take(moments))).collect(),
+            ways: multipliers.take(&ways[0]),
+        })
     }
 }
 
@@ -307,7 +328,7 @@ fn place(corners: &[Point; 3], bend: Option<&[Point; 3]>, p: Point) -> [f64; 3] 
 fn pseudo_inverse([xx, xy, yy]: [f64; 3]) -> [f64; 3] {
     let (mean, half) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
     let (large, small) = (mean + half, (xx * yy - xy * xy) / (mean + half));
-    if small > FLAT * large {
+    if small > NO_EXTENT * large {
         let det = large * small;
         return [yy / det, -xy / det, xx / det];
     }

@@ -1,9 +1,12 @@
 //! The other side of each node of a surface.
 
-use super::search::{Triangle, covers, in_order};
+use super::cover::Cover;
+use super::search::{Normals, covers, in_order};
 use crate::tolerances::{COVERED, NO_WEIGHT, SAME_NORMAL};
+use crate::vec3::edge_cosine;
 use rayon::prelude::*;
-use signorini_fem_mesh::vec3::{add, dot, norm, scale};
+use signorini_fem_mesh::internal::Lists;
+use signorini_fem_mesh::vec3::{add, area_vector, scale};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use std::collections::BTreeMap;
 
@@ -42,116 +45,128 @@ pub(crate) fn mortar_nodes(
 ) -> Vec<Option<MortarNode>> {
     let triangles = in_order(mesh, surface);
     let covers = covers(mesh, &triangles, other, tied);
-    let mut around: Vec<Vec<(u32, u8)>> = vec![Vec::new(); surface.nodes().len()];
-    for (k, triangle) in triangles.iter().enumerate() {
-        for (corner, &node) in triangle.nodes.iter().enumerate() {
-            if let Some(local) = surface.local(node) {
-                around[local].push((k as u32, corner as u8));
-            }
-        }
-    }
-    let curved = triangles.par_iter().zip(&covers);
-    let curved: Vec<_> = curved
-        .map(|(triangle, cover)| cover.as_ref().and_then(|_| triangle.normals(mesh)))
-        .collect();
+    let corners: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.nodes).collect();
+    let around = Lists::by_key(mesh.points().len(), corners.as_flattened());
     // tied sides need no normal, and means of displacements have their own
     let bends = !tied && mesh.order() == 1;
     let crease = crease.to_radians().cos();
-    let of = |facets: &[(u32, u8)]| -> Vec<&Triangle> { facets.iter().map(|f| &triangles[f.0 as usize]).collect() };
     let is_tip = |node: u32| other.local(node).is_some();
-    let node = |(local, facets): (usize, &Vec<(u32, u8)>)| {
-        let own = surface.nodes()[local];
+    let node = |(local, &own): (usize, &u32)| {
         if is_tip(own) {
             return None;
         }
-        let (mut area, mut way, mut normal) = (0.0, 0.0, [0.0; 3]);
-        let mut weights: BTreeMap<u32, f64> = BTreeMap::new();
-        let mut side: BTreeMap<u32, f64> = BTreeMap::new();
-        for &(facet, corner) in facets {
-            let Some((cover, direction)) = &covers[facet as usize] else {
-                continue;
-            };
-            let corners = triangles[facet as usize].nodes;
-            let tips: Vec<usize> = (0..3).filter(|&c| is_tip(corners[c])).collect();
-            let share = |of: &[f64; 3]| {
-                let shared: f64 = tips.iter().map(|&c| of[c]).sum();
-                of[corner as usize] + shared / (3 - tips.len()) as f64
-            };
-            area += share(&cover.areas);
-            way += share(&cover.ways);
-            match &curved[facet as usize] {
-                None => normal = add(normal, scale(cover.area, *direction)),
-                // the mean that displacements have; three times, as plane facets count whole
-                Some(normals) => {
-                    for ((_, weight), n) in cover.own.iter().zip(normals) {
-                        normal = add(normal, scale(3.0 * share(weight), *n));
-                    }
-                }
-            }
-            for (node, weight) in &cover.weights {
-                *weights.entry(*node).or_insert(0.0) += share(weight);
-            }
-            for (node, weight) in &cover.own {
-                *side.entry(*node).or_insert(0.0) += share(weight);
-            }
-            if cover.own.is_empty() {
-                // dual shape functions see their own corner only
-                for (c, node) in [corner as usize].iter().chain(&tips).map(|&c| (c, corners[c])) {
-                    let mut alone = [0.0; 3];
-                    alone[c] = cover.areas[c];
-                    *side.entry(node).or_insert(0.0) += share(&alone);
-                }
+        let places = || around.of(own as usize).iter().map(|&place| place as usize);
+        let mut sums = Sums::default();
+        for (facet, corner) in places().map(|place| (place / 3, place % 3)) {
+            if let Some((cover, normals)) = &covers[facet] {
+                let tips = (0..3).filter(|&c| is_tip(corners[facet][c])).collect();
+                sums.add(&Share { corner, tips }, &corners[facet], cover, normals);
             }
         }
-        // what is on both sides does not move against itself
-        for (node, weight) in &mut side {
-            if let Some(other) = weights.remove(node) {
-                *weight -= other;
-                area -= other;
-            }
-        }
-        if area <= COVERED * surface.areas()[local] {
+        sums.cancel();
+        if sums.area <= COVERED * surface.areas()[local] {
             return None;
         }
-        let most = weights.values().fold(0.0, |m: f64, w| m.max(w.abs()));
-        let mean = |mut weights: BTreeMap<u32, f64>| {
+        let facets: Vec<&[u32; 3]> = places().map(|place| &corners[place / 3]).collect();
+        let frame = match bends && is_bent(mesh, &facets, crease) {
+            true => surface.frames()[local],
+            false => SurfaceFrame::from_normal(sums.normal)?,
+        };
+        sums.node(own, frame)
+    };
+    surface.nodes().par_iter().enumerate().map(node).collect()
+}
+
+/// The share of a corner of a facet in what the corners have: its own, and a part of what the tips hand on.
+struct Share {
+    corner: usize,
+    tips: Vec<usize>,
+}
+
+impl Share {
+    fn of(&self, values: &[f64; 3]) -> f64 {
+        let shared: f64 = self.tips.iter().map(|&c| values[c]).sum();
+        values[self.corner] + shared / (3 - self.tips.len()) as f64
+    }
+}
+
+/// The shares of a node in the covers of its facets.
+#[derive(Default)]
+struct Sums {
+    area: f64,
+    way: f64,
+    normal: [f64; 3],
+    own: BTreeMap<u32, f64>,
+    partner: BTreeMap<u32, f64>,
+}
+
+impl Sums {
+    fn add(&mut self, share: &Share, corners: &[u32; 3], cover: &Cover, normals: &Normals) {
+        self.area += share.of(&cover.areas);
+        self.way += share.of(&cover.ways);
+        match normals {
+            Normals::Plane(normal) => self.normal = add(self.normal, scale(cover.area, *normal)),
+            // the mean that displacements have; three times, as plane facets count whole
+            Normals::Curved(normals) => {
+                for ((_, weight), normal) in cover.own.iter().zip(normals) {
+                    self.normal = add(self.normal, scale(3.0 * share.of(weight), *normal));
+                }
+            }
+        }
+        for (node, weight) in &cover.weights {
+            *self.partner.entry(*node).or_insert(0.0) += share.of(weight);
+        }
+        for (node, weight) in &cover.own {
+            *self.own.entry(*node).or_insert(0.0) += share.of(weight);
+        }
+        if cover.own.is_empty() {
+            // dual shape functions see their own corner only
+            for &c in [share.corner].iter().chain(&share.tips) {
+                let mut alone = [0.0; 3];
+                alone[c] = cover.areas[c];
+                *self.own.entry(corners[c]).or_insert(0.0) += share.of(&alone);
+            }
+        }
+    }
+
+    /// What is on both sides does not move against itself.
+    fn cancel(&mut self) {
+        for (node, weight) in &mut self.own {
+            if let Some(other) = self.partner.remove(node) {
+                *weight -= other;
+                self.area -= other;
+            }
+        }
+    }
+
+    /// The means of both sides at a node; `None` where it has no weight itself.
+    fn node(self, node: u32, frame: SurfaceFrame) -> Option<MortarNode> {
+        let most = self.partner.values().fold(0.0, |m: f64, w| m.max(w.abs()));
+        let mean = |mut weights: BTreeMap<u32, f64>| -> Vec<(u32, f64)> {
             weights.retain(|_, w| w.abs() > NO_WEIGHT * most);
             let sum: f64 = weights.values().sum();
-            weights
-                .into_iter()
-                .map(|(node, w)| (node, w / sum))
-                .collect::<Vec<(u32, f64)>>()
+            weights.into_iter().map(|(node, w)| (node, w / sum)).collect()
         };
-        let (mut side, mut partner) = (mean(side), mean(weights));
-        side.sort_by_key(|n| (n.0 != own, n.0));
-        if side.first().is_none_or(|n| n.0 != own) {
-            return None;
-        }
+        let (mut own, mut partner) = (mean(self.own), mean(self.partner));
+        own.sort_by_key(|n| (n.0 != node, n.0));
         partner.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
-        Some(MortarNode {
-            own: side,
+        (own.first()?.0 == node).then_some(MortarNode {
+            own,
             partner,
-            way: way / area,
-            area,
-            frame: match bends && is_bent(mesh, &of(facets), crease) {
-                true => surface.frames()[local],
-                false => SurfaceFrame::from_normal(normal)?,
-            },
+            way: self.way / self.area,
+            area: self.area,
+            frame,
         })
-    };
-    around.par_iter().enumerate().map(node).collect()
+    }
 }
 
 /// Whether facets around a node are not in one plane, and none meets its neighbour at a crease, which is given by its
 /// cosine.
-fn is_bent(mesh: &TetMesh, facets: &[&Triangle], crease: f64) -> bool {
-    let least = facets.iter().enumerate().flat_map(|(k, first)| {
-        let neighbours = facets[..k].iter().filter(move |other| first.meets(other));
-        neighbours.map(move |other| {
-            let [v, w] = [first, other].map(|t| t.vector(mesh));
-            dot(v, w) / (norm(v) * norm(w))
-        })
-    });
-    let least = least.fold(1.0, f64::min);
+fn is_bent(mesh: &TetMesh, facets: &[&[u32; 3]], crease: f64) -> bool {
+    let vector = |facet: &[u32; 3]| area_vector(&facet.map(|n| mesh.points()[n as usize]));
+    let pairs =
+        (facets.iter().enumerate()).flat_map(|(k, first)| facets[..k].iter().map(move |other| [*first, *other]));
+    let cosines = pairs.filter_map(|pair| edge_cosine(pair, pair.map(vector)));
+    let least = cosines.fold(1.0, f64::min);
     least > crease && least < SAME_NORMAL
 }

@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
 use signorini_fem_mesh::internal::{facet_normals, shape_gradients};
-use signorini_fem_mesh::vec3::{add, area_vector, centroid, dot, norm, scale, sub};
+use signorini_fem_mesh::vec3::{add, area_vector, centroid, dot, norm, scale, sub, unit};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 
 /// Distance over the size of a facet up to which others are looked for first: gaps are mostly small.
@@ -30,25 +30,16 @@ impl Triangle {
         self.nodes.map(|n| mesh.points()[n as usize])
     }
 
-    /// Outward, of the length of its area between its corners.
-    pub(super) fn vector(&self, mesh: &TetMesh) -> [f64; 3] {
-        area_vector(&self.corners(mesh))
-    }
-
-    /// Whether it shares an edge with another one.
-    pub(super) fn meets(&self, other: &Self) -> bool {
-        self.nodes.iter().filter(|n| other.nodes.contains(n)).count() == 2
-    }
-
     /// All nodes in a mesh of order 2.
     fn quadratic(&self) -> Option<[u32; 6]> {
         let ([a, b, c], [ab, bc, ca]) = (self.nodes, self.mids?);
         Some([a, b, c, ab, bc, ca])
     }
 
-    /// Its normals at all nodes in a mesh of order 2; `None` if it is plane.
-    pub(super) fn normals(&self, mesh: &TetMesh) -> Option<[[f64; 3]; 6]> {
-        facet_normals(&self.quadratic()?.map(|n| mesh.points()[n as usize]))
+    fn normals(&self, mesh: &TetMesh, plane: &Plane) -> Normals {
+        let places = self.quadratic().map(|nodes| nodes.map(|n| mesh.points()[n as usize]));
+        let curved = places.and_then(|places| facet_normals(&places));
+        curved.map_or(Normals::Plane(plane.frame.normal), Normals::Curved)
     }
 
     /// Itself in its own plane.
@@ -147,6 +138,13 @@ struct Plane {
     size: f64,
 }
 
+/// The normal of a plane facet, or those of a curved one at all its nodes.
+#[derive(Debug, Clone)]
+pub(super) enum Normals {
+    Plane([f64; 3]),
+    Curved([[f64; 3]; 6]),
+}
+
 /// The cover of each facet of a surface, by the nodes of the other one; the normals of the facets beside it.
 ///
 /// What is farther away than four times the largest distance found anywhere is not looked for, unless nothing is found.
@@ -156,15 +154,15 @@ pub(super) fn covers(
     triangles: &[Triangle],
     other: &Surface,
     tied: bool,
-) -> Vec<Option<(Cover, [f64; 3])>> {
+) -> Vec<Option<(Cover, Normals)>> {
     let other = OtherSide::new(mesh, other);
     let planes: Vec<Option<Plane>> = triangles.iter().map(|t| Plane::new(&t.corners(mesh))).collect();
     let size = planes.iter().flatten().map(|p| p.size).fold(0.0, f64::max);
     let most = other.farthest(planes.iter().flatten());
-    let mut out: Vec<Option<(Cover, [f64; 3])>> = vec![None; planes.len()];
+    let mut out: Vec<Option<(Cover, Normals)>> = vec![None; planes.len()];
     let mut reach = NEAR * size;
     loop {
-        let found: Vec<(usize, Option<Cover>, f64)> = (0..planes.len())
+        let found: Vec<_> = (0..planes.len())
             .into_par_iter()
             .filter(|&k| out[k].is_none())
             .filter_map(|k| {
@@ -175,13 +173,14 @@ pub(super) fn covers(
                 let pieces = other.pieces(mesh, (plane, tied.then_some(&own)), reaches);
                 let farthest = pieces.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
                 let pieces: Vec<Piece> = pieces.into_iter().map(|p| p.0).collect();
-                Some((k, Cover::new(&own, &pieces), farthest))
+                let cover = Cover::new(&own, &pieces);
+                Some((k, cover.map(|c| (c, triangles[k].normals(mesh, plane))), farthest))
             })
             .collect();
         let mut farthest = None::<f64>;
         for (k, cover, distance) in found {
-            if let (Some(cover), Some(plane)) = (cover, &planes[k]) {
-                out[k] = Some((cover, plane.frame.normal));
+            if cover.is_some() {
+                out[k] = cover;
                 farthest = Some(farthest.map_or(distance, |f| f.max(distance)));
             }
         }
@@ -234,13 +233,7 @@ impl OtherSide {
         let boxes = boxes.map(|(c, k)| GeomWithData::new(Rectangle::from_aabb(AABB::from_points(c)), k));
         Self {
             tree: RTree::bulk_load(boxes.collect()),
-            normals: corners
-                .iter()
-                .map(|c| {
-                    let vector = area_vector(c);
-                    scale(norm(vector).recip(), vector)
-                })
-                .collect(),
+            normals: corners.iter().map(|c| unit(area_vector(c))).collect(),
             corners,
             triangles,
         }

@@ -3,8 +3,8 @@
 use super::fields::LEGEND;
 use crate::error::ContactError;
 use crate::simulation::StepResult;
+use signorini_fem_mesh::internal::replace_file;
 use signorini_fem_mesh::output::OutputError;
-use signorini_fem_mesh::replace_file;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 

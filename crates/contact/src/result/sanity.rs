@@ -9,7 +9,9 @@ use crate::model::Model;
 use crate::report::Warning;
 use crate::scene::ContactNormal;
 use crate::step::StepProblem;
-use crate::tolerances::{COARSE_MESH, LARGE_DISPLACEMENT, LARGE_STRAIN, LARGE_TURN, LONG_SLIP, REST, RIGID, TURN};
+use crate::tolerances::{
+    COARSE_MESH, LARGE_DISPLACEMENT, LARGE_STRAIN, LARGE_TURN, LONG_SLIP, REST, RIGID_STRAIN, TURN,
+};
 use crate::vec3::norm;
 use nalgebra::{Matrix3, Vector3};
 use signorini_fem_mesh::recovery::DiscretisationError;
@@ -246,7 +248,7 @@ pub(crate) fn is_strained(model: &Model, lengths: &Lengths, problem: &StepProble
     let largest = u.chunks_exact(3).map(norm).fold(0.0, f64::max);
     let part = |(node, u): (usize, &[f64])| norm(u) / lengths.extents.at(node as u32);
     let part = u.chunks_exact(3).enumerate().map(part).fold(0.0, f64::max);
-    let strained = |strains: Vec<[f64; 6]>| strains.iter().any(|e| size(e) > RIGID * part);
+    let strained = |strains: Vec<[f64; 6]>| strains.iter().any(|e| size(e) > RIGID_STRAIN * part);
     largest > REST * before && fields::strains(&model.scene.mesh, &u).is_ok_and(strained)
 }
 

@@ -3,7 +3,7 @@
 use crate::model::Model;
 use crate::state::Peak;
 use crate::step::StepProblem;
-use crate::tolerances::{REST, ROUNDED, SMALL_PART};
+use crate::tolerances::{FORCE_ROUNDING, REST, SMALL_FORCE};
 use signorini_qp::vector;
 use signorini_tfeti::internal::RIGID;
 
@@ -104,13 +104,13 @@ pub(super) fn sizes(m: &Measured<'_>) -> Vec<Sizes> {
         own.displacement = own.displacement.max(REST * peak.displacement);
         // likewise where no force acts, or next to none on the contact surface
         // and where displacements leave nothing of a force but rounding errors
-        let rounding = ROUNDED * own.stiff.sqrt();
+        let rounding = FORCE_ROUNDING * own.stiff.sqrt();
         let outer = own.forces.sqrt().max(REST * peak.multipliers).max(rounding);
         own.contact_force = own
             .contact_force
             .max(REST * peak.force)
             .max(rounding)
-            .max(SMALL_PART * outer);
+            .max(SMALL_FORCE * outer);
         own.forces = outer.hypot(inner[body].sqrt());
     }
     out

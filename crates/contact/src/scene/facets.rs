@@ -7,7 +7,7 @@
 use crate::error::ContactError;
 use crate::tolerances::{RIM, SAME_NORMAL};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
-use signorini_fem_mesh::vec3::{add, cross, dot, is_finite, norm, scale, sub};
+use signorini_fem_mesh::vec3::{add, area_vector, cross, dot, is_finite, norm, scale, sub, unit};
 use std::collections::{HashMap, HashSet};
 
 /// A triangulated surface in a tree.
@@ -85,8 +85,7 @@ impl Facets {
             if !corners.iter().all(|c| is_finite(*c)) {
                 return Err(wrong(k, "has a corner that is not finite"));
             }
-            let area = cross(sub(corners[1], corners[0]), sub(corners[2], corners[0]));
-            let normal = scale(1.0 / norm(area), area);
+            let normal = unit(area_vector(&corners));
             if !is_finite(normal) {
                 return Err(wrong(k, "has no area"));
             }
@@ -180,7 +179,7 @@ impl Facets {
         let wanted = scale(-1.0, direction);
         let mut best: Option<([f64; 3], f64)> = None;
         let mut consider = |vector: [f64; 3]| {
-            let unit = scale(1.0 / norm(vector), vector);
+            let unit = unit(vector);
             let cosine = dot(unit, wanted);
             if cosine.is_finite() && best.is_none_or(|b| cosine > b.1) {
                 best = Some((unit, cosine));
@@ -365,7 +364,6 @@ mod tests {
     #[test]
     fn on_edges_and_corners_the_gradient_may_be_chosen() {
         let cube = cube();
-        let slant = |v: [f64; 3]| scale(1.0 / norm(v), v);
         for (place, wanted, found) in [
             // flush with a face, over the edge, beyond what the faces span, and in their plane
             ([2.0, 1.0, 2.0], [0.0, 0.0, 1.0], [0.0, 0.0, 1.0]),
@@ -376,9 +374,9 @@ mod tests {
             ([2.0, 2.0, 2.0], [1.0, 2.0, 3.0], [1.0, 2.0, 3.0]),
             ([2.0, 2.0, 2.0], [1.0, -2.0, 3.0], [1.0, 0.0, 3.0]),
         ] {
-            let (distance, gradient) = cube.distance(place, 1.0, Some(scale(-1.0, slant(wanted))));
+            let (distance, gradient) = cube.distance(place, 1.0, Some(scale(-1.0, unit(wanted))));
             assert_eq!(distance, 0.0);
-            assert!(norm(sub(gradient, slant(found))) < 1e-14, "{wanted:?}: {gradient:?}");
+            assert!(norm(sub(gradient, unit(found))) < 1e-14, "{wanted:?}: {gradient:?}");
         }
     }
 

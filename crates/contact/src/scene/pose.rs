@@ -1,7 +1,7 @@
 //! How an obstacle moves: it is displaced, and turns about an axis that goes along.
 
 use signorini_fem_mesh::History;
-use signorini_fem_mesh::vec3::{add, cross, dot, norm, scale, sub};
+use signorini_fem_mesh::vec3::{add, cross, dot, scale, sub, unit};
 
 /// A turn of an obstacle about an axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,7 +53,7 @@ impl Pose {
     /// The poses of an obstacle that has displacements and angles (rad) at a sequence of times. Between two of them the
     /// displacement is the mean of both.
     pub(super) fn turning(rotation: &Rotation, ways: impl Iterator<Item = ([f64; 3], f64)>) -> Vec<Self> {
-        let axis = scale(1.0 / norm(rotation.axis), rotation.axis);
+        let axis = unit(rotation.axis);
         let (mut before, mut swept) = (([0.0; 3], 0.0), [0.0; 3]);
         let pose = |(shift, angle)| {
             swept = add(swept, scale(0.5 * (angle - before.1), add(shift, before.0)));
@@ -140,6 +140,7 @@ impl Pose {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use signorini_fem_mesh::vec3::norm;
 
     /// A wheel that rolls: where it touches the ground nothing slides, and its hub returns to the same hub.
     #[test]

@@ -20,9 +20,9 @@ use crate::tolerances::{
     CONTRADICTION, EASY, EXPLICIT_PRODUCTS, LINEAR_SLACK, LITTLE, SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS,
 };
 use signorini_fem_mesh::decomposition::is_strongly_graded;
-use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
+use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::{
-    ActiveSetSettings, EqualityProjector, ProductSet, QpError, Status, SymmetricOperator, active_set, vector,
+    ActiveSetSettings, EqualityProjector, MovingSet, ProductSet, QpError, Status, SymmetricOperator, active_set, vector,
 };
 use signorini_tfeti::internal::SystemPart;
 use signorini_tfeti::{ActiveSetProjector, DualOperator};
@@ -285,6 +285,7 @@ impl ActiveSetSolver {
                 written = problem.write_slip_bounds(model, x, set);
                 updates += 1;
             }
+            coulomb
         };
         let mut turns = 0;
         let status = loop {
@@ -293,17 +294,9 @@ impl ActiveSetSolver {
                 Some([x, ax]) => (x, ax),
                 None => (&mut iterate.lambda, &mut iterate.f_lambda),
             };
-            let outcome = active_set(
-                &dual,
-                &mut self.space,
-                &mut self.set,
-                x,
-                ax,
-                iterate.known,
-                &settings,
-                &mut self.work,
-                &mut hook,
-            );
+            let (set, known) = (MovingSet::new(&mut self.set, &mut hook), iterate.known);
+            let point = ActiveSetPoint { x, ax, known };
+            let outcome = active_set(&dual, &mut self.space, set, point, &settings, &mut self.work);
             if let (Some(part), Some([x, ax])) = (part, &own) {
                 part.complete(x, &mut iterate.lambda);
                 part.complete(ax, &mut iterate.f_lambda);

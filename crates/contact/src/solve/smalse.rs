@@ -9,11 +9,15 @@ use crate::report::StepReport;
 use crate::scene::Friction;
 use crate::settings::{InnerAccuracy, Method, Settings, paper_smalse};
 use crate::status::StepStatus;
-use crate::tolerances::{BALANCED, BALANCING, INNER_FACTOR, INNER_LOOSEST, INNER_STALL, NEAR_BALANCE, SMALSE_SAFETY};
+use crate::tolerances::{
+    BALANCING, IMBALANCE_FALLS, INNER_FACTOR, INNER_LOOSEST, INNER_STALL, NEAR_BALANCE, SMALSE_SAFETY,
+};
 use signorini_qp::internal::Contraction;
 use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
-use signorini_qp::{ProductSet, Projected, Segment, SmalseSettings, Status, norm_estimate, smalse, vector};
+use signorini_qp::{
+    MovingSet, ProductSet, Projected, QuadraticCost, Segment, SmalseSettings, Status, norm_estimate, smalse, vector,
+};
 use signorini_tfeti::{DualOperator, OrthonormalCoarse};
 
 /// How often a step may tighten the inner tolerance tenfold.
@@ -102,7 +106,7 @@ impl SmalseSolver {
             if now <= NEAR_BALANCE * size {
                 // held: what is left needs longer solves
                 share *= 2;
-            } else if now > BALANCED * before[0] {
+            } else if now > IMBALANCE_FALLS * before[0] {
                 let (problem, lambda) = (task.problem, &iterate.lambda);
                 let bound = |k, point: &_| problem.slip_bound(k, point, lambda);
                 (share, stalls) = (2 * share, stalls + 1);
@@ -165,17 +169,13 @@ impl SmalseSolver {
             .with_equality(tolerance)
             .with_least(task.problem.least(task.settings.tolerance)[0])
             .limited_to(self.left);
+        let cost = QuadraticCost::new(task.model.tfeti.dual(), &task.problem.linear, self.norm);
         let report = smalse(
-            task.model.tfeti.dual(),
-            &task.problem.linear,
-            &self.rows.coarse,
-            &self.rows.rhs,
-            &mut self.set,
-            self.norm,
-            &settings,
-            hook,
+            &cost.with_equality(&self.rows.coarse, &self.rows.rhs),
+            MovingSet::new(&mut self.set, hook),
             &mut iterate.lambda,
             &mut iterate.multiplier,
+            &settings,
             &mut self.work,
         )?;
         self.left = self.left.saturating_sub(report.products.total());

@@ -2,6 +2,7 @@
 
 use super::state::State;
 use crate::error::ContactError;
+use signorini_fem_mesh::internal::replace_file;
 use std::path::Path;
 
 /// Marks the format of stored states.
@@ -70,12 +71,12 @@ impl State {
     }
 
     /// Stores the state in a file (feature `checkpoint`). The file is complete at any moment: a kill or a full disk
-    /// leaves the state that was there before ([`replace_file`](signorini_fem_mesh::replace_file)).
+    /// leaves the state that was there before.
     ///
     /// # Errors
     /// [`ContactError::CheckpointFile`] if the file system refuses.
     pub fn save(&self, path: impl AsRef<Path>) -> Result<(), ContactError> {
-        signorini_fem_mesh::replace_file(&path, &self.to_bytes()?).map_err(failed("write", path.as_ref()))
+        replace_file(&path, &self.to_bytes()?).map_err(failed("write", path.as_ref()))
     }
 
     /// Reads what [`save`](Self::save) stored (feature `checkpoint`).

@@ -4,7 +4,7 @@ use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model};
 use crate::scene::{Contact, DifferenceFormula, Increment, Pose, Scene};
 use crate::state::{Peak, State};
-use crate::tolerances::{REACHED, REST, ROUNDED, ROUNDING};
+use crate::tolerances::{FORCE_ROUNDING, REACHED, REST, ROUNDING};
 use crate::vec3::dot;
 use signorini_fem_mesh::History;
 use signorini_qp::vector;
@@ -237,7 +237,7 @@ impl StepProblem {
     /// What vanishing multipliers of a body are measured against, N: earlier ones, and the rounding errors of its
     /// motion.
     pub(crate) fn rest(&self, body: usize) -> f64 {
-        self.at_rest(body, ROUNDED, |p| p.multipliers)
+        self.at_rest(body, FORCE_ROUNDING, |p| p.multipliers)
     }
 
     fn at_rest(&self, body: usize, rounded: f64, size: fn(&Peak) -> f64) -> f64 {
@@ -250,7 +250,7 @@ impl StepProblem {
     /// those of contact.
     pub(crate) fn least(&self, tolerance: f64) -> [f64; 2] {
         let sizes: [fn(&Peak) -> f64; 2] = [|p| p.multipliers, |p| p.force];
-        let rounded = ROUNDED.max(REACHED / tolerance);
+        let rounded = FORCE_ROUNDING.max(REACHED / tolerance);
         sizes.map(|size| match self.peaks.len() {
             0 | 1 => self.at_rest(0, rounded, size),
             n => (0..n)

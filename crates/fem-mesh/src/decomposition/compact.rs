@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::mesh::{TetMesh, connected_sets};
 use crate::tables::{Lists, distinct};
-use crate::tolerances::{SETTLED, SWEEPS};
+use crate::tolerances::{MOST_SWEEPS, SWEEP_MOVES};
 use crate::vec3::{self, Vec3};
 
 use super::parts::{expect_parts, renumbered, split_by};
@@ -42,11 +42,11 @@ pub(crate) fn compact(mesh: &TetMesh, groups: &[u32], parts: &[u32]) -> Vec<u32>
     let tets = parts.len();
     let centres: Vec<Vec3> = (0..tets).map(|tet| vec3::centroid(&mesh.tet_points(tet))).collect();
     let mut parts = within_groups(groups, parts);
-    for _ in 0..SWEEPS {
+    for _ in 0..MOST_SWEEPS {
         let next = sweep(mesh, groups, &centres, &parts);
         let moved = next.iter().zip(&parts).filter(|(a, b)| a != b).count();
         parts = next;
-        if moved as f64 <= SETTLED * tets as f64 {
+        if moved as f64 <= SWEEP_MOVES * tets as f64 {
             break;
         }
     }

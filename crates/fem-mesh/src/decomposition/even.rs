@@ -5,7 +5,7 @@ use super::parts::{expect_parts, renumbered};
 use super::subdomains::DecompositionError;
 use crate::mesh::{TetMesh, connected_sets, extent};
 use crate::tables::Lists;
-use crate::tolerances::{BOX, FILLED, GRADED, LARGER, PLANE, REACH, SNAP, STRONGLY};
+use crate::tolerances::{BOX, EDGE_STEPS, FILLED, GRADED, LARGER, PLANE, SNAP, STRONGLY};
 use crate::vec3::{self, Vec3};
 
 /// How many parts [`even_parts`] makes.
@@ -134,7 +134,7 @@ impl Cutter<'_> {
             return first;
         }
         let edge = (volume / share as f64).cbrt();
-        let steps = (-REACH..=REACH).map(|k| edge * (1.0 + 0.02 * f64::from(k)));
+        let steps = (-EDGE_STEPS..=EDGE_STEPS).map(|k| edge * (1.0 + 0.02 * f64::from(k)));
         let grid = |edge: f64| lengths.map(|length| (length / edge).round().max(1.0) as usize);
         let mut counts: Vec<usize> = steps.map(|edge| grid(edge).iter().product()).collect();
         counts.retain(|&count| count != share && count <= tets.len());

@@ -11,8 +11,8 @@ use std::path::{Path, PathBuf};
 /// ```
 /// # let directory = tempfile::tempdir()?;
 /// # let path = directory.path().join("state.bin");
-/// signorini_fem_mesh::replace_file(&path, b"first")?;
-/// signorini_fem_mesh::replace_file(&path, b"second")?;
+/// signorini_fem_mesh::internal::replace_file(&path, b"first")?;
+/// signorini_fem_mesh::internal::replace_file(&path, b"second")?;
 /// assert_eq!(std::fs::read(&path)?, b"second");
 /// # Ok::<(), std::io::Error>(())
 /// ```

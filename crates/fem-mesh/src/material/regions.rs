@@ -62,6 +62,7 @@ impl Materials {
     }
 
     /// Removes and returns the eigenstrains with their factors.
+    #[doc(hidden)]
     pub fn take_eigenstrains(&mut self) -> Vec<(f64, Eigenstrain)> {
         std::mem::take(&mut self.eigenstrains)
     }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use crate::tables::DisjointSets;
-use crate::tolerances::{COINCIDENT, FLAT};
+use crate::tolerances::{COINCIDENT, FLAT_TET};
 use crate::vec3::{self, Vec3};
 
 use super::error::MeshError;
@@ -72,9 +72,9 @@ pub(super) fn shapes(points: &[Vec3], tets: &[[u32; 4]]) -> Result<(), MeshError
     let fault = tets.par_iter().enumerate().find_map_first(|(tet, &nodes)| {
         let p = nodes.map(|n| points[n as usize]);
         let flatness = flatness(&p);
-        if flatness > FLAT {
+        if flatness > FLAT_TET {
             None
-        } else if flatness < -FLAT {
+        } else if flatness < -FLAT_TET {
             let volume = vec3::tet_volume(&p);
             Some(MeshError::InvertedTet { tet, nodes, volume })
         } else {

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::quadrature;
 use crate::tables::distinct;
 use crate::tolerances::{CURVED, MID_OFF, PLANE_FACET};
-use crate::vec3::{Vec3, add, cross, norm, scale, sub, tet_volume};
+use crate::vec3::{Vec3, add, cross, norm, scale, sub, tet_volume, unit};
 
 use super::error::MeshError;
 
@@ -79,8 +79,7 @@ pub fn facet_normals(points: &[Vec3; 6]) -> Option<[Vec3; 6]> {
         } else {
             middle(FACET_EDGES[k - 3][0], FACET_EDGES[k - 3][1])
         };
-        let normal = curved_facet(points, &l).1;
-        scale(1.0 / norm(normal), normal)
+        unit(curved_facet(points, &l).1)
     });
     // not of a facet without a normal at a node
     let turned = normals[1..].iter().any(|n| norm(cross(*n, normals[0])) > PLANE_FACET);

@@ -17,9 +17,7 @@ impl TetMesh {
         self.owners.clear();
         for facet in self.boundary_facets() {
             let p = facet.nodes.map(|n| self.points[n as usize]);
-            let area = vec3::area_vector(&p);
-            let normal = vec3::scale(1.0 / vec3::norm(area), area);
-            if let Some(tag) = tag(vec3::centroid(&p), normal) {
+            if let Some(tag) = tag(vec3::centroid(&p), vec3::unit(vec3::area_vector(&p))) {
                 self.facets.push(Facet {
                     nodes: facet.nodes,
                     tag,

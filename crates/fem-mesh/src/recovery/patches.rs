@@ -8,7 +8,7 @@ use rayon::prelude::*;
 
 use crate::mesh::TetMesh;
 use crate::tables::{Lists, distinct};
-use crate::tolerances::{PIVOT, SMALL_PATCH};
+use crate::tolerances::{FIT_PIVOT, SMALL_PATCH};
 use crate::vec3::{centroid, sub};
 
 use super::quadratic::Fit;
@@ -173,7 +173,7 @@ fn fit(cells: &[Cell], tets: &[u32], centre: [f64; 3]) -> Option<Vec<f64>> {
     }
     let factor = normal.cholesky()?;
     let pivots = factor.l_dirty().diagonal();
-    if pivots.min().powi(2) < PIVOT * pivots.max().powi(2) {
+    if pivots.min().powi(2) < FIT_PIVOT * pivots.max().powi(2) {
         return None;
     }
     let first = factor.solve(&Vector4::new(1.0, 0.0, 0.0, 0.0));

@@ -10,7 +10,7 @@ use crate::element::{Piece, over_quadratic};
 use crate::material::{Hooke, Materials};
 use crate::mesh::{EDGES, TetMesh, shape};
 use crate::quadrature::{self, FOUR_POINTS};
-use crate::tolerances::PIVOT;
+use crate::tolerances::FIT_PIVOT;
 use crate::vec3::{Vec3, sub};
 
 /// Terms of a quadratic polynomial: 1, x, y, z, then the products.
@@ -70,7 +70,7 @@ impl Fit {
         (terms..TERMS).for_each(|k| normal[(k, k)] = places.len() as f64);
         out.factor = normal.cholesky()?;
         let pivots = out.factor.l_dirty().diagonal();
-        (pivots.min().powi(2) > PIVOT * pivots.max().powi(2)).then_some(out)
+        (pivots.min().powi(2) > FIT_PIVOT * pivots.max().powi(2)).then_some(out)
     }
 
     fn polynomial(&self, place: Vec3) -> Terms {

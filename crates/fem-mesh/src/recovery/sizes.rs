@@ -18,7 +18,7 @@ use super::estimate::DiscretisationError;
 use crate::fields::{FieldError, expect_entries};
 use crate::mesh::TetMesh;
 use crate::tables::distinct;
-use crate::tolerances::{COARSENED, GROWTH, REFINED};
+use crate::tolerances::{COARSENED, EDGE_GROWTH, REFINED};
 use crate::vec3::{norm, sub};
 
 /// Volume of a regular tetrahedron over the cube of its edge, upside down: 6 times the root of 2.
@@ -96,7 +96,7 @@ fn limit_growth(mesh: &TetMesh, sizes: &mut [f64]) {
         let first = ends.partition_point(|e| e[0] < node);
         for [_, other] in ends[first..].iter().take_while(|e| e[0] == node) {
             let [a, b] = [node, *other].map(|n| mesh.points()[n as usize]);
-            let most = size + GROWTH * norm(sub(a, b));
+            let most = size + EDGE_GROWTH * norm(sub(a, b));
             if sizes[*other as usize] > most {
                 sizes[*other as usize] = most;
                 queue.push(entry(*other, most));

@@ -31,7 +31,7 @@ mod weights;
 mod workspace;
 
 pub use coupling::RadiusSlope;
-pub use problem::ActiveSetProblem;
+pub use problem::{ActiveSetPoint, ActiveSetProblem};
 pub use settings::{ActiveSetReport, ActiveSetSettings};
 pub use solver::active_set;
 pub use view::{ActiveSetPreconditioner, ActiveSetView, Freedom};

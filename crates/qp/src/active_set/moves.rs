@@ -12,7 +12,7 @@ use super::natural_map::settle_bounds;
 use super::run::{Place, Run};
 use super::view::ActiveSetPreconditioner;
 
-impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, '_, A, C, M> {
+impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, A, C, M> {
     /// Moves `x` to the next active set, with the next step of conjugate gradients, of this `length`, on top. The set
     /// follows where the active set has settled. Then set, equality and product are in order again, and a safeguard
     /// has its say.

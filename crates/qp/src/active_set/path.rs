@@ -8,14 +8,14 @@
 
 use crate::problem::{ConvexSet, EqualityProjector, SymmetricOperator};
 use crate::tolerances::{
-    AWAY, AWAY_SETS, FAR, LEAST_COMPLIANCE, LESS_COMPLIANT, MORE_COMPLIANT, PATHS, PATIENCE, START_COMPLIANCE,
+    AWAY, AWAY_SETS, LEAST_COMPLIANCE, LED_AWAY, LESS_COMPLIANT, MORE_COMPLIANT, PATHS, PATIENCE, START_COMPLIANCE,
 };
 
 use super::iterate::Lengths;
 use super::run::{Place, Progress, Run};
 use super::view::ActiveSetPreconditioner;
 
-impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, '_, A, C, M> {
+impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, A, C, M> {
     /// Whether predictions run in circles, or away from a start that told nothing, and a path is to be tried.
     pub(crate) fn wants_path(&mut self, place: &Place) -> bool {
         if self.path.first.is_none() && !place.errors.within(place.limits) {
@@ -24,7 +24,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         let over = self.path.first.map_or(0.0, |first| place.errors.all / first);
         self.path.away = if over > AWAY { self.path.away + 1 } else { 0 };
         let stays_away = self.repairs_suffice && self.path.away >= AWAY_SETS;
-        let far = self.path.begun == 0 && (over > FAR || stays_away);
+        let far = self.path.begun == 0 && (over > LED_AWAY || stays_away);
         let lost = self.path.unknown && far || self.in_circles();
         lost && self.path.begun < PATHS && self.safeguard.is_none()
     }

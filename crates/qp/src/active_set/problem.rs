@@ -1,7 +1,5 @@
 //! What the active-set method is given, besides projector and set.
 
-use crate::problem::ProductSet;
-
 /// The data of one problem.
 #[derive(Debug)]
 pub struct ActiveSetProblem<'a, A, M> {
@@ -19,5 +17,13 @@ pub struct ActiveSetProblem<'a, A, M> {
     pub rhs: &'a [f64],
 }
 
-/// Is told the iterate after each settled active set and may change bounds and radii of the set.
-pub(crate) type ActiveSetHook<'h> = dyn FnMut(&[f64], &mut ProductSet) + 'h;
+/// Where a solve starts, and then where it ends.
+#[derive(Debug)]
+pub struct ActiveSetPoint<'a> {
+    /// `x`.
+    pub x: &'a mut [f64],
+    /// On return `A x` up to 3 % of the tolerance.
+    pub ax: &'a mut [f64],
+    /// Whether `ax` holds `A x` at the start; else it is computed.
+    pub known: bool,
+}

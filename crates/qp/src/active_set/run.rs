@@ -3,7 +3,7 @@
 use std::mem::Discriminant;
 
 use crate::error::{QpError, SetError};
-use crate::problem::{ConvexSet, EqualityProjector, ProductSet, Segment, SymmetricOperator};
+use crate::problem::{ConvexSet, EqualityProjector, Hook, MovingSet, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
     BEHIND_PATH, FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NATURAL_STEP, NEGLIGIBLE, ON_PATH, PASSING_PART, PATIENCE,
@@ -15,7 +15,7 @@ use super::cg::Goal;
 use super::compliance::{Compliance, Path};
 use super::descent::DescentSafeguard;
 use super::iterate::{Iterate, Lengths, natural_map};
-use super::problem::{ActiveSetHook, ActiveSetProblem};
+use super::problem::{ActiveSetPoint, ActiveSetProblem};
 use super::settings::{ActiveSetReport, ActiveSetSettings};
 use super::view::{ActiveSetPreconditioner, ActiveSetView};
 use super::workspace::ActiveSetWorkspace;
@@ -74,12 +74,14 @@ impl Progress {
 }
 
 /// One solve: the iterate, and what it remembers of earlier active sets.
-pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
+pub(crate) struct Run<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) at: Iterate<'s, A, C, M>,
     pub(crate) settings: &'s ActiveSetSettings,
-    pub(crate) hook: &'s mut ActiveSetHook<'h>,
+    pub(crate) hook: Option<&'s mut Hook<'s, ProductSet>>,
     /// Kind and length of each segment.
     shape: Vec<(Discriminant<Segment>, usize)>,
+    /// Whether the product with the start is known.
+    pub(crate) ax_known: bool,
     /// Whether unconstrained components alone stop every mode of the equality.
     pub(crate) repairs_suffice: bool,
     forcing: f64,
@@ -106,15 +108,14 @@ pub(crate) struct Run<'s, 'h, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) safeguard: Option<DescentSafeguard>,
 }
 
-impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'s, 'h, A, C, M> {
-    pub(crate) fn new(
+impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'s, A, C, M> {
+    pub(crate) fn new<'h: 's>(
         problem: &'s ActiveSetProblem<'s, A, M>,
         projector: &'s mut C,
-        set: &'s mut ProductSet,
-        (x, ax): (&'s mut [f64], &'s mut [f64]),
+        MovingSet { set, hook }: MovingSet<'h, ProductSet>,
+        ActiveSetPoint { x, ax, known }: ActiveSetPoint<'s>,
         settings: &'s ActiveSetSettings,
         work: &'s mut ActiveSetWorkspace<A, M>,
-        hook: &'s mut ActiveSetHook<'h>,
     ) -> Self {
         let constrained = set.constrained();
         work.resize(constrained);
@@ -133,9 +134,10 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
         };
         Self {
             shape: set.shape().collect(),
+            ax_known: known,
             repairs_suffice: projector.loose().is_empty(),
             settings,
-            hook,
+            hook: hook.map(|hook| hook as _),
             forcing: settings.forcing,
             reach,
             unloaded,
@@ -449,7 +451,9 @@ impl<'s, 'h, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditio
     /// Calls the hook, which may change the data of segments but not the segments.
     pub(crate) fn follow(&mut self) -> Result<(), QpError> {
         let at = &mut self.at;
-        (self.hook)(at.x, at.set);
+        if let Some(hook) = &mut self.hook {
+            hook(at.x, at.set);
+        }
         at.report.hook_calls += 1;
         at.set.validate()?;
         if at.set.shape().eq(self.shape.iter().copied()) {

@@ -49,12 +49,12 @@ pub struct ActiveSetReport {
     pub preconditionings: usize,
     /// Factorisations of `G W Gᵀ`.
     pub factorisations: usize,
-    /// Calls of the hook.
+    /// How often the set may have moved.
     pub hook_calls: usize,
     /// Last estimated error of `x`, relative to the norm of `x`.
     pub error: f64,
     /// Last estimated error of the constrained components, relative to their norm.
-    pub constrained_error: f64,
+    pub(crate) constrained_error: f64,
 }
 
 impl ActiveSetReport {

@@ -24,20 +24,19 @@
 //! | `constrained` | components up to the last constrained one; only these differ on the set |
 
 use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
-use crate::problem::{ConvexSet, EqualityProjector, ProductSet, SymmetricOperator};
+use crate::problem::{ConvexSet, EqualityProjector, MovingSet, ProductSet, SymmetricOperator};
 use crate::report::Status;
 
-use super::problem::{ActiveSetHook, ActiveSetProblem};
+use super::problem::{ActiveSetPoint, ActiveSetProblem};
 use super::run::Run;
 use super::settings::{ActiveSetReport, ActiveSetSettings};
 use super::view::ActiveSetPreconditioner;
 use super::workspace::ActiveSetWorkspace;
 
-/// Solves the problem from the start `x`.
+/// Solves the problem from the start `point`, which becomes the solution.
 ///
-/// `ax` holds `A x` if `ax_known`, else it is computed. On return it is `A x` up to 3 % of the tolerance, and
-/// [`ActiveSetWorkspace::residual`] holds `P_Wᵀ (A x - b)`. `hook` couples the set to the solution (Coulomb
-/// friction); pass `&mut |_, _| {}` for a fixed set.
+/// On return [`ActiveSetWorkspace::residual`] holds `P_Wᵀ (A x - b)`. The set may move after each settled active set,
+/// whatever its hook answers.
 ///
 /// # Errors
 /// [`QpError`] for wrong lengths, settings or sets, for NaN, for an indefinite operator, and
@@ -45,33 +44,29 @@ use super::workspace::ActiveSetWorkspace;
 pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
     problem: &ActiveSetProblem<'_, A, M>,
     projector: &mut C,
-    set: &mut ProductSet,
-    x: &mut [f64],
-    ax: &mut [f64],
-    ax_known: bool,
+    set: MovingSet<'_, ProductSet>,
+    point: ActiveSetPoint<'_>,
     settings: &ActiveSetSettings,
     work: &mut ActiveSetWorkspace<A, M>,
-    hook: &mut ActiveSetHook<'_>,
 ) -> Result<ActiveSetReport, QpError> {
     settings.validate()?;
-    check(problem, projector, set, (x, ax), work)?;
-    let mut run = Run::new(problem, projector, set, (x, ax), settings, work, hook);
-    let status = solve(&mut run, ax_known)?;
+    check(problem, projector, set.set, &point, work)?;
+    let mut run = Run::new(problem, projector, set, point, settings, work);
+    let status = solve(&mut run)?;
     Ok(run.finish(status))
 }
 
 /// From the start to a solution, or to where the run gives up.
 pub(super) fn solve<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
-    run: &mut Run<'_, '_, A, C, M>,
-    ax_known: bool,
+    run: &mut Run<'_, A, C, M>,
 ) -> Result<Status, QpError> {
-    run.start(ax_known)?;
+    run.start()?;
     go_on(run)
 }
 
 /// From one active set to the next, likewise.
 pub(super) fn go_on<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
-    run: &mut Run<'_, '_, A, C, M>,
+    run: &mut Run<'_, A, C, M>,
 ) -> Result<Status, QpError> {
     loop {
         if run.wants_trial() && run.try_slips()? {
@@ -128,7 +123,7 @@ fn check<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
     problem: &ActiveSetProblem<'_, A, M>,
     projector: &C,
     set: &ProductSet,
-    (x, ax): (&[f64], &[f64]),
+    ActiveSetPoint { x, ax, .. }: &ActiveSetPoint<'_>,
     work: &ActiveSetWorkspace<A, M>,
 ) -> Result<(), QpError> {
     let n = problem.operator.dim();

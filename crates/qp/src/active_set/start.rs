@@ -8,9 +8,9 @@ use crate::vector;
 use super::run::Run;
 use super::view::ActiveSetPreconditioner;
 
-impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, '_, A, C, M> {
+impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, A, C, M> {
     /// A feasible point that satisfies `G x = e`, a first active set and the product with the point.
-    pub(crate) fn start(&mut self, ax_known: bool) -> Result<(), QpError> {
+    pub(crate) fn start(&mut self) -> Result<(), QpError> {
         self.at.mark();
         let work = &mut *self.at.work;
         let partly = !work.known.is_empty();
@@ -50,7 +50,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         // from nothing there is no way yet that a step could go on
         let shares = moves && self.at.work.first_step > 0.0 && stopped && self.repairs_suffice && !self.path.unknown;
         // all of a start costs as much as its move, and rounds less
-        if !ax_known || partly && !shares {
+        if !self.ax_known || partly && !shares {
             self.at.multiply();
         } else if shares {
             self.at.ahead = self.at.moved() > 0.0;

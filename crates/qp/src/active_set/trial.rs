@@ -7,16 +7,17 @@
 //! A run whose trial fails goes on as if there had been none.
 
 use crate::error::QpError;
-use crate::problem::{EqualityProjector, Segment, SymmetricOperator};
+use crate::problem::{EqualityProjector, MovingSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{TRIAL_AGAIN, TRIAL_PART};
 
+use super::problem::ActiveSetPoint;
 use super::run::Run;
 use super::solver::solve;
 use super::view::ActiveSetPreconditioner;
 use super::workspace::ActiveSetWorkspace;
 
-impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, '_, A, C, M> {
+impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, A, C, M> {
     /// Whether this is a trial, and discs are foreseen from the solved set with their slips.
     pub(crate) fn is_slipping(&self) -> bool {
         self.is_trial && self.has_settled()
@@ -40,18 +41,16 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         let (mut set, mut x, mut ax) = (at.set.clone(), at.x.to_vec(), at.ax.to_vec());
         let mut work = ActiveSetWorkspace::new(at.problem.operator, at.problem.preconditioner);
         work.set_slopes(at.work.coupling.slopes());
-        let point = (&mut x[..], &mut ax[..]);
-        let mut trial = Run::new(
-            at.problem,
-            at.projector,
-            &mut set,
-            point,
-            &settings,
-            &mut work,
-            self.hook,
-        );
+        let hook = self.hook.as_mut().map(|hook| &mut **hook as _);
+        let moving = MovingSet { set: &mut set, hook };
+        let point = ActiveSetPoint {
+            x: &mut x,
+            ax: &mut ax,
+            known: false,
+        };
+        let mut trial = Run::new(at.problem, at.projector, moving, point, &settings, &mut work);
         trial.is_trial = true;
-        let status = match solve(&mut trial, false) {
+        let status = match solve(&mut trial) {
             // it ran away, or its sets do not hold every mode
             Err(QpError::CoarseDeficient { .. } | QpError::NotFinite { .. }) => Status::Stagnated,
             outcome => outcome?,
@@ -112,10 +111,14 @@ mod tests {
         let mut work = ActiveSetWorkspace::new(&a, &identity);
         let whole = ActiveSetSettings::default().with_tolerance(1e-12);
         let few = whole.clone().limited_to(pause);
-        let mut hook = |_: &[f64], _: &mut ProductSet| {};
-        let point = (&mut x[..], &mut ax[..]);
-        let mut run = Run::new(&problem, &mut projector, &mut set, point, &few, &mut work, &mut hook);
-        run.start(true).expect("a start");
+        let point = ActiveSetPoint {
+            x: &mut x,
+            ax: &mut ax,
+            known: true,
+        };
+        let moving = MovingSet::fixed(&mut set);
+        let mut run = Run::new(&problem, &mut projector, moving, point, &few, &mut work);
+        run.start().expect("a start");
         assert_eq!(go_on(&mut run).expect("a limit"), Status::IterationLimit);
         if tries {
             assert!(!run.try_slips().expect("a trial"));

@@ -9,7 +9,7 @@
 //! the operators and the data of the set.
 
 use crate::error::{QpError, expect_finite, expect_lengths};
-use crate::problem::{DenseEquality, Equality, ProductSet, Segment, SymmetricOperator};
+use crate::problem::{ConstrainedCost, DenseEquality, Equality, ProductSet, QuadraticCost, Segment, SymmetricOperator};
 use crate::settings::expect_setting;
 use crate::tolerances::{KKT_ON_BOUND, KKT_ON_CIRCLE};
 
@@ -24,7 +24,7 @@ pub struct Kkt {
     /// Distance of `-r` from the normal cone of the set at `x`, with
     /// components nearer to a bound than 1e-10 `|x|` counted as on it.
     pub dual: f64,
-    /// `s |x - P(x - r / s)|` with `s` the scale given: continuous in `x`, no decision about activity.
+    /// `s |x - P(x - r / s)|` with `s` the norm: continuous in `x`, no decision about activity.
     pub stationarity: f64,
     /// Size of the wrong-signed multipliers: how far components on a bound are pushed inward.
     pub sign: f64,
@@ -59,38 +59,34 @@ impl Kkt {
     }
 }
 
-/// Equality constraints for [`check`]: the matrix, its right side and the multiplier.
-#[derive(Debug, Clone, Copy)]
-pub struct EqualityPart<'a, C> {
-    /// Matrix with orthonormal rows.
-    pub c: &'a C,
-    /// Right side.
-    pub e: &'a [f64],
-    /// Multiplier of `C x = e`.
-    pub multiplier: &'a [f64],
-}
-
-/// [`check_with`] without equality constraints.
-///
-/// # Errors
-/// As [`check_with`].
-pub fn check<A: SymmetricOperator>(a: &A, b: &[f64], set: &ProductSet, x: &[f64], scale: f64) -> Result<Kkt, QpError> {
-    check_with(a, b, set, None::<EqualityPart<'_, DenseEquality>>, x, scale)
-}
-
-/// Measures how far `x` is from optimality; one product with `A`. `scale` has the units of the norm of `A`
-/// and turns gradients into steps. Allocates.
+/// Measures how far `x` is from optimality; one product with `A`. The norm of the cost turns gradients into steps.
+/// Allocates.
 ///
 /// # Errors
 /// [`QpError::Length`] for lengths that do not fit, [`QpError::Input`] for what is not finite, [`QpError::Setting`]
-/// for a scale that is not positive.
+/// for a norm that is not positive.
+pub fn check<A: SymmetricOperator>(cost: &QuadraticCost<'_, A>, set: &ProductSet, x: &[f64]) -> Result<Kkt, QpError> {
+    measure(cost, None::<(&DenseEquality, _, _)>, set, x)
+}
+
+/// The same with an equality and its `multiplier`.
+///
+/// # Errors
+/// As [`check`].
 pub fn check_with<A: SymmetricOperator, C: Equality>(
-    a: &A,
-    b: &[f64],
+    cost: &ConstrainedCost<'_, A, C>,
     set: &ProductSet,
-    equality: Option<EqualityPart<'_, C>>,
     x: &[f64],
-    scale: f64,
+    multiplier: &[f64],
+) -> Result<Kkt, QpError> {
+    measure(&cost.cost, Some((cost.c, cost.e, multiplier)), set, x)
+}
+
+fn measure<A: SymmetricOperator, C: Equality>(
+    &QuadraticCost { a, b, norm }: &QuadraticCost<'_, A>,
+    equality: Option<(&C, &[f64], &[f64])>,
+    set: &ProductSet,
+    x: &[f64],
 ) -> Result<Kkt, QpError> {
     let n = a.dim();
     expect_lengths([
@@ -100,7 +96,7 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
     ])?;
     expect_finite("the right side b", b)?;
     expect_finite("the point x", x)?;
-    expect_setting("scale", scale, "(0, inf)")?;
+    expect_setting("norm", norm, "(0, inf)")?;
     let mut r = vec![0.0; n];
     a.apply(x, &mut r, &mut a.scratch());
     let (b_norm, mut other_terms) = (root_of_squares(b), root_of_squares(&r));
@@ -109,7 +105,7 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
         r[i] -= b[i];
     }
     let mut equality_residual = 0.0;
-    if let Some(EqualityPart { c, e, multiplier }) = equality {
+    if let Some((c, e, multiplier)) = equality {
         expect_lengths([
             ("the right side e", e.len(), c.rows()),
             ("the multiplier", multiplier.len(), c.rows()),
@@ -132,7 +128,7 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
     }
     let x_norm = root_of_squares(x);
     let mut sums = Sums {
-        scale,
+        scale: norm,
         near: KKT_ON_BOUND * x_norm,
         largest: -1.0,
         ..Sums::default()
@@ -162,7 +158,7 @@ pub fn check_with<A: SymmetricOperator, C: Equality>(
     } else if other_terms > 0.0 {
         other_terms
     } else {
-        scale * infeasibility
+        norm * infeasibility
     };
     Ok(Kkt {
         infeasibility,

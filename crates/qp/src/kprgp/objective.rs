@@ -1,6 +1,6 @@
 //! The smooth cost that KPRGP minimises, as the iteration sees it: plain here, penalised in SMALSE.
 
-use crate::problem::SymmetricOperator;
+use crate::problem::{QuadraticCost, SymmetricOperator};
 use crate::vector;
 
 /// A quadratic cost with the bookkeeping that follows the iterate.
@@ -19,24 +19,22 @@ pub(crate) trait Objective {
 
 /// `1/2 x·Ax - b·x`.
 pub(crate) struct Plain<'a, A: SymmetricOperator> {
-    pub(crate) a: &'a A,
-    pub(crate) b: &'a [f64],
-    pub(crate) norm: f64,
+    pub(crate) cost: &'a QuadraticCost<'a, A>,
     pub(crate) tolerance: f64,
     pub(crate) scratch: &'a mut A::Scratch,
 }
 
 impl<A: SymmetricOperator> Objective for Plain<'_, A> {
     fn gradient(&mut self, x: &[f64], g: &mut [f64]) {
-        self.a.apply(x, g, self.scratch);
-        vector::subtract(self.b, g);
+        self.cost.a.apply(x, g, self.scratch);
+        vector::subtract(self.cost.b, g);
     }
     fn direction(&mut self, p: &[f64], ap: &mut [f64]) {
-        self.a.apply(p, ap, self.scratch);
+        self.cost.a.apply(p, ap, self.scratch);
     }
     fn moved(&mut self, _t: f64) {}
     fn norm(&self) -> f64 {
-        self.norm
+        self.cost.norm
     }
     fn tolerance(&self) -> f64 {
         self.tolerance

@@ -54,7 +54,7 @@ pub struct KprgpReport {
     /// small.
     pub halvings: usize,
     /// By how much the cost decreased since the (projected) start.
-    pub decrease: f64,
+    pub(crate) decrease: f64,
     /// Cost `1/2 x·Ax - b·x` at the end.
     pub cost: f64,
 }

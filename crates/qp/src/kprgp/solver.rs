@@ -21,7 +21,7 @@
 //! conjugate directions start again from the free gradient.
 
 use crate::error::{QpError, expect_finite, expect_lengths};
-use crate::problem::{ConvexSet, GradientNorms, SymmetricOperator};
+use crate::problem::{ConvexSet, GradientNorms, QuadraticCost, SymmetricOperator};
 use crate::report::{Products, Status, Steps};
 use crate::settings::expect_setting;
 use crate::tolerances::{
@@ -32,10 +32,9 @@ use crate::vector;
 use super::objective::{Objective, Plain};
 use super::settings::{Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, Vectors};
 
-/// Minimises `1/2 x·Ax - b·x` over `set`, starting from the projection of `x`.
+/// Minimises `cost` over `set`, starting from the projection of `x`.
 ///
-/// `norm` is an upper bound of the norm of `A` ([`norm_estimate`](crate::norm_estimate)); the
-/// fixed step is derived from it. `tolerance` is that of the projected gradient over `|b|`, or over the norm of the first
+/// `tolerance` is that of the projected gradient over `|b|`, or over the norm of the first
 /// gradient where that is zero. On return `x` is feasible, and
 /// [`KprgpWorkspace::gradient`] holds `A x - b`.
 ///
@@ -46,28 +45,28 @@ use super::settings::{Expansion, KprgpReport, KprgpSettings, KprgpWorkspace, Vec
 ///
 /// # Example
 /// ```
-/// use signorini_qp::{DenseOperator, KprgpSettings, ProductSet, Segment, kprgp};
+/// use signorini_qp::{DenseOperator, KprgpSettings, ProductSet, QuadraticCost, Segment, kprgp};
 /// use signorini_qp::kprgp::KprgpWorkspace;
 ///
 /// let a = DenseOperator::new(2, vec![2.0, -1.0, -1.0, 2.0])?;
 /// let set = ProductSet::new(vec![Segment::lower(vec![0.0, 0.0])])?;
 /// let mut x = [0.0, 0.0];
 /// let mut work = KprgpWorkspace::new(&a);
-/// let report = kprgp(&a, &[1.0, -3.0], &set, 3.0, 1e-10, &KprgpSettings::default(), &mut x, &mut work)?;
+/// let cost = QuadraticCost::new(&a, &[1.0, -3.0], 3.0);
+/// let report = kprgp(&cost, &set, 1e-10, &KprgpSettings::default(), &mut x, &mut work)?;
 /// assert!(report.status.converged());
 /// assert!((x[0] - 0.5).abs() < 1e-9 && x[1] == 0.0);
 /// # Ok::<(), signorini_qp::QpError>(())
 /// ```
 pub fn kprgp<A: SymmetricOperator, S: ConvexSet + ?Sized>(
-    a: &A,
-    b: &[f64],
+    cost: &QuadraticCost<'_, A>,
     set: &S,
-    norm: f64,
     tolerance: f64,
     settings: &KprgpSettings,
     x: &mut [f64],
     work: &mut KprgpWorkspace<A>,
 ) -> Result<KprgpReport, QpError> {
+    let &QuadraticCost { a, b, norm } = cost;
     let n = a.dim();
     settings.validate()?;
     set.validate()?;
@@ -82,9 +81,7 @@ pub fn kprgp<A: SymmetricOperator, S: ConvexSet + ?Sized>(
     expect_finite("the right side b", b)?;
     expect_finite("the start x", x)?;
     let mut objective = Plain {
-        a,
-        b,
-        norm,
+        cost,
         tolerance: 0.0,
         scratch: &mut work.scratch,
     };

@@ -1,7 +1,7 @@
 //! SMALSE: minimise `1/2 x·Ax - b·x` over a separable convex set with `C x = e`. Algorithm 4.1 of the paper.
 //!
 //! `solver` has the outer Steps 1 to 4, `penalised` the augmented Lagrangian that KPRGP minimises in Step 1,
-//! `settings` the settings, hook, report and work memory.
+//! `settings` the settings, report and work memory.
 //!
 //! Uses: `kprgp`, `problem`, `report`, `vector`, `settings`, `error`, `tolerances`. In: operator, equality with
 //! orthonormal rows, set, load, norm. Out: the minimiser and the multiplier of the equality, a report.

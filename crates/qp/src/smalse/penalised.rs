@@ -17,7 +17,7 @@
 //! | `eps_1` | `floor` | no less than this once `|Cx - e|` is within `equality_tolerance` |
 
 use crate::kprgp::Objective;
-use crate::problem::{Equality, SymmetricOperator};
+use crate::problem::{Equality, QuadraticCost, SymmetricOperator};
 use crate::vector;
 
 /// Vectors and numbers of the penalised cost that live in the workspace.
@@ -47,12 +47,10 @@ impl State {
 }
 
 pub(crate) struct Penalised<'a, A: SymmetricOperator, C: Equality> {
-    pub(crate) a: &'a A,
+    pub(crate) cost: &'a QuadraticCost<'a, A>,
     pub(crate) c: &'a C,
-    pub(crate) b: &'a [f64],
     pub(crate) e: &'a [f64],
     pub(crate) beta: &'a mut [f64],
-    pub(crate) norm: f64,
     pub(crate) rho: f64,
     pub(crate) precision: f64,
     pub(crate) cap: f64,
@@ -95,8 +93,8 @@ impl<A: SymmetricOperator, C: Equality> Objective for Penalised<'_, A, C> {
         vector::subtract(self.e, cx);
         self.c.apply_transpose(cx, y, self.c_scratch);
         vector::xpby(x, -1.0, y);
-        self.a.apply(y, g, self.a_scratch);
-        vector::subtract(self.b, g);
+        self.cost.a.apply(y, g, self.a_scratch);
+        vector::subtract(self.cost.b, g);
         self.c.apply(g, cr, self.c_scratch);
         vector::copy(self.beta, z);
         vector::axpy(self.rho, cx, z);
@@ -111,7 +109,7 @@ impl<A: SymmetricOperator, C: Equality> Objective for Penalised<'_, A, C> {
         self.c.apply(p, cp, self.c_scratch);
         self.c.apply_transpose(cp, y, self.c_scratch);
         vector::xpby(p, -1.0, y);
-        self.a.apply(y, ap, self.a_scratch);
+        self.cost.a.apply(y, ap, self.a_scratch);
         self.c.apply(ap, crp, self.c_scratch);
         vector::copy(crp, z);
         vector::axpby(self.rho, cp, -1.0, z);
@@ -126,7 +124,7 @@ impl<A: SymmetricOperator, C: Equality> Objective for Penalised<'_, A, C> {
     }
 
     fn norm(&self) -> f64 {
-        self.norm.max(self.rho)
+        self.cost.norm.max(self.rho)
     }
 
     fn tolerance(&self) -> f64 {

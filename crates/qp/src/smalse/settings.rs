@@ -1,4 +1,4 @@
-//! Settings, hook, report and work memory of [`smalse`](crate::smalse()).
+//! Settings, report and work memory of [`smalse`](crate::smalse()).
 
 use crate::error::QpError;
 use crate::kprgp::{KprgpSettings, Vectors};
@@ -45,10 +45,6 @@ impl SmalseSettings {
         self
     }
 }
-
-/// Is told the iterate, feasible for the set as it is, after Step 1 of every outer step, and may change the set;
-/// whether it did anything that matters. If it did, `x` is projected on the set again and the solve goes on.
-pub(crate) type OuterHook<'h, S> = dyn FnMut(&[f64], &mut S) -> bool + 'h;
 
 /// Result of [`smalse`](crate::smalse()).
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -21,22 +21,21 @@
 
 use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
 use crate::kprgp::{KprgpReport, Objective, Vectors, drifted, iterate};
-use crate::problem::{ConvexSet, Equality, SymmetricOperator};
+use crate::problem::{ConstrainedCost, ConvexSet, Equality, Hook, MovingSet, QuadraticCost, SymmetricOperator};
 use crate::report::{Products, Status, Steps};
 use crate::settings::expect_setting;
 use crate::tolerances::{LEAST_PRECISION, LEAST_RESPONSE, PROJECTED_LOAD, STAGNATIONS};
 use crate::vector;
 
 use super::penalised::Penalised;
-use super::settings::{OuterHook, SmalseReport, SmalseSettings, SmalseWorkspace};
+use super::settings::{SmalseReport, SmalseSettings, SmalseWorkspace};
 
-/// Minimises `1/2 x·Ax - b·x` over `set` with `C x = e`, from the given `x` and `multiplier` (zeros, the
-/// last solution or an extrapolation, [`vector::extrapolate`]), which are overwritten by the result.
+/// Minimises `cost` over a set, from the given `x` and `multiplier` (zeros, the last solution or an extrapolation,
+/// [`vector::extrapolate`]), which are overwritten by the result.
 ///
-/// `norm` is an upper bound of the norm of `PAP` ([`norm_estimate`](crate::norm_estimate) of
-/// [`Projected`](crate::Projected)). `hook` is told the iterate after Step 1 of every outer step, may change the set,
-/// and says whether it did; pass `&mut |_, _| false` for none. On return `x` is feasible for the set as the hook left
-/// it, and the workspace holds the gradient, `A x - b` and the multiplier of the original problem.
+/// The set may move after Step 1 of every outer step; if it does, `x` is projected on it again and the solve goes on. On
+/// return `x` is feasible for the set as it then is, and the workspace holds the gradient, `A x - b` and the multiplier of
+/// the original problem.
 ///
 /// # Errors
 /// As for [`kprgp`](crate::kprgp()). Not reaching the tolerance is no error: see
@@ -44,7 +43,9 @@ use super::settings::{OuterHook, SmalseReport, SmalseSettings, SmalseWorkspace};
 ///
 /// # Example
 /// ```
-/// use signorini_qp::{DenseEquality, DenseOperator, ProductSet, Segment, SmalseSettings, smalse};
+/// use signorini_qp::{
+///     DenseEquality, DenseOperator, MovingSet, ProductSet, QuadraticCost, Segment, SmalseSettings, smalse,
+/// };
 /// use signorini_qp::smalse::SmalseWorkspace;
 ///
 /// // nearest point to (2, 0, 0) with x >= 0 and x0 + x1 + x2 = 1
@@ -55,27 +56,22 @@ use super::settings::{OuterHook, SmalseReport, SmalseSettings, SmalseWorkspace};
 /// let (mut x, mut multiplier) = (vec![0.0; 3], vec![0.0]);
 /// let mut work = SmalseWorkspace::new(&a, &c);
 /// let settings = SmalseSettings::default();
-/// let report = smalse(
-///     &a, &[2.0, 0.0, 0.0], &c, &e, &mut set, 1.0, &settings, &mut |_, _| false, &mut x,
-///     &mut multiplier, &mut work,
-/// )?;
+/// let cost = QuadraticCost::new(&a, &[2.0, 0.0, 0.0], 1.0).with_equality(&c, &e);
+/// let report = smalse(&cost, MovingSet::fixed(&mut set), &mut x, &mut multiplier, &settings, &mut work)?;
 /// assert!(report.status.converged());
 /// assert!((x[0] - 1.0).abs() < 1e-5 && x[1].abs() < 1e-5);
 /// # Ok::<(), signorini_qp::QpError>(())
 /// ```
 pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
-    a: &A,
-    b: &[f64],
-    c: &C,
-    e: &[f64],
-    set: &mut S,
-    norm: f64,
-    settings: &SmalseSettings,
-    hook: &mut OuterHook<'_, S>,
+    cost: &ConstrainedCost<'_, A, C>,
+    MovingSet { set, hook }: MovingSet<'_, S>,
     x: &mut [f64],
     multiplier: &mut [f64],
+    settings: &SmalseSettings,
     work: &mut SmalseWorkspace<A, C>,
 ) -> Result<SmalseReport, QpError> {
+    let &ConstrainedCost { ref cost, c, e } = cost;
+    let &QuadraticCost { a, b, norm } = cost;
     settings.validate()?;
     set.validate()?;
     expect_setting("norm", norm, "(0, inf)")?;
@@ -101,12 +97,10 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
     work.state.projections = 0;
     let mut run = Run {
         o: Penalised {
-            a,
+            cost,
             c,
-            b,
             e,
             beta: multiplier,
-            norm,
             rho: settings.penalty * norm,
             precision: settings.precision * norm,
             cap: 0.0,
@@ -119,7 +113,7 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
         least: vector::norm(e).max(settings.least),
         set,
         settings,
-        hook,
+        hook: hook.map(|hook| hook as _),
         x,
         v: &mut work.vectors,
         steps: Steps::default(),
@@ -157,11 +151,11 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
 }
 
 /// One solve.
-struct Run<'s, 'h, A: SymmetricOperator, C: Equality, S: ?Sized> {
+struct Run<'s, A: SymmetricOperator, C: Equality, S: ?Sized> {
     o: Penalised<'s, A, C>,
     set: &'s mut S,
     settings: &'s SmalseSettings,
-    hook: &'s mut OuterHook<'h, S>,
+    hook: Option<&'s mut Hook<'s, S>>,
     x: &'s mut [f64],
     v: &'s mut Vectors,
     /// What the equality is measured against if `x` is smaller: `|e|`, what rounding errors of the load make of `x`, or
@@ -187,19 +181,19 @@ enum Verdict {
     Update,
 }
 
-impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, '_, A, C, S> {
+impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, A, C, S> {
     /// Tolerances, and the first gradient.
     fn start(&mut self) -> Result<(), QpError> {
         let settings = self.settings;
         // eps_1 = eps |P h|
         let (load, rounding) = reference(&mut self.o, &mut self.v.ap, &mut self.products);
-        self.least = self.least.max(rounding / self.o.norm);
+        self.least = self.least.max(rounding / self.o.cost.norm);
         self.set.project(self.x);
         self.compute_gradient();
         self.products.initial += 1;
         // without a load the set alone pushes
         let reference = if load > 0.0 { load } else { vector::norm(&self.v.g) };
-        let reference = reference.max(LEAST_RESPONSE * self.o.norm * settings.least);
+        let reference = reference.max(LEAST_RESPONSE * self.o.cost.norm * settings.least);
         self.o.floor = settings.tolerance * reference;
         self.o.cap = settings.gradient_cap * reference;
         self.set_equality_tolerance();
@@ -232,7 +226,7 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, '_, A, C,
 
     /// The hook; if it changed the set, `x` is projected on it, and `v.p` keeps it as it was.
     fn call_hook(&mut self) -> Result<bool, QpError> {
-        let changed = (self.hook)(self.x, self.set);
+        let changed = self.hook.as_mut().is_some_and(|hook| hook(self.x, self.set));
         if changed {
             self.set.validate()?;
             expect_length("the set after the hook", self.set.dim(), self.x.len())?;
@@ -285,7 +279,7 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, '_, A, C,
     /// Step 4.
     fn shrink_precision(&mut self) {
         let o = &mut self.o;
-        o.precision = (self.settings.shrink * o.precision).max(LEAST_PRECISION * o.norm);
+        o.precision = (self.settings.shrink * o.precision).max(LEAST_PRECISION * o.cost.norm);
     }
 
     /// After a change of the set: the gradient at the projected `x`.
@@ -308,7 +302,7 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, '_, A, C,
             tolerance: self.o.floor,
             equality: self.o.equality(),
             equality_tolerance: self.o.equality_tolerance,
-            precision: self.o.precision / self.o.norm,
+            precision: self.o.precision / self.o.cost.norm,
         }
     }
 }
@@ -322,13 +316,13 @@ fn reference<A: SymmetricOperator, C: Equality>(
 ) -> (f64, f64) {
     if o.e.iter().any(|v| *v != 0.0) {
         o.c.apply_transpose(o.e, &mut o.s.y, o.c_scratch);
-        o.a.apply(&o.s.y, h, o.a_scratch);
-        vector::axpby(1.0, o.b, -1.0, h);
+        o.cost.a.apply(&o.s.y, h, o.a_scratch);
+        vector::axpby(1.0, o.cost.b, -1.0, h);
         products.reference += 1;
     } else {
-        vector::copy(o.b, h);
+        vector::copy(o.cost.b, h);
     }
-    let rounding = PROJECTED_LOAD * (vector::norm(h) + o.norm * vector::norm(o.e));
+    let rounding = PROJECTED_LOAD * (vector::norm(h) + o.cost.norm * vector::norm(o.e));
     o.c.apply(h, &mut o.s.cx, o.c_scratch);
     o.c.apply_transpose(&o.s.cx, &mut o.s.y, o.c_scratch);
     o.s.projections += 1;

@@ -2,10 +2,10 @@
 
 use crate::common::{Random, from_zero, product, spd};
 use proptest::prelude::*;
-use signorini_qp::active_set::{ActiveSetProblem, ActiveSetReport, ActiveSetWorkspace};
+use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetReport, ActiveSetWorkspace};
 use signorini_qp::problem::Identity;
 use signorini_qp::{
-    ActiveSetSettings, ConvexSet, DenseOperator, DenseProjector, ProductSet, QpError, Segment, Status,
+    ActiveSetSettings, ConvexSet, DenseOperator, DenseProjector, MovingSet, ProductSet, QpError, Segment, Status,
     SymmetricOperator, active_set, vector,
 };
 
@@ -72,7 +72,7 @@ fn solve(p: &Problem, settings: &ActiveSetSettings) -> Result<(Vec<f64>, Vec<f64
     let mut projector = DenseProjector::new(p.rows, n, p.g.clone())?;
     let (mut set, data) = (p.set.clone(), (&p.b[..], &p.e[..]));
     let start = (true, &[][..]);
-    let solved = from_zero(&p.a, &mut projector, &mut set, data, settings, start, &mut |_, _| {})?;
+    let solved = from_zero(&p.a, &mut projector, MovingSet::fixed(&mut set), data, settings, start)?;
     let force = (0..n).map(|i| solved.residual[i] - (solved.ax[i] - p.b[i]));
     Ok((solved.x, force.collect(), solved.report))
 }
@@ -132,6 +132,7 @@ fn an_interval_that_opens_is_entered() {
         if let Ok((lower, upper)) = set.bounds_mut(0) {
             (lower[0], upper[0]) = (-1.0, 1.0);
         }
+        true
     };
     let settings = ActiveSetSettings::default().with_tolerance(1e-10);
     for (pull, expected) in [(5.0, 1.0), (-5.0, -1.0), (1.0, 0.5)] {
@@ -139,11 +140,10 @@ fn an_interval_that_opens_is_entered() {
         let solved = from_zero(
             &a,
             &mut no_equality(2),
-            &mut set,
+            MovingSet::new(&mut set, &mut hook),
             data,
             &settings,
             (true, &[]),
-            &mut hook,
         );
         let solved = solved.expect("no breakdown");
         assert_eq!(solved.report.status, Status::Converged);
@@ -158,17 +158,25 @@ fn an_interval_that_opens_is_entered() {
 fn the_hook_follows_a_coupled_radius() {
     // one bound, one disc whose radius is half the bounded component: a scalar Coulomb law
     let a = DenseOperator::new(3, vec![2.0, 0.3, 0.0, 0.3, 2.0, 0.0, 0.0, 0.0, 2.0]).expect("symmetric");
-    let set = ProductSet::new(vec![Segment::upper(vec![0.0]), Segment::discs(vec![0.0])]).expect("a set");
+    let mut set = ProductSet::new(vec![Segment::upper(vec![0.0]), Segment::discs(vec![0.0])]).expect("a set");
     let mut hook = |x: &[f64], set: &mut ProductSet| {
         if let Ok(radii) = set.radii_mut(1) {
             radii[0] = -0.5 * x[0];
         }
+        true
     };
     let settings = ActiveSetSettings::default().with_tolerance(1e-10);
     let (mut projector, data) = (no_equality(3), (&[-2.0, 3.0, 0.0][..], &[][..]));
     let start = (true, &[][..]);
-    let solved =
-        from_zero(&a, &mut projector, &mut set.clone(), data, &settings, start, &mut hook).expect("no breakdown");
+    let solved = from_zero(
+        &a,
+        &mut projector,
+        MovingSet::new(&mut set, &mut hook),
+        data,
+        &settings,
+        start,
+    )
+    .expect("no breakdown");
     let (x, report) = (solved.x, solved.report);
     assert_eq!(report.status, Status::Converged);
     // sliding: 2 x0 + 0.3 x1 = -2 and x1 = -x0 / 2
@@ -225,18 +233,9 @@ fn a_scale_that_is_not_positive_is_refused() {
         let (mut x, mut ax) = ([0.0; 2], [0.0; 2]);
         let (mut projector, settings) = (no_equality(2), ActiveSetSettings::default());
         let mut work = ActiveSetWorkspace::new(&a, &identity);
-        let hook = &mut |_: &[f64], _: &mut ProductSet| {};
-        let found = active_set(
-            &problem,
-            &mut projector,
-            &mut set,
-            &mut x,
-            &mut ax,
-            true,
-            &settings,
-            &mut work,
-            hook,
-        );
+        let (x, ax, known) = (&mut x[..], &mut ax[..], true);
+        let (set, point) = (MovingSet::fixed(&mut set), ActiveSetPoint { x, ax, known });
+        let found = active_set(&problem, &mut projector, set, point, &settings, &mut work);
         let what = "the scale";
         let expected = match bad.is_finite() {
             true => QpError::Scale { entry: 1, value: bad },
@@ -274,18 +273,16 @@ fn a_start_that_left_the_point_of_its_product_costs_one() {
                 linear: &p.b,
                 rhs: &p.e,
             };
-            let hook = &mut |_: &[f64], _: &mut ProductSet| {};
-            let report = active_set(
-                &dual,
-                &mut projector,
-                &mut p.set.clone(),
-                &mut x,
-                &mut ax,
-                known,
-                &settings,
-                &mut work,
-                hook,
+            let (mut set, point) = (
+                p.set.clone(),
+                ActiveSetPoint {
+                    x: &mut x,
+                    ax: &mut ax,
+                    known,
+                },
             );
+            let set = MovingSet::fixed(&mut set);
+            let report = active_set(&dual, &mut projector, set, point, &settings, &mut work);
             let report = report.expect("no breakdown");
             assert_eq!(report.status, Status::Converged);
             assert!(vector::distance(&x, &solution) < 1e-7, "{seed}");
@@ -312,18 +309,9 @@ fn known_components_of_another_length_or_not_finite_are_refused() {
         let (mut projector, settings) = (no_equality(2), ActiveSetSettings::default());
         let mut work = ActiveSetWorkspace::new(&a, &identity);
         work.set_start(bad, 0.5);
-        let (x, ax, hook) = (&mut x, &mut ax, &mut |_: &[f64], _: &mut ProductSet| {});
-        let found = active_set(
-            &problem,
-            &mut projector,
-            &mut set,
-            x,
-            ax,
-            true,
-            &settings,
-            &mut work,
-            hook,
-        );
+        let (x, ax, known) = (&mut x[..], &mut ax[..], true);
+        let (set, point) = (MovingSet::fixed(&mut set), ActiveSetPoint { x, ax, known });
+        let found = active_set(&problem, &mut projector, set, point, &settings, &mut work);
         let found = found.expect_err("refused").to_string();
         assert!(found.contains("the known components"), "{found}");
     }
@@ -344,7 +332,7 @@ fn a_point_outside_the_set_is_no_solution() {
     let mut set = ProductSet::new(vec![Segment::bounds(vec![0.0; 2], vec![1.0; 2])]).expect("set");
     let data = (&[0.0; 2][..], &[3.0][..]);
     let (settings, start) = (ActiveSetSettings::default(), (false, &[][..]));
-    let solved = from_zero(&a, &mut projector, &mut set, data, &settings, start, &mut |_, _| {});
+    let solved = from_zero(&a, &mut projector, MovingSet::fixed(&mut set), data, &settings, start);
     assert!(solved.is_err() || solved.is_ok_and(|s| s.report.status != Status::Converged));
 }
 
@@ -358,10 +346,19 @@ fn the_set_has_followed_before_convergence() {
     let mut hook = |x: &[f64], set: &mut ProductSet| {
         let radii = [0, 1, 2].map(|k: usize| 0.3 * x[k].abs());
         *set = ProductSet::new(vec![Segment::upper(vec![0.0; 3]), Segment::discs(radii.to_vec())]).expect("set");
+        true
     };
     let (settings, start) = (ActiveSetSettings::default(), (false, &[][..]));
     let data = (&linear[..], &[][..]);
-    let solved = from_zero(&a, &mut no_equality(9), &mut set, data, &settings, start, &mut hook).expect("a report");
+    let solved = from_zero(
+        &a,
+        &mut no_equality(9),
+        MovingSet::new(&mut set, &mut hook),
+        data,
+        &settings,
+        start,
+    )
+    .expect("a report");
     let (x, report) = (solved.x, solved.report);
     assert_eq!(report.status, Status::Converged);
     assert!(report.hook_calls > 0);

@@ -4,7 +4,7 @@ use crate::common::{self, Random};
 use allocation_counter::measure;
 use signorini_qp::kprgp::{Expansion, KprgpWorkspace};
 use signorini_qp::smalse::SmalseWorkspace;
-use signorini_qp::{KprgpSettings, ProductSet, Segment, SmalseSettings, kprgp, smalse};
+use signorini_qp::{KprgpSettings, MovingSet, ProductSet, QuadraticCost, Segment, SmalseSettings, kprgp, smalse};
 
 #[test]
 fn solves_allocate_nothing() {
@@ -25,7 +25,8 @@ fn solves_allocate_nothing() {
         let mut products = 0;
         let count = measure(|| {
             let t = 1e-8;
-            let report = kprgp(&a, &b, &set, norm, t, &settings, &mut x, &mut work).expect("solve");
+            let report =
+                kprgp(&QuadraticCost::new(&a, &b, norm), &set, t, &settings, &mut x, &mut work).expect("solve");
             products = report.products.total();
         });
         assert!(products > 10);
@@ -37,21 +38,16 @@ fn solves_allocate_nothing() {
     let mut outer = 0;
     let count = measure(|| {
         let settings = SmalseSettings::default();
+        let cost = QuadraticCost::new(&a, &b, norm).with_equality(&c, &e);
         let report = smalse(
-            &a,
-            &b,
-            &c,
-            &e,
-            &mut set,
-            norm,
-            &settings,
-            &mut |_, _| false,
+            &cost,
+            MovingSet::fixed(&mut set),
             &mut x,
             &mut beta,
+            &settings,
             &mut work,
-        )
-        .expect("solve");
-        outer = report.outer;
+        );
+        outer = report.expect("solve").outer;
     });
     assert!(outer > 1);
     assert_eq!(count.count_total, 0);

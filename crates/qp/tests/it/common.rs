@@ -1,11 +1,12 @@
 //! Random problems from a fixed sequence.
-use signorini_qp::active_set::{ActiveSetProblem, ActiveSetReport, ActiveSetWorkspace, RadiusSlope};
+use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetReport, ActiveSetWorkspace, RadiusSlope};
 use signorini_qp::kprgp::KprgpWorkspace;
 use signorini_qp::problem::Identity;
 use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{
-    ActiveSetSettings, DenseEquality, DenseOperator, EqualityProjector, KprgpSettings, ProductSet, Projected, QpError,
-    Segment, SmalseSettings, Status, SymmetricOperator, active_set, kprgp, norm_estimate, smalse, vector,
+    ActiveSetSettings, DenseEquality, DenseOperator, EqualityProjector, KprgpSettings, MovingSet, ProductSet,
+    Projected, QpError, QuadraticCost, Segment, SmalseSettings, Status, SymmetricOperator, active_set, kprgp,
+    norm_estimate, smalse, vector,
 };
 
 /// Reproducible numbers.
@@ -147,7 +148,7 @@ pub(crate) fn run(
     s: &KprgpSettings,
 ) -> Result<Status, QpError> {
     let mut work = KprgpWorkspace::new(a);
-    kprgp(a, b, set, 3.0, 1e-10, s, x, &mut work).map(|r| r.status)
+    kprgp(&QuadraticCost::new(a, b, 3.0), set, 1e-10, s, x, &mut work).map(|r| r.status)
 }
 
 /// A problem with an equality.
@@ -179,7 +180,8 @@ impl Quadratic {
     ) -> (SmalseReport, Vec<f64>, Vec<f64>) {
         let Self { a, b, c, e, set, norm } = self;
         let mut work = SmalseWorkspace::new(a, c);
-        let report = smalse(a, b, c, e, set, *norm, settings, hook, x, beta, &mut work);
+        let cost = QuadraticCost::new(a, b, *norm).with_equality(c, e);
+        let report = smalse(&cost, MovingSet::new(set, hook), x, beta, settings, &mut work);
         let (residual, multiplier) = (work.residual().to_vec(), work.equality_multiplier().to_vec());
         (report.expect("solve"), residual, multiplier)
     }
@@ -197,11 +199,10 @@ pub(crate) struct Solved {
 pub(crate) fn from_zero(
     a: &DenseOperator,
     projector: &mut impl EqualityProjector,
-    set: &mut ProductSet,
+    set: MovingSet<'_, ProductSet>,
     (linear, rhs): (&[f64], &[f64]),
     settings: &ActiveSetSettings,
     (ax_known, slopes): (bool, &[RadiusSlope]),
-    hook: &mut dyn FnMut(&[f64], &mut ProductSet),
 ) -> Result<Solved, QpError> {
     let n = a.dim();
     let identity = Identity(n);
@@ -215,9 +216,12 @@ pub(crate) fn from_zero(
         rhs,
     };
     let (mut x, mut ax) = (vec![0.0; n], vec![0.0; n]);
-    let report = active_set(
-        &problem, projector, set, &mut x, &mut ax, ax_known, settings, &mut work, hook,
-    )?;
+    let point = ActiveSetPoint {
+        x: &mut x,
+        ax: &mut ax,
+        known: ax_known,
+    };
+    let report = active_set(&problem, projector, set, point, settings, &mut work)?;
     let residual = work.residual().to_vec();
     Ok(Solved {
         x,

@@ -1,9 +1,9 @@
 //! Equalities alone, by the active-set method, against the saddle point conditions.
 
 use crate::common::{self, Random, from_zero};
-use signorini_qp::active_set::{ActiveSetProblem, ActiveSetWorkspace};
+use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::problem::Diagonal;
-use signorini_qp::{ActiveSetSettings, DenseOperator, DenseProjector, ProductSet, active_set, vector};
+use signorini_qp::{ActiveSetSettings, DenseOperator, DenseProjector, MovingSet, ProductSet, active_set, vector};
 
 fn times(g: &[f64], x: &[f64]) -> Vec<f64> {
     g.chunks_exact(x.len()).map(|row| vector::dot(row, x)).collect()
@@ -33,17 +33,16 @@ fn satisfies_the_saddle_point_system_and_a_preconditioner_helps() {
         };
         let (mut x, mut ax) = (vec![0.0; n], vec![0.0; n]);
         let settings = ActiveSetSettings::default().with_tolerance(1e-9);
-        let report = active_set(
-            &problem,
-            &mut projector,
-            &mut ProductSet::free(n),
-            &mut x,
-            &mut ax,
-            false,
-            &settings,
-            &mut work,
-            &mut |_, _| {},
+        let mut set = ProductSet::free(n);
+        let (set, point) = (
+            MovingSet::fixed(&mut set),
+            ActiveSetPoint {
+                x: &mut x,
+                ax: &mut ax,
+                known: false,
+            },
         );
+        let report = active_set(&problem, &mut projector, set, point, &settings, &mut work);
         let report = report.expect("solve");
         assert!(report.status.converged());
         assert!(vector::distance(&times(&g, &x), &e) < 1e-12);
@@ -75,7 +74,7 @@ fn a_load_in_the_equality_is_solved_at_once() {
     let settings = ActiveSetSettings::default().with_tolerance(1e-12).with_error_floor(1.0);
     let (data, start) = ((&b[..], &[0.0; 6][..]), (false, &[][..]));
     let set = &mut ProductSet::free(n);
-    let solved = from_zero(&a, &mut projector, set, data, &settings, start, &mut |_, _| {}).expect("solve");
+    let solved = from_zero(&a, &mut projector, MovingSet::fixed(set), data, &settings, start).expect("solve");
     assert!(solved.report.status.converged() && solved.report.products() <= 2);
     assert!(vector::norm(&solved.x) < 1e-13);
 }

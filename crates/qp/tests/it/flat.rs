@@ -1,8 +1,8 @@
 //! Operators without curvature along some directions: what runs away along them is told as unbounded, not as solved.
 
 use signorini_qp::{
-    ActiveSetSettings, DenseEquality, DenseOperator, DenseProjector, ProductSet, QpError, Segment, SmalseSettings,
-    Status, kkt, vector,
+    ActiveSetSettings, DenseEquality, DenseOperator, DenseProjector, MovingSet, ProductSet, QpError, QuadraticCost,
+    Segment, SmalseSettings, Status, kkt, vector,
 };
 
 use crate::common::{Quadratic, Random, Solved, from_zero, product};
@@ -36,7 +36,7 @@ fn solve_on(
     let e = vec![0.0; rows];
     let (data, start) = ((b, &e[..]), (false, &[][..]));
     let settings = ActiveSetSettings::default();
-    from_zero(a, &mut projector, &mut set, data, &settings, start, &mut |_, _| {})
+    from_zero(a, &mut projector, MovingSet::fixed(&mut set), data, &settings, start)
 }
 
 #[test]
@@ -65,13 +65,17 @@ fn active_sets_tell_it_and_find_the_boundary_where_there_is_one() {
         let boxed = ProductSet::new(vec![Segment::bounds(vec![-1.0; n], vec![1.0; n])]).expect("set");
         let Solved { x, report, .. } = solve(&a, &b, boxed.clone()).expect("solve");
         assert_eq!(report.status, Status::Converged, "seed {seed}");
-        let left = kkt::check(&a, &b, &boxed, &x, 1.0).expect("check").relative();
+        let left = kkt::check(&QuadraticCost::new(&a, &b, 1.0), &boxed, &x)
+            .expect("check")
+            .relative();
         assert!(left < 1e-4, "seed {seed}: {left:e}");
         let open = ProductSet::new(vec![Segment::lower(vec![-1.0; n])]).expect("set");
         match solve(&a, &b, open.clone()) {
             Ok(Solved { x, report, .. }) => match report.status {
                 Status::Converged => {
-                    let left = kkt::check(&a, &b, &open, &x, 1.0).expect("check").relative();
+                    let left = kkt::check(&QuadraticCost::new(&a, &b, 1.0), &open, &x)
+                        .expect("check")
+                        .relative();
                     assert!(left < 1e-2, "seed {seed}: {left:e}, {x:?}");
                 }
                 Status::Stagnated | Status::IterationLimit => {}

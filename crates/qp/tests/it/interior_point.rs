@@ -5,8 +5,8 @@ use clarabel::algebra::CscMatrix;
 use clarabel::solver::{DefaultSettings, DefaultSolver, IPSolver, SolverStatus, SupportedConeT};
 use signorini_qp::kprgp::KprgpWorkspace;
 use signorini_qp::{
-    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment, SmalseSettings, kprgp,
-    vector,
+    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, QuadraticCost, Segment,
+    SmalseSettings, kprgp, vector,
 };
 
 /// Row-by-row matrix `rows x n` in compressed columns.
@@ -119,7 +119,15 @@ fn bounds_and_discs_agree_with_clarabel() {
         let mut x = vec![0.0; n];
         let mut work = KprgpWorkspace::new(&a);
         let t = 1e-10;
-        let report = kprgp(&a, &b, &set, norm, t, &KprgpSettings::default(), &mut x, &mut work).expect("solve");
+        let report = kprgp(
+            &QuadraticCost::new(&a, &b, norm),
+            &set,
+            t,
+            &KprgpSettings::default(),
+            &mut x,
+            &mut work,
+        )
+        .expect("solve");
         assert!(report.status.converged());
         let y = reference(&a, &b, &set, None);
         let gap = vector::distance(&x, &y) / vector::norm(&x).max(1.0);

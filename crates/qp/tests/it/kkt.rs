@@ -1,7 +1,7 @@
 //! The independent check measures what it says: single blocks with known distances from optimality.
 
-use signorini_qp::kkt::{EqualityPart, Kkt, check, check_with};
-use signorini_qp::{DenseEquality, DenseOperator, ProductSet, Segment};
+use signorini_qp::kkt::{Kkt, check, check_with};
+use signorini_qp::{DenseEquality, DenseOperator, ProductSet, QuadraticCost, Segment};
 
 /// Turns gradients into steps.
 const SCALE: f64 = 2.0;
@@ -15,7 +15,7 @@ fn identity(n: usize) -> DenseOperator {
 fn at(segments: Vec<Segment>, x: &[f64], r: &[f64]) -> Kkt {
     let b: Vec<f64> = x.iter().zip(r).map(|(x, r)| x - r).collect();
     let set = ProductSet::new(segments).expect("set");
-    check(&identity(x.len()), &b, &set, x, SCALE).expect("lengths")
+    check(&QuadraticCost::new(&identity(x.len()), &b, SCALE), &set, x).expect("lengths")
 }
 
 #[track_caller]
@@ -136,12 +136,9 @@ fn blocks_and_equalities_together() {
     let set = ProductSet::new(vec![Segment::Free(2)]).expect("set");
     let (e, multiplier) = ([5.0 * half], [3.0]);
     let check = |b: &[f64], x: &[f64]| {
-        let part = EqualityPart {
-            c: &c,
-            e: &e,
-            multiplier: &multiplier,
-        };
-        check_with(&identity(2), b, &set, Some(part), x, SCALE).expect("lengths")
+        let a = identity(2);
+        let cost = QuadraticCost::new(&a, b, SCALE).with_equality(&c, &e);
+        check_with(&cost, &set, x, &multiplier).expect("lengths")
     };
     let kkt = check(&[1.0, 2.0], &[1.0, 2.0]);
     near(kkt.equality, 2.0 * half, "equality");
@@ -159,11 +156,11 @@ fn blocks_and_equalities_together() {
 #[test]
 fn what_is_not_a_number_is_no_optimum() {
     let a = DenseOperator::new(1, vec![1.0]).expect("operator");
-    let set = ProductSet::free(1);
-    assert!(check(&a, &[1.0], &set, &[f64::NAN], 1.0).is_err());
-    assert!(check(&a, &[f64::INFINITY], &set, &[1.0], 1.0).is_err());
-    assert!(check(&a, &[1.0], &set, &[1.0], 0.0).is_err());
-    let mut found = check(&a, &[1.0], &set, &[1.0], 1.0).expect("figures");
+    let (set, cost) = (ProductSet::free(1), QuadraticCost::new(&a, &[1.0], 1.0));
+    assert!(check(&cost, &set, &[f64::NAN]).is_err());
+    assert!(check(&QuadraticCost::new(&a, &[f64::INFINITY], 1.0), &set, &[1.0]).is_err());
+    assert!(check(&QuadraticCost::new(&a, &[1.0], 0.0), &set, &[1.0]).is_err());
+    let mut found = check(&cost, &set, &[1.0]).expect("figures");
     assert_eq!(found.relative(), 0.0);
     found.stationarity = f64::NAN;
     assert!(found.relative().is_nan());
@@ -175,24 +172,20 @@ fn relative_figures_have_no_units() {
     let found = |unit: f64| {
         let a = DenseOperator::new(2, vec![2e9, 1e9, 1e9, 3e9]).expect("operator");
         let b = [0.0; 2];
+        let cost = QuadraticCost::new(&a, &b, 3e9);
         let at_least =
             |low: f64| ProductSet::new(vec![Segment::bounds(vec![low; 2], vec![f64::INFINITY; 2])]).expect("set");
         // no load, but pushed by a bound: 1e-3 off the bound, outside of it, and at zero
-        let away = check(&a, &b, &at_least(unit), &[1.001 * unit, unit], 3e9).expect("figures");
-        let outside = check(&a, &b, &at_least(unit), &[0.9 * unit, unit], 3e9).expect("figures");
-        let zero = check(&a, &b, &at_least(unit), &[0.0; 2], 3e9).expect("figures");
-        let right = check(&a, &b, &at_least(unit), &[unit; 2], 3e9).expect("figures");
-        let rest = check(&a, &b, &at_least(-unit), &[0.0; 2], 3e9).expect("figures");
+        let away = check(&cost, &at_least(unit), &[1.001 * unit, unit]).expect("figures");
+        let outside = check(&cost, &at_least(unit), &[0.9 * unit, unit]).expect("figures");
+        let zero = check(&cost, &at_least(unit), &[0.0; 2]).expect("figures");
+        let right = check(&cost, &at_least(unit), &[unit; 2]).expect("figures");
+        let rest = check(&cost, &at_least(-unit), &[0.0; 2]).expect("figures");
         assert_eq!((right.relative(), rest.relative()), (0.0, 0.0));
         // by an equality that the point misses
         let c = DenseEquality::orthonormal(1, 2, &[1.0, 0.0]).expect("equality");
-        let part = EqualityPart {
-            c: &c,
-            e: &[unit],
-            multiplier: &[0.0],
-        };
-        let free = ProductSet::free(2);
-        let missed = check_with(&a, &b, &free, Some(part), &[0.0; 2], 3e9).expect("figures");
+        let (e, free) = ([unit], ProductSet::free(2));
+        let missed = check_with(&cost.with_equality(&c, &e), &free, &[0.0; 2], &[0.0]).expect("figures");
         [away, outside, zero, missed].map(|k| k.relative())
     };
     let figures = found(1.0);

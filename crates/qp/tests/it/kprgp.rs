@@ -4,7 +4,9 @@ use crate::common::{self, Random, pair, run};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_qp::kprgp::{Expansion, KprgpWorkspace};
-use signorini_qp::{ConvexSet, DenseOperator, KprgpSettings, ProductSet, QpError, Segment, Status, kkt, kprgp, vector};
+use signorini_qp::{
+    ConvexSet, DenseOperator, KprgpSettings, ProductSet, QpError, QuadraticCost, Segment, Status, kkt, kprgp, vector,
+};
 
 const EXPANSIONS: [Expansion; 2] = [Expansion::FixedStep, Expansion::ProjectedCg];
 
@@ -36,10 +38,10 @@ proptest! {
             .with_expansion(EXPANSIONS[expansion])
             .with_max_products(60_000);
         let mut work = KprgpWorkspace::new(&a);
-        let report = kprgp(&a, &b, &set, s * norm, 1e-9, &settings, &mut x, &mut work)
+        let report = kprgp(&QuadraticCost::new(&a, &b, s * norm), &set, 1e-9, &settings, &mut x, &mut work)
             .expect("solve");
         prop_assert!(report.status.converged(), "{report:?} {set:?}");
-        let check = kkt::check(&a, &b, &set, &x, s * norm).expect("lengths");
+        let check = kkt::check(&QuadraticCost::new(&a, &b, s * norm), &set, &x).expect("lengths");
         prop_assert!(check.infeasibility <= 1e-15 * check.x_norm, "{check:?}");
         prop_assert!(check.stationarity <= 1.01e-9 * check.b_norm, "{check:?}");
         prop_assert!(check.dual <= 1e-6 * check.b_norm, "{check:?}");
@@ -59,9 +61,9 @@ proptest! {
         let mut work = KprgpWorkspace::new(&a);
         let settings = KprgpSettings::default();
         let t = 1e-10;
-        let report = kprgp(&a, &b, &set, norm, t, &settings, &mut x, &mut work).expect("solve");
+        let report = kprgp(&QuadraticCost::new(&a, &b, norm), &set, t, &settings, &mut x, &mut work).expect("solve");
         prop_assert!(report.status.converged(), "{report:?}");
-        prop_assert!(kkt::check(&a, &b, &set, &x, norm).expect("lengths").relative() <= 1e-9);
+        prop_assert!(kkt::check(&QuadraticCost::new(&a, &b, norm), &set, &x).expect("lengths").relative() <= 1e-9);
     }
 }
 
@@ -78,7 +80,15 @@ fn empty_and_fixed_problems_need_one_product() {
     let a = pair();
     let mut work = KprgpWorkspace::new(&a);
     let t = 1e-10;
-    let report = kprgp(&a, &[1.0, 1.0], &fixed, 3.0, t, &settings, &mut x, &mut work).expect("solve");
+    let report = kprgp(
+        &QuadraticCost::new(&a, &[1.0, 1.0], 3.0),
+        &fixed,
+        t,
+        &settings,
+        &mut x,
+        &mut work,
+    )
+    .expect("solve");
     assert_eq!(
         (report.status, report.products.total(), x),
         (Status::Converged, 1, [1.0, 2.0])
@@ -93,10 +103,8 @@ fn a_zero_right_side_and_a_solved_start_need_one_product() {
     let t = 1e-10;
     let mut x = [0.0; 2];
     let report = kprgp(
-        &a,
-        &[0.0; 2],
+        &QuadraticCost::new(&a, &[0.0; 2], 3.0),
         &ProductSet::free(2),
-        3.0,
         t,
         &settings,
         &mut x,
@@ -115,10 +123,8 @@ fn conjugate_gradients_without_constraints_end_after_n_steps() {
     let mut work = KprgpWorkspace::new(&a);
     let t = 1e-9;
     let report = kprgp(
-        &a,
-        &b,
+        &QuadraticCost::new(&a, &b, norm),
         &ProductSet::free(10),
-        norm,
         t,
         &KprgpSettings::default(),
         &mut x,
@@ -138,14 +144,22 @@ fn limits_and_rounding_are_statuses() {
     let few = KprgpSettings::default().with_max_products(7);
     let mut x = vec![0.0; 30];
     let t = 1e-9;
-    let report = kprgp(&a, &b, &set, norm, t, &few, &mut x, &mut work).expect("solve");
+    let report = kprgp(&QuadraticCost::new(&a, &b, norm), &set, t, &few, &mut x, &mut work).expect("solve");
     assert_eq!(report.status, Status::IterationLimit);
     assert!(report.products.total() <= 9 && set.violation(&x) == 0.0);
     // a tolerance below rounding
     let mut x = vec![0.0; 30];
     let tight = 1e-30;
     let settings = KprgpSettings::default();
-    let report = kprgp(&a, &b, &set, norm, tight, &settings, &mut x, &mut work).expect("solve");
+    let report = kprgp(
+        &QuadraticCost::new(&a, &b, norm),
+        &set,
+        tight,
+        &settings,
+        &mut x,
+        &mut work,
+    )
+    .expect("solve");
     assert_eq!(report.status, Status::Stagnated, "{report:?}");
     assert!(report.products.total() < 5_000, "{report:?}");
 }
@@ -162,7 +176,7 @@ fn curvature_that_underflows_is_no_descent_for_ever() {
     let mut x = [1e-150, 1e-170, 0.0];
     let t = 1e-10;
     let b = [0.0, 0.0, 1.0];
-    let report = kprgp(&a, &b, &set, 1e-9, t, &settings, &mut x, &mut work).expect("solve");
+    let report = kprgp(&QuadraticCost::new(&a, &b, 1e-9), &set, t, &settings, &mut x, &mut work).expect("solve");
     assert!(x.iter().all(|v| v.is_finite()) && set.violation(&x) == 0.0);
     assert!(!report.status.converged(), "{report:?}");
 }
@@ -221,7 +235,14 @@ fn not_a_number_is_noticed_where_it_appears() {
             let set = ProductSet::new(vec![Segment::lower(vec![-5.0, bound])]).expect("set");
             let mut work = KprgpWorkspace::new(&a);
             let t = 1e-9;
-            let result = kprgp(&a, &[1.0, -1.0], &set, 3.0, t, &settings, &mut [0.0; 2], &mut work);
+            let result = kprgp(
+                &QuadraticCost::new(&a, &[1.0, -1.0], 3.0),
+                &set,
+                t,
+                &settings,
+                &mut [0.0; 2],
+                &mut work,
+            );
             assert!(matches!(result, Err(QpError::NotFinite { .. })), "{result:?}");
         }
     }
@@ -251,9 +272,22 @@ fn a_norm_that_is_too_small_is_survived_and_reported() {
         let mut work = KprgpWorkspace::new(&a);
         let settings = KprgpSettings::default().with_expansion(Expansion::FixedStep);
         let t = 1e-8;
-        let report = kprgp(&a, &b, &set, 0.05 * norm, t, &settings, &mut x, &mut work).expect("solve");
+        let report = kprgp(
+            &QuadraticCost::new(&a, &b, 0.05 * norm),
+            &set,
+            t,
+            &settings,
+            &mut x,
+            &mut work,
+        )
+        .expect("solve");
         assert!(report.status.converged(), "{report:?}");
-        assert!(kkt::check(&a, &b, &set, &x, norm).expect("lengths").relative() <= 1e-7);
+        assert!(
+            kkt::check(&QuadraticCost::new(&a, &b, norm), &set, &x)
+                .expect("lengths")
+                .relative()
+                <= 1e-7
+        );
         halved += report.halvings;
     }
     assert!(halved > 0);

@@ -2,7 +2,9 @@
 
 use signorini_qp::kprgp::{Expansion, KprgpReport, KprgpWorkspace};
 use signorini_qp::problem::BlockState;
-use signorini_qp::{ConvexSet, KprgpSettings, ProductSet, Segment, SymmetricOperator, kkt, kprgp, vector};
+use signorini_qp::{
+    ConvexSet, KprgpSettings, ProductSet, QuadraticCost, Segment, SymmetricOperator, kkt, kprgp, vector,
+};
 use std::f64::consts::PI;
 
 const N: usize = 100;
@@ -50,7 +52,15 @@ fn solve(settings: &KprgpSettings, norm: f64, tolerance: f64) -> (KprgpReport, V
     let (b, set) = problem();
     let mut x = vec![0.0; N];
     let mut work = KprgpWorkspace::new(&DirichletString);
-    let report = kprgp(&DirichletString, &b, &set, norm, tolerance, settings, &mut x, &mut work).expect("solve");
+    let report = kprgp(
+        &QuadraticCost::new(&DirichletString, &b, norm),
+        &set,
+        tolerance,
+        settings,
+        &mut x,
+        &mut work,
+    )
+    .expect("solve");
     assert!(report.status.converged(), "{report:?}");
     assert!(report.projected_gradient <= tolerance * vector::norm(&b));
     (report, x)
@@ -131,7 +141,7 @@ fn the_standard_expansion_with_the_exact_eigenvalue() {
 fn a_tight_tolerance_is_met_on_the_true_gradient() {
     let (b, set) = problem();
     let (report, x) = solve(&KprgpSettings::default(), largest(), 1e-12);
-    let kkt = kkt::check(&DirichletString, &b, &set, &x, largest()).expect("lengths");
+    let kkt = kkt::check(&QuadraticCost::new(&DirichletString, &b, largest()), &set, &x).expect("lengths");
     assert!(kkt.stationarity <= 2e-12 * kkt.b_norm, "{kkt:?}");
     assert!((cost(&x) - OPTIMUM).abs() <= 1e-12, "{:e}", cost(&x) - OPTIMUM);
     assert!((report.cost - cost(&x)).abs() <= 1e-12);
@@ -152,7 +162,15 @@ fn units_change_nothing() {
     let mut y = vec![0.0; N];
     let mut work = KprgpWorkspace::new(&DirichletString);
     let (t, s) = (1e-5, KprgpSettings::default());
-    let report = kprgp(&DirichletString, &b, &small, largest(), t, &s, &mut y, &mut work).expect("solve");
+    let report = kprgp(
+        &QuadraticCost::new(&DirichletString, &b, largest()),
+        &small,
+        t,
+        &s,
+        &mut y,
+        &mut work,
+    )
+    .expect("solve");
     assert_eq!(report.products, reference.products);
     assert!(x.iter().zip(&y).all(|(u, v)| *u == v * unit));
 }

@@ -2,7 +2,7 @@
 
 use crate::common::{Random, from_zero};
 use signorini_qp::active_set::{ActiveSetReport, RadiusSlope};
-use signorini_qp::{ActiveSetSettings, DenseOperator, DenseProjector, ProductSet, Segment, Status, vector};
+use signorini_qp::{ActiveSetSettings, DenseOperator, DenseProjector, MovingSet, ProductSet, Segment, Status, vector};
 
 /// Normals that press, a disc each whose radius is a coefficient times its normal, and free components; `G` acts on the
 /// latter only. All discs slide.
@@ -50,10 +50,18 @@ fn sliding(seed: u64, coefficient: f64, slopes: bool, forcing: f64) -> (Vec<f64>
                 *radius = coefficient * (-x).max(0.0);
             }
         }
+        true
     };
     let settings = ActiveSetSettings::default().with_tolerance(1e-11).with_forcing(forcing);
     let (data, start) = ((&linear[..], &[0.5, -0.2][..]), (true, &slopes[..]));
-    let solved = from_zero(&a, &mut projector, &mut set, data, &settings, start, &mut hook);
+    let solved = from_zero(
+        &a,
+        &mut projector,
+        MovingSet::new(&mut set, &mut hook),
+        data,
+        &settings,
+        start,
+    );
     let solved = solved.expect("no breakdown");
     (solved.x, solved.report)
 }

@@ -3,8 +3,8 @@
 use signorini_qp::kprgp::KprgpWorkspace;
 use signorini_qp::smalse::SmalseWorkspace;
 use signorini_qp::{
-    DenseEquality, DenseOperator, KprgpSettings, ProductSet, QpError, Segment, SetError, SmalseSettings, Status, kprgp,
-    smalse,
+    DenseEquality, DenseOperator, KprgpSettings, MovingSet, ProductSet, QpError, QuadraticCost, Segment, SetError,
+    SmalseSettings, Status, kprgp, smalse,
 };
 
 use crate::common::{pair, run};
@@ -44,7 +44,14 @@ fn wrong_input_of_kprgp_is_named() {
         ));
     }
     let mut work = KprgpWorkspace::new(&a);
-    let wrong_norm = kprgp(&a, &[0.0; 2], &free, 0.0, 1e-6, &s, &mut [0.0; 2], &mut work);
+    let wrong_norm = kprgp(
+        &QuadraticCost::new(&a, &[0.0; 2], 0.0),
+        &free,
+        1e-6,
+        &s,
+        &mut [0.0; 2],
+        &mut work,
+    );
     assert!(matches!(wrong_norm, Err(QpError::Setting { name: "norm", .. })));
 }
 
@@ -56,20 +63,8 @@ fn wrong_input_of_smalse_is_named() {
     let mut work = SmalseWorkspace::new(&a, &c);
     let s = SmalseSettings::default();
     let mut go = |e: &[f64], beta: &mut [f64], s: &SmalseSettings| {
-        smalse(
-            &a,
-            &[1.0; 2],
-            &c,
-            e,
-            &mut set,
-            1.0,
-            s,
-            &mut |_, _| false,
-            &mut [0.0; 2],
-            beta,
-            &mut work,
-        )
-        .map(|r| r.status)
+        let cost = QuadraticCost::new(&a, &[1.0; 2], 1.0).with_equality(&c, e);
+        smalse(&cost, MovingSet::fixed(&mut set), &mut [0.0; 2], beta, s, &mut work).map(|r| r.status)
     };
     assert_eq!(go(&[1.0], &mut [0.0], &s), Ok(Status::Converged));
     assert!(matches!(

@@ -2,7 +2,9 @@
 
 use crate::common::{self, Random, Solved, from_zero};
 use signorini_qp::active_set::ActiveSetReport;
-use signorini_qp::{ActiveSetSettings, DenseProjector, EqualityProjector, ProductSet, QpError, Segment, vector};
+use signorini_qp::{
+    ActiveSetSettings, DenseProjector, EqualityProjector, MovingSet, ProductSet, QpError, Segment, vector,
+};
 
 /// Projections of steps are off by a share of their lengths.
 struct Rounding {
@@ -69,7 +71,7 @@ fn solve(seed: u64, bounds: usize, off: f64) -> (ActiveSetReport, f64, f64) {
     };
     let settings = ActiveSetSettings::default().with_tolerance(1e-10);
     let (data, start) = ((&b[..], &e[..]), (false, &[][..]));
-    let solved = from_zero(&a, &mut projector, &mut set, data, &settings, start, &mut |_, _| {});
+    let solved = from_zero(&a, &mut projector, MovingSet::fixed(&mut set), data, &settings, start);
     let Solved { x, ax, report, .. } = solved.expect("a report");
     let row = |i: usize| (0..n).map(|j| g[i * n + j] * x[j]).sum::<f64>() - e[i];
     let off = (0..rows).map(|i| row(i).powi(2)).sum::<f64>().sqrt();

@@ -3,10 +3,10 @@
 use crate::common::{self, Quadratic, Random};
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
-use signorini_qp::kkt::{EqualityPart, check_with};
+use signorini_qp::kkt::check_with;
 use signorini_qp::{
-    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, Segment, SmalseSettings, Status,
-    vector,
+    ConvexSet, DenseEquality, DenseOperator, Equality, KprgpSettings, ProductSet, QuadraticCost, Segment,
+    SmalseSettings, Status, vector,
 };
 
 fn config() -> ProptestConfig {
@@ -46,8 +46,8 @@ proptest! {
         let (mut x, mut beta) = (vec![0.0; n], vec![0.0; p.c.rows()]);
         let (report, residual, mu) = p.smalse(&tight(), &mut |_, _| false, &mut x, &mut beta);
         prop_assert!(report.status.converged(), "{report:?} {:?}", p.set);
-        let part = EqualityPart { c: &p.c, e: &p.e, multiplier: &mu };
-        let check = check_with(&p.a, &p.b, &p.set, Some(part), &x, p.norm).expect("lengths");
+        let cost = QuadraticCost::new(&p.a, &p.b, p.norm).with_equality(&p.c, &p.e);
+        let check = check_with(&cost, &p.set, &x, &mu).expect("lengths");
         let size = check.b_norm.max(p.norm * check.x_norm);
         prop_assert!(check.infeasibility <= 1e-15 * check.x_norm, "{check:?}");
         prop_assert!(check.equality <= 1.1e-8 * check.x_norm.max(vector::norm(&p.e)), "{check:?}");

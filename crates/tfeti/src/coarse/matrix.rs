@@ -63,7 +63,21 @@ fn touching<R: Iterator<Item = u32>>(subdomains: usize, rows: impl Iterator<Item
     Lists::by_key(subdomains, &keys).map(|k| numbers[k as usize])
 }
 
+/// A matrix with its graph and values.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Entries<'a> {
+    pub(crate) matrix: &'a CoarseMatrix,
+    /// Neighbours of each block.
+    pub(crate) graph: &'a [Vec<u32>],
+    pub(crate) values: &'a [f64],
+}
+
 impl CoarseMatrix {
+    pub(crate) fn entries<'a>(&'a self, graph: &'a [Vec<u32>], values: &'a [f64]) -> Entries<'a> {
+        let matrix = self;
+        Entries { matrix, graph, values }
+    }
+
     pub(crate) fn new(gluing: &Gluing, modes: &ModeTable<'_>) -> Self {
         let subdomains = modes.subdomains.count();
         let blocks = (0..gluing.blocks()).map(|b| gluing.block(b).iter().map(|e| e.subdomain));

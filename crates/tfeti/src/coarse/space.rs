@@ -134,6 +134,7 @@ impl Coarse {
     }
 
     /// The body of each subdomain; bodies are numbered by their first subdomains.
+    #[doc(hidden)]
     pub fn body_of(&self) -> &[u32] {
         &self.0.mobility.body_of
     }

@@ -48,6 +48,7 @@ pub struct ExplicitScratch {
 impl Tfeti {
     /// What forming `F` costs in products with it, and what a step on some active sets with its inverse does, the same
     /// for any number of processes; `None` where there are too many rows.
+    #[doc(hidden)]
     pub fn explicit_cost(&self) -> Option<[usize; 2]> {
         let rows = self.dual_dim();
         let [n, contact] = [rows, self.gluing().ranges().contact().end].map(|n| n as f64);

@@ -83,18 +83,9 @@ impl Coarse {
             }
         }
         let tree = cheapest_tree(&graph, data.mobility.centres(), &changing, None)?;
-        SplitBase::new(
-            tree,
-            &data.matrix,
-            &graph,
-            &values,
-            rows,
-            &write,
-            false,
-            Some(self.exchange()),
-        )
-        .ok()
-        .map(|base| Bases::One(Arc::new(base)))
+        let entries = data.matrix.entries(&graph, &values);
+        let base = SplitBase::new(tree, entries, rows, &write, false, Some(self.exchange())).ok()?;
+        Some(Bases::One(Arc::new(base)))
     }
 
     /// The bases by two levels, if they exist.
@@ -140,16 +131,8 @@ impl Coarse {
         let centres = data.mobility.centres();
         let nothing = vec![false; graph.len()];
         let tree = CoarseTree::new(graph, centres, &nothing, 0, grid_of(centres).as_deref()).ok()?;
-        let base = SplitBase::new(
-            tree,
-            &data.matrix,
-            graph,
-            values,
-            0,
-            &|_, _| {},
-            true,
-            Some(self.exchange()),
-        );
+        let entries = data.matrix.entries(graph, values);
+        let base = SplitBase::new(tree, entries, 0, &|_, _| {}, true, Some(self.exchange()));
         base.ok().map(Arc::new)
     }
 

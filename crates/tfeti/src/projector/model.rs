@@ -163,7 +163,8 @@ impl Model {
         let (sums, sum_values) = clusters.matrix(matrix, values);
         let (graph, grid) = (sums.graph(), grid_of(clusters.centres()));
         let tree = cheapest_tree(&graph, clusters.centres(), &clusters.marks(changing), grid.as_deref())?;
-        let of_clusters = SplitBase::new(tree, &sums, &graph, &sum_values, rows, &on_clusters, true, None).ok()?;
+        let entries = sums.entries(&graph, &sum_values);
+        let of_clusters = SplitBase::new(tree, entries, rows, &on_clusters, true, None).ok()?;
         let mut partners: Vec<Vec<u32>> = vec![Vec::new(); changing.len()];
         let mut row = Vec::new();
         for nodal in 0..rows {

@@ -24,6 +24,7 @@ impl Gluing {
     /// What depends on what at the [dependent nodes](Self::dependent_nodes), group by group; groups whose rows turn out
     /// to be independent are left out, and so are groups of more than a thousand rows, whose null space would cost too
     /// much.
+    #[doc(hidden)]
     pub fn dependencies(&self) -> Vec<Dependency> {
         let groups = &self.exchanging;
         let mut members: BTreeMap<u32, Vec<usize>> = BTreeMap::new();

@@ -21,6 +21,7 @@ pub struct SystemPart {
 impl Tfeti {
     /// The part of this rank. `None` of one process, and where rows have weights, give way or depend on others, for
     /// which vectors are whole.
+    #[doc(hidden)]
     pub fn part(&self) -> Option<SystemPart> {
         let (gluing, exchange) = (self.gluing(), self.parts.map.exchange());
         let plain = gluing.is_aligned && self.copy_stiffness().is_plain() && !gluing.is_compliant();

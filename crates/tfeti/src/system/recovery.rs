@@ -7,7 +7,7 @@ use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::BLOCKS;
 use rayon::prelude::*;
-use signorini_fem_mesh::vec3::{add, cross, sub};
+use signorini_fem_mesh::vec3::{moved, sub};
 use std::ops::Range;
 
 /// Response of the torn body to one load: what a time step needs to combine.
@@ -227,7 +227,7 @@ impl Tfeti {
         let [x, y, z, a, b, c] = kernel.motion(&amplitudes);
         let rotation = [a, b, c].map(|w| w / kernel.radius());
         let arm = sub(point, self.coarse().centre(subdomain));
-        [add([x, y, z], cross(rotation, arm)), rotation]
+        [moved([[x, y, z], rotation], arm), rotation]
     }
 
     /// Row offsets `c` of prescribed displacements, `sum factor * offset` over `(case, factor)`, in old memory, which may

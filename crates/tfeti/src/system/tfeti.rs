@@ -103,16 +103,19 @@ impl Tfeti {
     /// How the copies of a node count in contact and support rows: by their stiffness in a body of several materials,
     /// and where that of the copies of a node differs by more than a factor of four, as in ragged cuts; alike
     /// otherwise.
+    #[doc(hidden)]
     pub fn copy_stiffness(&self) -> &CopyStiffness {
         &self.stiffness
     }
 
     /// The stiffness of the copies of each node, whether or not they differ.
+    #[doc(hidden)]
     pub fn all_copy_stiffness(&self) -> CopyStiffness {
         CopyStiffness::new(&self.parts.subdomains, self.node_of.iter().copied())
     }
 
     /// The classes of subdomains.
+    #[doc(hidden)]
     pub fn classes(&self) -> &Classes {
         &self.parts.subdomains.classes
     }
@@ -234,6 +237,7 @@ impl Tfeti {
     }
 
     /// Rigid motions of a subdomain.
+    #[doc(hidden)]
     pub fn kernel(&self, subdomain: usize) -> &Kernel {
         self.parts.subdomains.kernel(subdomain)
     }

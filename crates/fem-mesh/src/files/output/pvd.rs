@@ -25,9 +25,8 @@ const FOOT: [&str; 2] = ["  </Collection>", "</VTKFile>"];
 /// A time series in a folder: `name.pvd` and `name_0000.vtu`, `name_0001.vtu`, ...
 ///
 /// The list is written anew after every step. It and the files of the steps are written beside their place, with
-/// `.tmp` at the end of their names, and then take it ([`replace_file`](crate::replace_file)). They are therefore
-/// complete at any moment, also when the computation stops half way or the disk is full. A step whose writing failed
-/// does not count and can be written again.
+/// `.tmp` at the end of their names, and then take it. They are therefore complete at any moment, also when the
+/// computation stops half way or the disk is full. A step whose writing failed does not count and can be written again.
 ///
 /// A run that is resumed continues its series with [`PvdSeries::open`] or
 /// [`PvdSeries::open_before`]:

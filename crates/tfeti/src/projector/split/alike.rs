@@ -8,7 +8,7 @@
 use crate::dual::boundary::over_tasks;
 use crate::linalg::tiles::{HALF, LANES};
 use crate::projector::split::tree::CoarseTree;
-use crate::tolerances::{SOLVE_READS, TOGETHER};
+use crate::tolerances::{ALIKE_REGIONS, SOLVE_READS};
 use std::ops::Range;
 
 /// Which regions are solved together, from the innermost to the outermost.
@@ -81,7 +81,7 @@ impl Bunches {
                 .enumerate()
                 .filter(|(r, f)| height[*r] == h && !f.is_empty())
             {
-                let together = family.len() >= TOGETHER;
+                let together = family.len() >= ALIKE_REGIONS;
                 let (own, behind) = (6 * tree.regions[r].region.own.len(), 6 * tree.regions[r].behind.len());
                 let mut sorted = family.clone();
                 sorted.sort_by_key(|&r| rank(r as usize));

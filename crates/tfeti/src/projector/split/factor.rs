@@ -5,7 +5,7 @@
 //! new active set adds `sum_r w_r g_r g_r^T` over the contact rows `r` and eliminates them. Both sides of each cut run
 //! on different threads. Sums have the order of the tree, so results do not depend on the number of threads.
 
-use crate::coarse::matrix::CoarseMatrix;
+use crate::coarse::matrix::Entries;
 use crate::linalg::both;
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::tiles::Tile;
@@ -66,14 +66,12 @@ pub(crate) struct SplitFactor {
 pub(crate) struct Fronts(Vec<Front>);
 
 impl SplitBase {
-    /// From the `values` of the matrix without its first `contact` rows, contact rows that `write` tells. Equal regions
+    /// From the matrix without its first `contact` rows, contact rows that `write` tells. Equal regions
     /// are stored once and solved together if it `shares` or nothing changes. Of the processes of an `exchange` each
     /// has a branch of the tree.
     pub(crate) fn new(
         mut tree: CoarseTree,
-        matrix: &CoarseMatrix,
-        graph: &[Vec<u32>],
-        values: &[f64],
+        entries: Entries<'_>,
         contact: usize,
         write: &ContactRow<'_>,
         shares: bool,
@@ -81,7 +79,7 @@ impl SplitBase {
     ) -> Result<Self, usize> {
         let steady = !tree.changes();
         let first = match steady {
-            true => share(&mut tree, graph, &bits(matrix, values)),
+            true => share(&mut tree, entries.graph, &bits(entries)),
             false => (0..tree.regions.len()).collect(),
         };
         let mut pieces: Vec<Piece> = Vec::with_capacity(tree.regions.len());
@@ -104,7 +102,7 @@ impl SplitBase {
         };
         if steady {
             let steady: Vec<_> = out.pieces.iter().map(|p| p.steady.clone()).collect();
-            let tiles = shared_tiles(&out.tree, &steady, matrix, graph, values, &first)?;
+            let tiles = shared_tiles(&out.tree, &steady, entries, &first)?;
             for (piece, tiles) in out.pieces.iter_mut().zip(tiles) {
                 piece.tiles = tiles;
             }
@@ -124,7 +122,7 @@ impl SplitBase {
             let (width, height) = (node.width(), node.height());
             front.columns.resize(width * height, 0.0);
             front.update.resize((height - width) * (height - width), 0.0);
-            load_columns(matrix, &out.tree, graph, k, values, &mut front.columns);
+            load_columns(entries, &out.tree, k, &mut front.columns);
         };
         let work = Growth {
             base: &out,
@@ -136,10 +134,10 @@ impl SplitBase {
         for (piece, tiles) in out.pieces.iter_mut().zip(tiles) {
             piece.tiles = Arc::new(tiles);
         }
-        let diagonal = matrix.diagonal(values).fold(0.0_f64, f64::max);
+        let diagonal = entries.matrix.diagonal(entries.values).fold(0.0_f64, f64::max);
         out.threshold = SINGULAR * diagonal;
         let first = match shares {
-            true => share(&mut out.tree, graph, &bits(matrix, values)),
+            true => share(&mut out.tree, entries.graph, &bits(entries)),
             false => first,
         };
         for (r, &equal) in first.iter().enumerate().filter(|(r, equal)| r != *equal) {

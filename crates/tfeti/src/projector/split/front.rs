@@ -1,6 +1,6 @@
 //! One front: its beginning from the matrix, and what earlier fronts add to it.
 
-use crate::coarse::matrix::CoarseMatrix;
+use crate::coarse::matrix::Entries;
 use crate::linalg::dense;
 use crate::projector::split::tree::{CoarseTree, Node};
 
@@ -23,15 +23,9 @@ impl Front {
     }
 }
 
-/// Adds the entries of the columns of node `k` of a tree of this `graph`.
-pub(crate) fn load_columns(
-    matrix: &CoarseMatrix,
-    tree: &CoarseTree,
-    graph: &[Vec<u32>],
-    k: usize,
-    values: &[f64],
-    columns: &mut [f64],
-) {
+/// Adds the entries of the columns of node `k` of a tree of the graph.
+pub(crate) fn load_columns(entries: Entries<'_>, tree: &CoarseTree, k: usize, columns: &mut [f64]) {
+    let Entries { matrix, graph, values } = entries;
     let node = &tree.nodes[k];
     for q in node.columns.clone() {
         let a = tree.blocks[q];

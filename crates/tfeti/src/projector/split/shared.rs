@@ -4,7 +4,7 @@
 //! them, and if the regions within are equal. In a grid of translates that is so for all but the few pieces at each
 //! kind of border.
 
-use crate::coarse::matrix::CoarseMatrix;
+use crate::coarse::matrix::Entries;
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::zeros;
 use crate::projector::split::front::{Front, extend, load_columns};
@@ -22,9 +22,7 @@ type Grown = (Tiles, Vec<Vec<f64>>);
 pub(super) fn shared_tiles(
     tree: &CoarseTree,
     steady: &[Arc<Supernodes>],
-    matrix: &CoarseMatrix,
-    graph: &[Vec<u32>],
-    values: &[f64],
+    entries: Entries<'_>,
     first: &[usize],
 ) -> Result<Vec<Arc<Tiles>>, usize> {
     // nodes of a region stand in the order of those of the equal one
@@ -51,7 +49,7 @@ pub(super) fn shared_tiles(
     let mut tiles: Vec<Arc<Tiles>> = vec![Arc::default(); tree.regions.len()];
     for height in 0..=heights.iter().copied().max().unwrap_or(0) {
         let now = || grown.iter().copied().filter(|&r| heights[r] == height);
-        let load = |k: usize, columns: &mut [f64]| load_columns(matrix, tree, graph, k, values, columns);
+        let load = |k: usize, columns: &mut [f64]| load_columns(entries, tree, k, columns);
         let grow = |r: usize| grow(tree, r, &steady[r], &node, &updates, &load);
         let all: Vec<Grown> = now()
             .collect::<Vec<_>>()
@@ -115,12 +113,12 @@ fn grow(
 /// Appends what tells the entries of two blocks from those of others.
 pub(crate) type EntryBits<'a> = dyn Fn(u32, u32, &mut Vec<u64>) + 'a;
 
-/// The bits of a matrix with these values.
-pub(super) fn bits<'a>(matrix: &'a CoarseMatrix, values: &'a [f64]) -> impl Fn(u32, u32, &mut Vec<u64>) + 'a {
-    |a, b, key| {
-        let (start, stride) = matrix.place(a.max(b), a.min(b));
+/// The bits of a matrix.
+pub(super) fn bits(entries: Entries<'_>) -> impl Fn(u32, u32, &mut Vec<u64>) {
+    move |a, b, key| {
+        let (start, stride) = entries.matrix.place(a.max(b), a.min(b));
         for c in 0..6 {
-            key.extend(values[start + c * stride..][..6].iter().map(|v| v.to_bits()));
+            key.extend(entries.values[start + c * stride..][..6].iter().map(|v| v.to_bits()));
         }
     }
 }
