@@ -21,7 +21,7 @@ use crate::tolerances::{FREEDOM_TAKEN, NO_STRAIN, PARALLEL, REST, ROUNDING};
 use crate::vec3::dot;
 use nalgebra::{DMatrix, DVector};
 use signorini_fem_mesh::recovery::StrainRecovery;
-use signorini_fem_mesh::vec3::{moved, sub};
+use signorini_fem_mesh::vec3::{Vec3, moved, sub};
 use signorini_qp::vector;
 use signorini_tfeti::{CoarseFactor, RowWeights, Tfeti};
 use std::borrow::Cow;
