@@ -59,9 +59,9 @@ pub(crate) const SHORT_ROWS: usize = 500;
 /// Stiffness of a copy over that of another one of its node up to which all count alike: 1 where boxes cut a regular
 /// mesh, 2.5 where its nodes are displaced by 0.15 of a cell, 17 and more in cuts that follow no plane of the mesh.
 pub(crate) const ALIKE: f64 = 4.0;
-/// Stiffness of a copy in a rigid subdomain over that of the other copies of its node, and weight of the rows that hold it
-/// over that of its others: the mean of a node follows it, and products are those of a support. With 1e6 the best
-/// certificates were 1e-10.
+/// Stiffness of a copy in a rigid subdomain over that of the other copies of its node, and squared length of the rows that
+/// hold it: the mean of a node follows it, and products are those of a support. With 1e6 the best certificates were
+/// 1e-10.
 pub const RIGID: f64 = 1e3;
 /// Added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come out
 /// large, but `B^T` takes them to zero.

@@ -10,6 +10,7 @@ mod common;
 mod compliance;
 mod contact_stress;
 mod couplings;
+mod couplings_cost;
 mod couplings_refused;
 mod crack;
 mod curved_sides;

@@ -3,7 +3,7 @@
 use crate::linalg::sparse::SolveMemory;
 use crate::subdomain::inverse::Inverse;
 use crate::system::tfeti::Tfeti;
-use crate::tolerances::{RIGID, SAMPLE, SHORT_ROWS};
+use crate::tolerances::{SAMPLE, SHORT_ROWS};
 use rayon::prelude::*;
 use signorini_fem_mesh::internal::distinct;
 use std::collections::BTreeMap;
@@ -124,9 +124,9 @@ impl Tfeti {
 
     /// Weights of the rows for projectors where copies differ in stiffness: `1 / sum_d b_d² / K_dd`, relative to the
     /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one, and a row that
-    /// gives way in proportion to both together: a soft spring takes no part in what friction holds. `None` where all
-    /// copies [count alike](Self::copy_stiffness) and no row gives way. Without contact that is so only where the factor
-    /// is not small (there weights save a product), and always on springs, whose small forces weights would hide.
+    /// gives way in proportion to both together: a soft spring takes no part in what friction holds. `None` where all copies [count
+    /// alike](Self::copy_stiffness) and no row gives way. Without contact that is so only where the factor is not small
+    /// (there weights save a product), and always on springs, whose small forces weights would hide.
     pub fn row_weights(&self) -> Option<Vec<f64>> {
         let (ranges, springs) = (self.gluing().ranges(), self.gluing().springs());
         let contact = !ranges.contact().is_empty();
@@ -166,7 +166,8 @@ impl Tfeti {
         Some(weights)
     }
 
-    /// Rows that hold a rigid subdomain take what its others leave: they weigh more than any of these.
+    /// Rows that hold a rigid subdomain take what its others leave: they are longer, and weigh as much as the largest
+    /// of these.
     fn weigh_rigid(&self, weights: &mut [f64]) {
         let gluing = self.gluing();
         let rigid = gluing.ranges().rigid.clone();
@@ -183,7 +184,7 @@ impl Tfeti {
             }
         }
         for row in rigid {
-            weights[row] = of(row).map(|s| RIGID * largest[&s]).fold(0.0, f64::max);
+            weights[row] = of(row).map(|s| largest[&s]).fold(0.0, f64::max);
         }
     }
 }
