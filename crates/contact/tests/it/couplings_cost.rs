@@ -1,4 +1,4 @@
-//! Couplings and what they cost: by the other methods, and on springs.
+//! Couplings and what they cost: by the other methods, on springs, and on bodies much softer than others.
 
 use crate::common::*;
 use crate::couplings::{POINT, YOUNG, bar, moved, on_floor};
@@ -71,6 +71,84 @@ fn held_couplings_on_springs_are_supports() {
             assert!(
                 held <= supported,
                 "{stiffness:e}, {boxes:?}: {held}, supported {supported}"
+            );
+        }
+    }
+}
+
+/// A stiff block, and a small soft one somewhere.
+fn beside(young: f64, place: impl Fn([f64; 3]) -> [f64; 3]) -> Scene {
+    let big = block([1.0; 3], [3; 3]);
+    let small = big.map_points(place).expect("moved");
+    let soft = |t: usize| u32::from(t >= big.tets().len());
+    let mesh = with_second(&big, &small);
+    let regions = (0..mesh.tets().len()).map(soft).collect();
+    let law = |young: f64| Hooke::isotropic(young, 0.3).expect("Hooke");
+    let materials = Materials::new(vec![(0, law(YOUNG)), (1, law(young))]).expect("materials");
+    Scene::new(mesh.with_regions(regions).expect("regions"), materials)
+        .with_support(Support::fixed(second(brick::Z_MIN)))
+        .with_subdomains(4)
+}
+
+/// Each of two blocks that do not touch is pressed by its plate, free or guided, or by a traction: products are those of
+/// a block alone, however much softer and smaller one is.
+#[test]
+fn plates_on_soft_blocks_cost_no_products() {
+    let guided = [true, true, false, true, true, true];
+    for (young, size) in [(1e7, 1e-2), (1e6, 1e-3), (1e5, 1e-3)] {
+        for (on_soft, on_stiff, held) in [
+            (true, false, false),
+            (true, false, true),
+            (false, true, false),
+            (true, true, true),
+        ] {
+            let force = [0.0, 0.0, -young * size * size * 1e-3];
+            let scene = beside(young, |x| [x[0] * size + 2.0, x[1] * size, x[2] * size]);
+            let scene = scene.with_support(Support::fixed(brick::Z_MIN));
+            let press = |scene: Scene, plate: bool, tag: FacetTag, at: [f64; 3], force: [f64; 3]| {
+                if !plate {
+                    return scene.with_load(Load::force(tag, force));
+                }
+                let own = Load::on_coupling(scene.couplings().len(), force, [0.0; 3]);
+                let plate = Coupling::rigid(tag, at).with_held(if held { guided } else { [false; 6] });
+                scene.with_coupling(plate).with_load(own)
+            };
+            let scene = press(scene, on_soft, second(brick::Z_MAX), [2.0, 0.0, size], force);
+            let scene = press(scene, on_stiff, brick::Z_MAX, [0.5, 0.5, 1.0], [0.0, 0.0, -1e8]);
+            let what = format!("{young:e} {size:e} {on_soft} {on_stiff} {held}");
+            let one = step(&mut Simulation::new(scene, Settings::default()).expect("set-up"));
+            let (largest, products) = (one.certificate.largest(), one.report.counters.products);
+            assert!(largest < 3e-6 && products < 30, "{what}: {largest:e}, {products}");
+        }
+    }
+}
+
+/// A stiff block stands on a small soft one, guided by supports or by the plate that presses it.
+#[test]
+fn stiff_blocks_stand_on_soft_ones() {
+    for (young, size) in [(1e9, 1e-2), (1e7, 1e-1), (1e7, 1e-2), (1e6, 1e-2)] {
+        let low = |x: [f64; 3]| {
+            [
+                0.5 + (x[0] - 0.5) * size,
+                0.5 + (x[1] - 0.5) * size,
+                (x[2] - 1.0) * size,
+            ]
+        };
+        let force = [0.0, 0.0, -young * size * size * 1e-3];
+        let scene = beside(young, low)
+            .with_contact(Contact::between(second(brick::Z_MAX), brick::Z_MIN))
+            .with_support(Support::components(brick::X_MIN, [true, true, false]));
+        let plate = Coupling::rigid(brick::Z_MAX, [0.5, 0.5, 1.0]).with_held([true, true, false, true, true, true]);
+        let plate = scene
+            .clone()
+            .with_coupling(plate)
+            .with_load(Load::on_coupling(0, force, [0.0; 3]));
+        for scene in [scene.with_load(Load::force(brick::Z_MAX, force)), plate] {
+            let one = step(&mut Simulation::new(scene, Settings::default()).expect("set-up"));
+            let (largest, products) = (one.certificate.largest(), one.report.counters.products);
+            assert!(
+                largest < 3e-6 && products < 40,
+                "{young:e} {size:e}: {largest:e}, {products}"
             );
         }
     }
