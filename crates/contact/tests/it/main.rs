@@ -20,6 +20,7 @@ mod edges_apart;
 mod effects;
 mod eigenstrain;
 mod estimates;
+mod estimates_coupled;
 mod explicit;
 mod free_bodies;
 mod gap_history;
