@@ -40,7 +40,7 @@ const APART: u64 = 120;
 const ROUND: u64 = 40;
 const FIT: u64 = 30;
 const WARM: u64 = 40;
-const GRIP: u64 = 50;
+const GRIP: u64 = 25;
 const SEED: u64 = 20_240_229;
 /// Scenes of each kind that several ranks solve.
 const RANKED: u64 = 12;

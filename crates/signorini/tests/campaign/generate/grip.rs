@@ -33,8 +33,9 @@ pub(crate) fn grip(seed: u64, number: u64) -> Apart {
     let mut dice = Dice::new(seed ^ 0x6219, number);
     let dice = &mut dice;
     let count = 1 + usize::from(dice.chance(0.3));
+    let mut tries = 0..8;
     let bodies = scene.recipe.mesh.distinct_regions().len();
-    for _ in 0..count {
+    while scene.grips.len() < count && tries.next().is_some() {
         // mostly in the place of a support
         let body = if dice.chance(0.6) {
             bodies - 1
@@ -46,30 +47,33 @@ pub(crate) fn grip(seed: u64, number: u64) -> Apart {
         if dice.chance(0.15) && bodies > 1 {
             tags.push(side((body + 1) % bodies, SIDES[at]));
         }
+        let mut other = scene.clone();
         if dice.chance(0.8) {
             let is_here = |hold: &Hold| matches!(hold.place, Where::Tag(tag) if tags.contains(&tag));
-            scene.recipe.holds.retain(|hold| !is_here(hold));
+            other.recipe.holds.retain(|hold| !is_here(hold));
         }
         // what loads do to nodes that are held is no strain, but estimates are relative to it, too
         let is_here = |push: &Push| matches!(push.density, Density::Traction(tag, _) if tags.contains(&tag));
-        scene.recipe.pushes.retain(|push| !is_here(push));
-        if let Some(grip) = one(dice, &scene, &tags) {
-            let kind = match grip.held {
-                [true, true, true, true, true, true] => "held",
-                held if held.contains(&true) => "guided",
-                _ => "free",
-            };
-            let moved = if grip.motion.is_some() { " moved" } else { "" };
-            let loaded = if grip.load.is_some() { " loaded" } else { "" };
-            let loose = if kind == "held" { "" } else { "loose, " };
-            let words = format!(
-                "{loose}coupling {kind}{moved}{loaded}, {} nodes, {} sides",
-                grip.nodes.len(),
-                tags.len()
-            );
-            scene.recipe.words.push(words);
-            scene.grips.push(grip);
-        }
+        other.recipe.pushes.retain(|push| !is_here(push));
+        let Some(grip) = one(dice, &other, &tags) else {
+            continue;
+        };
+        scene = other;
+        let kind = match grip.held {
+            [true, true, true, true, true, true] => "held",
+            held if held.contains(&true) => "guided",
+            _ => "free",
+        };
+        let moved = if grip.motion.is_some() { " moved" } else { "" };
+        let loaded = if grip.load.is_some() { " loaded" } else { "" };
+        let loose = if kind == "held" { "" } else { "loose, " };
+        let words = format!(
+            "{loose}coupling {kind}{moved}{loaded}, {} nodes, {} sides",
+            grip.nodes.len(),
+            tags.len()
+        );
+        scene.recipe.words.push(words);
+        scene.grips.push(grip);
     }
     if scene.recipe.how.solver != Solver::Face {
         // KNOWN: stiff foundations
