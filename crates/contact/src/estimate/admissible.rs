@@ -3,7 +3,7 @@
 //! Of two nodes that may touch each other one moves and the other one stays: the one moves that supports leave more
 //! freedom. Where it is not free either, both move, each where it can. Where the other side is of several nodes, which
 //! other points have too, they stay, but for one where a support holds the node along the normal. Where the own side
-//! is, all points move together ([`shared`](super::shared)).
+//! is, or where the own node is in a coupling, which stays, all points move together ([`shared`](super::shared)).
 
 use crate::model::{ConstrainedPoint, Model};
 use crate::result::PointState;
@@ -92,7 +92,8 @@ impl AdmissibleNode {
             let free = |k: usize| freedom(&parts[k].1, &point.stretch);
             (0..parts.len()).reduce(|best, k| if free(k) > free(best) { k } else { best })
         };
-        let both = freest(&still).filter(|_| both).and_then(|other| {
+        let movable = |other: &usize| both && !couplings.has(still[*other].0);
+        let both = freest(&still).filter(movable).and_then(|other| {
             still.swap(0, other);
             shifts(&own, &still[0].1, rows.len())
         });
@@ -127,14 +128,24 @@ impl AdmissibleNode {
     /// surface.
     pub(crate) fn targets(&self, offset: &[f64], moved: &Correction) -> impl Iterator<Item = f64> {
         let values = [moved.open, moved.slip[0], moved.slip[1]];
-        let rows = self.rows.iter().zip(values);
-        rows.map(|(&(_, row, scale), value)| offset[row] / scale + value)
+        self.touching(offset).zip(values).map(|(rest, value)| rest + value)
+    }
+
+    /// The same where it touches and sticks.
+    pub(crate) fn touching(&self, offset: &[f64]) -> impl Iterator<Item = f64> {
+        self.rows.iter().map(|&(_, row, scale)| offset[row] / scale)
     }
 
     /// Moves the node out of the obstacle, if it is inside.
     pub(crate) fn push_out(&self, offset: &[f64], v: &mut [f64]) {
         let depth = self.conditions(offset, v).depth(self.value(v)).max(0.0);
         self.shift(v, 0, -depth);
+    }
+
+    /// The nodes that move.
+    pub(crate) fn moving(&self) -> impl Iterator<Item = u32> {
+        let other = self.still.first().filter(|_| self.both.is_some());
+        std::iter::once(self.node).chain(other.map(|other| other.0))
     }
 
     /// The displacement of the node that moves.
@@ -258,6 +269,11 @@ impl Correction {
             node.shift(v, 1 + j, moved.slip[j] - start[j]);
         }
         moved
+    }
+
+    /// Force along the normal, then those along the surface, and their bound, N.
+    pub(crate) fn forces(&self, state: &PointState) -> ([f64; 3], f64) {
+        ([state.normal_force, self.force[0], self.force[1]], self.bound)
     }
 
     /// Whether the node is at the obstacle.

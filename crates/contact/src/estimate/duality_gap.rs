@@ -12,7 +12,7 @@
 //! is at least `1/2 |v - u*|² + 1/2 |u - u*|²`, `u*` the solution of the discrete problem with the slip bounds `r`.
 
 use super::admissible::{AdmissibleNode, Correction};
-use super::shared::SharedNodes;
+use super::shared::{SharedNodes, Target};
 use crate::model::Model;
 use crate::report::AlgebraicError;
 use crate::result::{Lengths, PointState, Recovered};
@@ -106,15 +106,29 @@ impl Solved<'_> {
             Some(shared) => {
                 self.support(offset, &mut v);
                 let planned = |(state, node): (&PointState, &AdmissibleNode)| {
-                    let before: [f64; 3] = std::array::from_fn(|c| node.value(&mut v)[c]);
+                    let at = |node: u32| 3 * node as usize..3 * node as usize + 3;
+                    let before: Vec<(u32, [f64; 3])> =
+                        node.moving().map(|n| (n, [0, 1, 2].map(|c| v[at(n)][c]))).collect();
                     let planned = Correction::new(node, state, offset, &weights.rows, &mut v);
-                    node.value(&mut v).copy_from_slice(&before);
+                    before.iter().for_each(|(n, value)| v[at(*n)].copy_from_slice(value));
                     planned
                 };
                 let planned: Vec<Correction> = points().map(planned).collect();
-                let targets = weights.nodes.iter().zip(&planned);
-                let targets = targets.flat_map(|(node, planned)| node.targets(offset, planned));
-                shared.reach(targets.collect(), offset, &mut v);
+                let targets = match shared.is_scarce() {
+                    false => {
+                        let targets = weights.nodes.iter().zip(&planned);
+                        let targets = targets.flat_map(|(node, planned)| node.targets(offset, planned));
+                        targets.map(Target::At).collect()
+                    }
+                    true => {
+                        let forces = points()
+                            .zip(&planned)
+                            .map(|((state, _), planned)| planned.forces(state));
+                        let rest = weights.nodes.iter().flat_map(|node| node.touching(offset));
+                        shared.settle(forces.collect(), rest.collect(), offset, &mut v)
+                    }
+                };
+                shared.reach(targets, offset, &mut v);
                 planned
             }
         };

@@ -1,13 +1,15 @@
 //! The algebraic error of a step by the duality gap: how far the solver stopped from the discrete solution.
 //!
 //! `admissible` constructs a continuous displacement that satisfies supports and gaps from the torn one, node by
-//! node; `duality_gap` is the difference between its energy and the dual one.
+//! node, or all at once where points share nodes (`shared`), of which there may be too few (`settled`); `duality_gap` is
+//! the difference between its energy and the dual one.
 //!
 //! Uses: `result`, `step`, `model`, `report`. In: a solved step. Out: an
 //! [`AlgebraicError`](crate::report::AlgebraicError).
 
 mod admissible;
 mod duality_gap;
+mod settled;
 mod shared;
 
 pub(crate) use duality_gap::{Caches, Solved};

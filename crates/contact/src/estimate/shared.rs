@@ -1,37 +1,61 @@
-//! Moves of nodes that several contact points share, as in meshes of order 2: all at once.
+//! Moves of nodes that several contact points share, as in meshes of order 2, and beside couplings: all at once.
 //!
 //! The change of the displacement that gives all contact and tied rows the values wanted, and is smallest in a norm
 //! weighted by stiffness, is `C Pᵀ y` with `P C Pᵀ y` what is missing: rows `P`, compliances `C`. The matrix is like a
 //! mass matrix of the surface, so that conjugate gradients need few iterations.
 
-use crate::model::Model;
+use crate::discrete::ContactPoint;
+use crate::model::{ConstrainedPoint, Model};
 use crate::tolerances::{SHARED_MOVES, SHARED_ROUNDS, SHARED_STOP};
 use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::problem::Diagonal;
-use signorini_qp::{ActiveSetSettings, DenseProjector, MovingSet, ProductSet, SymmetricOperator, active_set, vector};
+use signorini_qp::{
+    ActiveSetSettings, DenseProjector, MovingSet, ProductSet, Segment, SymmetricOperator, active_set, vector,
+};
 use std::collections::BTreeMap;
+
+/// What a row has to measure, m.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Target {
+    At(f64),
+    /// At most that.
+    Below(f64),
+    Any,
+}
 
 /// The rows of points that share nodes.
 #[derive(Debug)]
 pub(crate) struct SharedNodes {
     /// Coefficients of each row on the displacement of the nodes, in metres: the normal row of each point and those
     /// along the surface, point by point, then tied rows.
-    rows: Vec<Vec<(usize, f64)>>,
+    pub(super) rows: Vec<Vec<(usize, f64)>>,
     /// The rows of tied contacts.
-    tied: std::ops::Range<usize>,
+    pub(super) tied: std::ops::Range<usize>,
+    /// Rows of each point.
+    pub(super) counts: Vec<usize>,
     /// Of each displacement component of a node, relative.
     compliance: Vec<f64>,
     /// Inverse of the diagonal of the matrix.
-    inverse: Diagonal,
+    pub(super) inverse: Diagonal,
+    /// Whether there may be more points than nodes that can move.
+    is_scarce: bool,
 }
 
 impl SharedNodes {
-    /// `None` where each point has a node of its own.
+    /// `None` where each point has a node of its own that can move.
     pub(crate) fn new(model: &Model) -> Option<Self> {
         let (gluing, discrete) = (model.tfeti.gluing(), &model.discrete);
-        let own = |k: usize| model.points[k].contact.sides.own.nodes().len();
         let tied = gluing.ranges().tied.clone();
-        if (0..model.points.len()).all(|k| own(k) < 2) && discrete.ties.iter().all(|t| t.sides.own.nodes().len() < 2) {
+        let is_coupled = |node: u32| discrete.couplings.has(node);
+        let several = |point: &ContactPoint| point.sides.own.nodes().len() > 1;
+        // of a single partner the node moves in the place of one that is coupled, but not where both are tied
+        let stays = |point: &ContactPoint, others: usize| {
+            let partner = point.sides.partner.iter().map(|side| side.nodes().len());
+            is_coupled(point.node()) && partner.max().is_some_and(|count| count > others)
+        };
+        let points = || model.points.iter().map(|p| &p.contact);
+        let is_scarce = points().any(|p| stays(p, 1)) || discrete.ties.iter().any(|tie| stays(tie, 0));
+        if !is_scarce && !points().chain(&discrete.ties).any(several) {
             return None;
         }
         let row = |row: usize, scale: f64| -> Vec<(usize, f64)> {
@@ -41,7 +65,9 @@ impl SharedNodes {
             }
             sums.into_iter().collect()
         };
-        let of_points = (model.points.iter()).flat_map(|p| p.directions().take(1).chain(p.isotropic()));
+        let of_point = |p: &ConstrainedPoint| p.directions().take(1).chain(p.isotropic()).collect::<Vec<_>>();
+        let counts = model.points.iter().map(|p| of_point(p).len()).collect();
+        let of_points = model.points.iter().flat_map(of_point);
         let mut rows: Vec<_> = of_points.map(|(_, number, scale)| row(number, scale)).collect();
         rows.extend(tied.clone().map(|number| row(number, 1.0)));
         let mut stiffness = vec![0.0; discrete.decomposition.nodes()];
@@ -50,37 +76,67 @@ impl SharedNodes {
                 stiffness[node as usize] += model.copies().weight(k);
             }
         }
-        let compliance: Vec<f64> = stiffness.iter().flat_map(|s| [1.0 / s; 3]).collect();
+        // couplings stay as they are
+        let own = |(node, s): (u32, &f64)| if is_coupled(node) { 0.0 } else { 1.0 / s };
+        let compliance: Vec<f64> = (0..).zip(&stiffness).flat_map(|node| [own(node); 3]).collect();
         let square = |row: &Vec<(usize, f64)>| row.iter().map(|&(at, v)| v * v * compliance[at]).sum::<f64>();
         let inverse = Diagonal::new(rows.iter().map(square).map(f64::recip).collect()).ok()?;
         Some(Self {
             rows,
             tied,
+            counts,
             compliance,
             inverse,
+            is_scarce,
         })
     }
 
-    /// Moves the displacement `v` such that rows of points have these values, m, and tied rows their `offset`.
-    pub(crate) fn reach(&self, mut targets: Vec<f64>, offset: &[f64], v: &mut [f64]) {
-        targets.extend_from_slice(&offset[self.tied.clone()]);
+    pub(crate) fn is_scarce(&self) -> bool {
+        self.is_scarce
+    }
+
+    /// Moves the displacement `v` such that rows of points meet their targets, and tied rows their `offset`.
+    pub(crate) fn reach(&self, mut targets: Vec<Target>, offset: &[f64], v: &mut [f64]) {
+        targets.extend(offset[self.tied.clone()].iter().map(|value| Target::At(*value)));
         let value = |row: &Vec<(usize, f64)>, v: &[f64]| row.iter().map(|&(at, c)| c * v[at]).sum::<f64>();
-        let size = vector::max_abs(&targets).max(vector::max_abs(v));
-        // neither a set nor an equality
-        let (n, mut set) = (self.dim(), ProductSet::free(self.dim()));
+        let largest = targets.iter().filter_map(|target| match target {
+            Target::At(value) | Target::Below(value) => Some(value.abs()),
+            Target::Any => None,
+        });
+        let size = largest.fold(vector::max_abs(v), f64::max);
+        // no equality
+        let n = self.dim();
         let Ok(mut projector) = DenseProjector::new(0, n, Vec::new()) else {
             return;
         };
         let settings = ActiveSetSettings::default().with_tolerance(SHARED_STOP);
         let settings = settings.with_max_products(SHARED_MOVES);
         let mut work = ActiveSetWorkspace::new(self, &self.inverse);
-        let mut moved = vec![0.0; v.len()];
+        let (mut moved, mut sum) = (vec![0.0; v.len()], vec![0.0; n]);
         for _ in 0..SHARED_ROUNDS {
-            let rows = self.rows.iter().zip(&targets);
-            let missing: Vec<f64> = rows.map(|(row, target)| target - value(row, v)).collect();
+            let rows = self.rows.iter().zip(&targets).zip(&sum);
+            let missing = rows.map(|((row, target), sum)| match target {
+                Target::At(at) => at - value(row, v),
+                Target::Below(at) if *sum == 0.0 => (at - value(row, v)).min(0.0),
+                Target::Below(at) => at - value(row, v),
+                Target::Any => 0.0,
+            });
+            let missing: Vec<f64> = missing.collect();
             if vector::max_abs(&missing) <= SHARED_STOP * size {
                 return;
             }
+            // forces of rows push towards their targets only
+            let [lower, upper] = [f64::NEG_INFINITY, f64::INFINITY].map(|end| {
+                let bound = |(target, sum): (&Target, &f64)| match target {
+                    Target::Any => 0.0,
+                    Target::Below(_) if end > 0.0 => -sum,
+                    _ => end,
+                };
+                targets.iter().zip(&sum).map(bound).collect()
+            });
+            let Ok(mut set) = ProductSet::new(vec![Segment::bounds(lower, upper)]) else {
+                return;
+            };
             let problem = ActiveSetProblem {
                 operator: self,
                 preconditioner: &self.inverse,
@@ -98,11 +154,12 @@ impl SharedNodes {
             }
             self.spread(&y, &mut moved);
             vector::axpy(1.0, &moved, v);
+            vector::axpy(1.0, &y, &mut sum);
         }
     }
 
     /// `C Pᵀ y`
-    fn spread(&self, y: &[f64], out: &mut [f64]) {
+    pub(super) fn spread(&self, y: &[f64], out: &mut [f64]) {
         out.fill(0.0);
         for (row, y) in self.rows.iter().zip(y) {
             row.iter().for_each(|&(at, c)| out[at] += c * y * self.compliance[at]);

@@ -27,13 +27,9 @@ pub(super) fn certify(m: &Measured<'_>, sizes: &[Sizes]) -> Certificate {
     for own in sizes {
         c.equilibrium.worsen(own.residual, own.forces);
     }
-    // rows of springs are scaled, and the last ones
-    let springs = model.tfeti.gluing().springs();
-    let of_springs = ranges.total() - springs.len();
     for row in ranges.interface.start..ranges.total() {
         let own = &sizes[model.bodies.of_row(row)];
-        let scale = row.checked_sub(of_springs).map_or(1.0, |spring| springs[spring].scale);
-        let jump = (m.rows[row] - problem.offset[row]).abs() / scale;
+        let jump = (m.rows[row] - problem.offset[row]).abs() / model.tfeti.gluing().length(row);
         c.continuity.worsen(jump, own.displacement);
     }
     for (k, point) in model.points.iter().enumerate() {

@@ -30,14 +30,7 @@ fn rigid_sides_do_not_touch() {
 /// A small soft block beside a stiff one, each with its plate, is solved as if it were alone.
 #[test]
 fn couplings_do_not_know_of_stiffer_bodies() {
-    // the last one is beyond what rounding leaves of it, and is not refused
-    let cases = [
-        (1e9, 1e-2, 1e-6),
-        (1e7, 1e-2, 1e-6),
-        (1e6, 1e-2, 1e-5),
-        (1e6, 1e-3, 1e-2),
-    ];
-    for (young, size, within) in cases {
+    for (young, size) in [(1e9, 1e-2), (1e7, 1e-2), (1e6, 1e-2), (1e6, 1e-3), (1e5, 1e-3)] {
         let big = block([1.0; 3], [3; 3]);
         let small = big
             .map_points(|x| [x[0] * size + 2.0, x[1] * size, x[2] * size])
@@ -59,15 +52,15 @@ fn couplings_do_not_know_of_stiffer_bodies() {
         let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
         let one = step(&mut simulation);
         let largest = one.certificate.largest();
-        assert!(largest <= within, "{young:e} {size:e}: {largest:e} {:?}", one.report);
+        assert!(largest <= 2e-6, "{young:e} {size:e}: {largest:e} {:?}", one.report);
         let [small, big] = simulation.result().expect("a step").couplings()[..] else {
             panic!("two")
         };
         let [small, big] = [small.displacement[2] / size / 1e-3, big.displacement[2] * YOUNG / 1e8];
         // the plates are guided and free
-        assert!((small / big - 1.0).abs() < 0.1 + within, "{small} {big}");
+        assert!((small / big - 1.0).abs() < 0.1, "{small} {big}");
         let products = one.report.counters.products;
-        assert!(products < 60 || within > 1e-5, "{young:e} {size:e}: {products}");
+        assert!(products < 30, "{young:e} {size:e}: {products}");
     }
 }
 

@@ -1,5 +1,6 @@
 //! Bodies meshed apart: what a recipe does not say of them, and its words in the library.
 
+use crate::grip::Grip;
 use crate::recipe::{Course, Law, Recipe};
 use crate::vec3::{Vec3, across, dot, norm, scale, sub, unit};
 use signorini::prelude::*;
@@ -105,6 +106,7 @@ pub(crate) struct Apart {
     pub(crate) bumps: f64,
     /// Side and stiffness of an elastic foundation.
     pub(crate) ground: Option<(FacetTag, Bed)>,
+    pub(crate) grips: Vec<Grip>,
 }
 
 impl Shape {
@@ -200,6 +202,6 @@ impl Apart {
             let contact = grown(contact, &rock.growth)?;
             scene = scene.with_contact(rough(contact, &rock.law, &rock.axis, rock.compliance));
         }
-        Ok(scene)
+        crate::grip::scene(&self.grips, scene)
     }
 }

@@ -16,6 +16,7 @@
 
 pub(crate) mod apart;
 mod contact;
+mod grip;
 
 use crate::mechanics::{Mechanics, groups};
 use crate::recipe::{Clock, Recipe};

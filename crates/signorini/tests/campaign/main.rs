@@ -9,6 +9,7 @@
 //! SIGNORINI_ROUND=17, SIGNORINI_ROUNDS=500 ...                                    # the same of discs, washers and sleeves
 //! SIGNORINI_FIT=17, SIGNORINI_FITS=500 ...                                        # the same of shafts, tubes and rings
 //! SIGNORINI_WARM=17, SIGNORINI_WARMS=500 ...                                      # the first ones, with strain without stress
+//! SIGNORINI_GRIP=17, SIGNORINI_GRIPS=500 ...                                    # the same of bodies with rigid couplings
 //! SIGNORINI_RANKED=200 ...                                                       # so many of both on two ranks
 //! SIGNORINI_REPORT=folder ...                                                    # lists of all scenes, in files
 //! ```
@@ -18,6 +19,7 @@ mod bites;
 mod check;
 mod dice;
 mod generate;
+mod grip;
 mod mechanics;
 mod recipe;
 mod report;
@@ -38,6 +40,7 @@ const APART: u64 = 120;
 const ROUND: u64 = 40;
 const FIT: u64 = 30;
 const WARM: u64 = 40;
+const GRIP: u64 = 25;
 const SEED: u64 = 20_240_229;
 /// Scenes of each kind that several ranks solve.
 const RANKED: u64 = 12;
@@ -159,6 +162,16 @@ fn bodies_that_grow_are_solved() {
         let recipe = generate::warm(seed, number);
         let outcome = run::run(&recipe);
         (recipe, outcome)
+    });
+}
+
+/// The same for bodies meshed apart with rigid couplings.
+#[test]
+fn coupled_bodies_are_solved() {
+    campaign("SIGNORINI_GRIP", GRIP, |seed, number| {
+        let scene = generate::grip::grip(seed, number);
+        let outcome = run::run_apart(&scene);
+        (scene.recipe, outcome)
     });
 }
 

@@ -7,6 +7,7 @@
 
 use crate::rows::ranges::RowRanges;
 use crate::rows::side::ContactConstraint;
+use crate::tolerances::RIGID;
 use signorini_fem_mesh::internal::{DisjointSets, Lists};
 
 /// Tangential rows of a contact point.
@@ -185,6 +186,18 @@ impl Gluing {
     /// The rows of springs, which are the last ones.
     pub fn springs(&self) -> &[SpringRow] {
         &self.springs
+    }
+
+    /// Length of a row that is no contact row: those that hold rigid subdomains are longer than one, those of springs
+    /// may be shorter.
+    pub fn length(&self, row: usize) -> f64 {
+        let springs = self.ranges.total() - self.springs.len();
+        let spring = row.checked_sub(springs).and_then(|spring| self.springs.get(spring));
+        match spring {
+            Some(spring) => spring.scale,
+            None if self.ranges.rigid.contains(&row) => RIGID.sqrt(),
+            None => 1.0,
+        }
     }
 
     /// How much contact rows give way under their multipliers, in row units, m/N; empty where none does.

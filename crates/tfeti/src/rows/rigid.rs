@@ -2,7 +2,7 @@
 
 use super::gluing::CopyEntry;
 use crate::error::TfetiError;
-use crate::tolerances::ON_A_LINE;
+use crate::tolerances::{ON_A_LINE, RIGID};
 use nalgebra::{SMatrix, SVector};
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, norm, sub};
 use signorini_fem_mesh::{Decomposition, TetMesh};
@@ -57,7 +57,7 @@ pub fn forces_at_three(points: &[Vec3], place: Vec3, force: Vec3, moment: Vec3) 
 }
 
 impl RigidSupport {
-    /// A row of length one at three nodes of the subdomain.
+    /// A row at three nodes of the subdomain, long, so that it takes what the others of the subdomain leave.
     pub(crate) fn row(&self, mesh: &TetMesh, decomposition: &Decomposition) -> Result<RigidRow, TfetiError> {
         let subdomain = self.subdomain as usize;
         let own = decomposition.subdomains().get(subdomain).filter(|s| s.is_rigid());
@@ -65,7 +65,8 @@ impl RigidSupport {
         let [force, moment] = self.direction;
         let forces = forces_at_three(&own.points(mesh), self.point, force, moment);
         let forces = forces.ok_or(TfetiError::Collinear { subdomain })?;
-        let scale = forces.iter().map(|(_, f)| dot(*f, *f)).sum::<f64>().sqrt().recip();
+        let square: f64 = forces.iter().map(|(_, f)| dot(*f, *f)).sum();
+        let scale = (RIGID / square).sqrt();
         let bad = self.values.iter().any(|v| !v.1.is_finite());
         if bad || !(scale.is_finite() && scale > 0.0) {
             return Err(TfetiError::RigidSupport { subdomain });

@@ -3,7 +3,7 @@
 use crate::linalg::sparse::SolveMemory;
 use crate::subdomain::inverse::Inverse;
 use crate::system::tfeti::Tfeti;
-use crate::tolerances::{RIGID, SAMPLE, SHORT_ROWS};
+use crate::tolerances::{SAMPLE, SHORT_ROWS, SOFT_BODY};
 use rayon::prelude::*;
 use signorini_fem_mesh::internal::distinct;
 use std::collections::BTreeMap;
@@ -124,9 +124,10 @@ impl Tfeti {
 
     /// Weights of the rows for projectors where copies differ in stiffness: `1 / sum_d b_d² / K_dd`, relative to the
     /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one, and a row that
-    /// gives way in proportion to both together: a soft spring takes no part in what friction holds. `None` where all
-    /// copies [count alike](Self::copy_stiffness) and no row gives way. Without contact that is so only where the factor
-    /// is not small (there weights save a product), and always on springs, whose small forces weights would hide.
+    /// gives way in proportion to both together: a soft spring takes no part in what friction holds. Bodies that differ by
+    /// more than a hundred weigh as if they differed by that. `None` where all copies [count
+    /// alike](Self::copy_stiffness) and no row gives way. Without contact that is so only where the factor is not small
+    /// (there weights save a product), and always on springs, whose small forces weights would hide.
     pub fn row_weights(&self) -> Option<Vec<f64>> {
         let (ranges, springs) = (self.gluing().ranges(), self.gluing().springs());
         let contact = !ranges.contact().is_empty();
@@ -158,15 +159,33 @@ impl Tfeti {
         for (row, compliance) in self.gluing().compliance() {
             weights[row] /= 1.0 + compliance * weights[row];
         }
-        let largest = weights.iter().fold(0.0_f64, |m, w| m.max(*w));
-        for w in &mut weights {
-            *w = if *w > 0.0 { *w / largest } else { 1.0 };
-        }
+        self.compare_weights(&mut weights);
         self.weigh_rigid(&mut weights);
         Some(weights)
     }
 
-    /// Rows that hold a rigid subdomain take what its others leave: they weigh more than any of these.
+    /// Divides the weights by the largest, but those of much softer bodies only until their own largest is `SOFT_BODY`. A
+    /// row between bodies is one of the softer.
+    fn compare_weights(&self, weights: &mut [f64]) {
+        let body = &self.coarse().0.mobility.part_of;
+        let bodies = |row: usize| self.gluing().row(row).into_iter().map(|entry| body[entry.0] as usize);
+        let mut largest = vec![0.0_f64; body.len()];
+        for (row, weight) in weights.iter().enumerate() {
+            bodies(row).for_each(|body| largest[body] = largest[body].max(*weight));
+        }
+        let most = largest.iter().fold(0.0_f64, |m, w| m.max(*w));
+        for (row, weight) in weights.iter_mut().enumerate() {
+            let own = bodies(row).map(|body| largest[body]).fold(most, f64::min);
+            *weight = if *weight > 0.0 {
+                *weight / most.min(own / SOFT_BODY)
+            } else {
+                1.0
+            };
+        }
+    }
+
+    /// Rows that hold a rigid subdomain take what its others leave: they are longer, and weigh as much as the largest
+    /// of these.
     fn weigh_rigid(&self, weights: &mut [f64]) {
         let gluing = self.gluing();
         let rigid = gluing.ranges().rigid.clone();
@@ -183,7 +202,7 @@ impl Tfeti {
             }
         }
         for row in rigid {
-            weights[row] = of(row).map(|s| RIGID * largest[&s]).fold(0.0, f64::max);
+            weights[row] = of(row).map(|s| largest[&s]).fold(0.0, f64::max);
         }
     }
 }

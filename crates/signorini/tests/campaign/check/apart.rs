@@ -27,8 +27,8 @@ use std::collections::{HashMap, HashSet};
 
 /// The judge of a run.
 pub(crate) struct ApartJudge<'a> {
-    base: Judge<'a>,
-    scene: &'a Apart,
+    pub(super) base: Judge<'a>,
+    pub(super) scene: &'a Apart,
     /// As in the other judge, for the points of the library.
     ways: [Vec<Vec3>; 2],
     rates: Vec<f64>,
@@ -64,7 +64,11 @@ impl<'a> ApartJudge<'a> {
             .pairs
             .iter()
             .filter_map(|p| Some((node(p.sides[0])?, node(p.sides[1])?)));
-        base.group = groups(nodes, bodies.chain(pairs));
+        let coupled = scene
+            .grips
+            .iter()
+            .flat_map(|g| g.nodes.windows(2).map(|w| (w[0], w[1])));
+        base.group = groups(nodes, bodies.chain(pairs).chain(coupled));
         let on = |tag: FacetTag| {
             let sides = base.mechanics.sides.iter().filter(move |s| s.tag == tag);
             sides
@@ -110,10 +114,12 @@ impl<'a> ApartJudge<'a> {
         let mut worst = Worst::default();
         let load = self.base.mechanics.load_at(self.base.recipe, report.time);
         let torn = self.base.mechanics.torn(frame);
-        let sizes = self.base.sizes(&report, &load, &torn);
+        let mut sizes = self.base.sizes(&report, &load, &torn);
+        self.add_grips(report.time, &mut sizes);
         self.base.copies(frame, &report.u, &sizes, &mut worst);
         self.base.supports(&report, &sizes, &mut worst);
-        self.equilibrium(points, &report, (&load, &torn.0), &sizes, &mut worst);
+        let rest = self.equilibrium(points, &report, (&load, &torn.0), &sizes, &mut worst);
+        self.grips(frame, &rest, &report, &sizes, &mut worst);
         self.balance(points, &report, &load, &sizes, &mut worst);
         self.weights(points, &mut worst);
         self.ground(&report, &sizes, &mut worst);
@@ -148,7 +154,7 @@ impl<'a> ApartJudge<'a> {
         }
     }
 
-    /// What ties do is left at the nodes; it is nothing elsewhere.
+    /// What ties and couplings do is left at the nodes; it is nothing elsewhere.
     fn equilibrium(
         &self,
         points: &[ConstrainedPoint],
@@ -156,7 +162,7 @@ impl<'a> ApartJudge<'a> {
         (load, strained): (&[f64], &[f64]),
         sizes: &[Size],
         worst: &mut Worst,
-    ) {
+    ) -> Vec<Vec3> {
         let mechanics = &self.base.mechanics;
         let mut rest: Vec<Vec3> = (0..mechanics.points.len() as u32)
             .map(|n| sub(at(strained, n), at(load, n)))
@@ -188,7 +194,8 @@ impl<'a> ApartJudge<'a> {
             }
         }
         let tags: Vec<FacetTag> = ties.iter().flat_map(|p| p.sides).collect();
-        let nodes = self.tied_nodes(&tags);
+        let mut nodes = self.tied_nodes(&tags);
+        nodes.extend(self.scene.grips.iter().flat_map(|g| &g.nodes));
         let tied = |n: u32| nodes.contains(&n);
         let mut squares = vec![0.0; rest.len()];
         for (node, rest) in (0..).zip(&rest).filter(|r| !tied(r.0)) {
@@ -197,6 +204,7 @@ impl<'a> ApartJudge<'a> {
         for (group, square) in squares.iter().enumerate() {
             worst.add("equilibrium", square.sqrt(), sizes[group].forces);
         }
+        rest
     }
 
     /// Nodes that ties of these sides may move: those on them, and where facets are apart those behind them.
@@ -279,7 +287,7 @@ impl<'a> ApartJudge<'a> {
         let places = &self.base.mechanics.points;
         let forces = sizes.iter().map(|s| s.forces.powi(2)).sum::<f64>().sqrt();
         let far = places.iter().map(|x| norm(*x)).fold(self.base.extent, f64::max);
-        let mut sum = [[0.0; 3]; 2];
+        let mut sum = self.gripped(report);
         let mut put = |node: u32, force: Vec3| {
             sum[0] = add(sum[0], force);
             sum[1] = add(sum[1], cross(places[node as usize], force));

@@ -313,5 +313,6 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
         rocks,
         bumps,
         ground,
+        grips: Vec::new(),
     }
 }

@@ -149,6 +149,7 @@ pub(crate) fn fit(seed: u64, number: u64) -> Apart {
         rocks,
         bumps,
         ground,
+        grips: Vec::new(),
     }
 }
 

@@ -298,5 +298,6 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
         rocks,
         bumps,
         ground: None,
+        grips: Vec::new(),
     }
 }
