@@ -443,3 +443,37 @@ fn what_is_refused_says_why() {
     let message = refused(bar().with_support(both).with_coupling(end()));
     assert!(message.contains("supports hold both sides"), "{message}");
 }
+
+/// Beside a plain tie it costs no products, held or loaded, with however many nodes and subdomains.
+#[test]
+fn it_costs_no_products() {
+    for (cells, boxes) in [([24, 12, 12], [12, 6, 6]), ([36, 18, 18], [18, 9, 9])] {
+        let mesh = Brick::new([2.0, 1.0, 1.0], cells).build().expect("brick");
+        let mesh = cut_at(&mesh, 0, 1.0);
+        let products = |coupling: Option<Coupling>, force: f64| {
+            let wall = Contact::rigid(brick::X_MAX).with_friction(Friction::coulomb(0.3));
+            let scene = Scene::new(mesh.clone(), uniform(YOUNG, 0.3))
+                .with_support(Support::fixed(brick::X_MIN))
+                .with_contact(Contact::tied(FIRST, SECOND))
+                .with_contact(wall)
+                .with_load(Load::body([0.0, 0.0, -3e6]))
+                .with_boxes(boxes);
+            let scene = coupling.into_iter().fold(scene, Scene::with_coupling);
+            let scene = match force {
+                0.0 => scene,
+                _ => scene.with_load(Load::on_coupling(0, [force, 0.0, 0.0], [0.0; 3])),
+            };
+            let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+            let one = step(&mut simulation);
+            assert_certified(&one, "cost");
+            one.report.counters.products
+        };
+        let tied = products(None, 0.0);
+        let held = products(Some(end().with_held([true; 6])), 0.0);
+        let loaded = products(Some(end().with_held(ALONG)), -1e8);
+        assert!(
+            held <= tied + 3 && loaded <= tied + 3,
+            "{tied}, {held} and {loaded} products"
+        );
+    }
+}
