@@ -127,7 +127,7 @@ impl Deck {
         self.is.nodes.get(number)
     }
 
-    /// The numbers that the nodes of the mesh have in the deck.
+    /// The numbers that the nodes of the mesh have in the deck; where it is cut, one number is there more than once.
     pub fn node_numbers(&self) -> &[u32] {
         &self.is.node_labels
     }

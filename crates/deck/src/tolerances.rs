@@ -19,3 +19,6 @@ pub(crate) const TOGETHER: f64 = 1e-3;
 
 /// Cosine from which on a node lies before the other surface and not beside it.
 pub(crate) const BEFORE: f64 = 0.7;
+/// Cosine of the angle between the normal of a section that is given and that of its faces, below which its sides would
+/// slide rather than part.
+pub(crate) const ALONG_SECTION: f64 = 0.1;

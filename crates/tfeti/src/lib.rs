@@ -97,7 +97,7 @@ pub mod internal {
     pub use crate::processes::threads::on_ranks;
     pub use crate::projector::active_set::ActiveSetFactor;
     pub use crate::projector::forecast::forecast_levels;
-    pub use crate::rows::contact::{PrescribedPoint, prescribed_points};
+    pub use crate::rows::contact::{PrescribedPoint, prescribed_points, unsaid_directions};
     pub use crate::rows::dependencies::Dependency;
     pub use crate::rows::rigid::forces_at_three;
     pub use crate::rows::supports::{PrescribedDirection, prescribed_directions};

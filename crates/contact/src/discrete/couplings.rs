@@ -9,8 +9,8 @@ use signorini_fem_mesh::decomposition::Rigid;
 use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, cross, dot, is_finite, norm, sub};
 use signorini_fem_mesh::{Decomposition, History, SurfaceFrame};
-use signorini_tfeti::internal::{PrescribedDirection, forces_at_three};
-use signorini_tfeti::{RigidSupport, Side};
+use signorini_tfeti::internal::{PrescribedDirection, forces_at_three, unsaid_directions};
+use signorini_tfeti::{ContactConstraint, RigidSupport};
 use std::collections::BTreeMap;
 
 /// The couplings of a scene.
@@ -217,36 +217,35 @@ impl Couplings {
         Ok(())
     }
 
-    /// Refuses ties whose sides supports hold both where their relative motion is free: no row would say what it is there.
+    /// Refuses ties whose sides supports hold both where their relative motion is not held at zero: no row would say
+    /// what it is there.
     pub(super) fn check_ties(
         &self,
         scene: &Scene,
-        ties: &[ContactPoint],
+        constraints: &[ContactConstraint],
         supports: &Supports,
     ) -> Result<(), ContactError> {
-        for tie in ties {
-            let Some(&index) = self.relative.get(&tie.surface) else {
-                continue;
-            };
+        if self.relative.is_empty() {
+            return Ok(());
+        }
+        let nodes = scene.mesh.points().len();
+        for (k, direction) in unsaid_directions(constraints, &supports.nodes, nodes)? {
+            let (tied, node) = (&constraints[k], constraints[k].side.nodes()[0].0);
+            let index = tied
+                .relative
+                .map_or(0, |(subdomain, _)| subdomain as usize - self.first);
             let coupling = &scene.couplings[index];
             // the axes are checked
             let axes = axes(coupling).unwrap_or(AXES);
-            let held = |node: u32| supports.directions.get(&node).into_iter().flatten();
-            let nodes = |side: Option<&Side>| side.map_or(&[][..], |side| side.nodes()).to_vec();
-            let [own, other] = [Some(&tie.sides.own), tie.sides.partner.as_ref()].map(nodes);
-            for (node, d) in own.iter().flat_map(|&(node, _)| held(node).map(move |d| (node, d))) {
-                let both = |e: &PrescribedDirection| dot(d.direction, e.direction).abs() >= 1.0 - ALONG;
-                let extent = norm(sub(scene.mesh.points()[node as usize], coupling.reference));
-                if other.iter().any(|(node, _)| held(*node).any(both))
-                    && !says_the_same(scene, (coupling, &axes), (node, extent), d)
-                {
-                    let reason = "supports hold both sides in a direction in which they may move relative to each other;                         hold the coupling so (with_held), or leave the nodes of one side out of the supports";
-                    return Err(ContactError::Coupling {
-                        coupling: index,
-                        node: Some(node),
-                        reason,
-                    });
-                }
+            let extent = norm(sub(scene.mesh.points()[node as usize], coupling.reference));
+            if !stays(scene, (coupling, &axes), (node, extent), direction) {
+                let reason = "supports hold both sides in a direction in which they may move relative to each other; \
+                    leave the nodes of one side out of the supports, or let the coupling hold this motion at zero";
+                return Err(ContactError::Coupling {
+                    coupling: index,
+                    node: Some(node),
+                    reason,
+                });
             }
         }
         Ok(())
@@ -303,24 +302,32 @@ pub(crate) fn axes(coupling: &Coupling) -> Option<[Vec3; 3]> {
 /// and neither moves it there.
 fn says_the_same(
     scene: &Scene,
-    (coupling, axes): (&Coupling, &[Vec3; 3]),
-    (node, extent): (u32, f64),
+    coupling: (&Coupling, &[Vec3; 3]),
+    node: (u32, f64),
     held: &PrescribedDirection,
 ) -> bool {
+    scene.supports[held.support].motion.is_none() && stays(scene, coupling, node, held.direction)
+}
+
+/// Whether what is held of a coupling keeps a node where it is along a direction.
+fn stays(
+    scene: &Scene,
+    (coupling, axes): (&Coupling, &[Vec3; 3]),
+    (node, extent): (u32, f64),
+    direction: Vec3,
+) -> bool {
     let arm = sub(scene.mesh.points()[node as usize], coupling.reference);
-    let direction = held.direction;
     // what each motion of the coupling does to the node along the direction
     let parts = [direction, cross(arm, direction)].map(|part| axes.map(|axis| dot(axis, part)));
     let parts = parts.as_flattened();
     let size = |c: usize| if c < 3 { 1.0 } else { extent };
     let holds = coupling.holds();
-    let stays = |motion: &[f64; 6]| {
+    let rests = |motion: &[f64; 6]| {
         let all = || (0..6).map(|c| (motion[c] * parts[c], (motion[c] * size(c)).abs()));
         let (way, most) = all().fold((0.0, 0.0_f64), |(way, most), (own, size)| (way + own, most.max(size)));
         way.abs() <= ALONG * most
     };
-    scene.supports[held.support].motion.is_none()
-        && (0..6).all(|c| holds[c] || parts[c].abs() <= ALONG * size(c))
-        && coupling.motions.iter().all(|(motion, _)| stays(motion))
-        && stays(&coupling.locked.map(|value| value.unwrap_or(0.0)))
+    (0..6).all(|c| holds[c] || parts[c].abs() <= ALONG * size(c))
+        && coupling.motions.iter().all(|(motion, _)| rests(motion))
+        && rests(&coupling.locked.map(|value| value.unwrap_or(0.0)))
 }

@@ -89,12 +89,12 @@ impl DiscreteScene {
         }
         let (points, stands) = points(scene, &conditions, rounding)?;
         couplings.check_contact(points.iter().chain(&ties), &supports)?;
-        couplings.check_ties(scene, &ties, &supports)?;
         let [softest, stiffest] = check_materials(scene)?;
         check_motions(scene, stiffest)?;
         check_gaps(scene, &conditions, &poses)?;
         check_compliance(&points)?;
         let constraints = constraints(scene, &points, &ties, &couplings);
+        couplings.check_ties(scene, &constraints, &supports)?;
         let nodes = scene.mesh.points().len();
         let prescribed = prescribed_points(&constraints, &supports.nodes, nodes)?;
         check_penetration(scene, &points, &prescribed, (&supports.motions, &poses), rounding)?;

@@ -143,7 +143,7 @@ fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Option
     let lock = model.scene.couplings.iter().filter_map(|c| Some(c.pending()?.1));
     let lock = lock.fold(f64::INFINITY, f64::min);
     let times = model.scene.analysis.times().iter().enumerate();
-    for (step, &time) in times.take_while(|(step, time)| *step == 0 || **time <= lock * (1.0 + ROUNDING)) {
+    for (step, &time) in times.take_while(|(_, time)| **time <= lock * (1.0 + ROUNDING)) {
         let mut b = vec![0.0; motions.len()];
         let mut size = 0.0;
         for (load, (work, part)) in model.scene.loads.iter().zip(&loads) {

@@ -3,9 +3,10 @@
 use super::support::Place;
 use signorini_fem_mesh::History;
 
-/// A rigid coupling, or one of tied sides ([`relative`](Self::relative)): nodes that move together as a rigid body, for small rotations, with a reference point, which need not
+/// A rigid coupling: nodes that move together as a rigid body, for small rotations, with a reference point, which need not
 /// be in the mesh. The point is free, or some of its motions are held or moved; [`Load::on_coupling`](crate::Load::on_coupling)
 /// loads it. A stiff plate under a press, a hub on its bore, the far end of a part that is not modelled.
+/// [`relative`](Self::relative) couples the sides of a cut: bolts, hinges.
 ///
 /// Elsewhere: kinematic coupling and `*RIGID BODY` (CalculiX, Abaqus), RBE2 (Nastran).
 ///
@@ -127,12 +128,17 @@ impl Coupling {
         self
     }
 
-    /// These of its motions are free, or loaded, until a time, s, and from then on held as they are at the last step until
-    /// then: a bolt is tightened by a force, and then keeps its length. Loads on it in their directions act no longer on
-    /// anything else. Between the two steps the scene is set up anew.
+    /// These of its motions are free, or loaded, at steps until a time, s, and from then on held as they are at the last of
+    /// these, or at zero: a bolt is tightened by a force, and then keeps its length. Loads in their directions act on
+    /// nothing then. Between the two steps the scene is set up anew.
     pub fn with_lock(mut self, locked: [bool; 6], time: f64) -> Self {
         self.lock = Some((locked, time));
         self
+    }
+
+    /// The axis along and about which it is told what is held; `None` for x.
+    pub fn axis(&self) -> Option<[f64; 3]> {
+        self.axis
     }
 
     /// Its motions that are locked later, and the time, s.

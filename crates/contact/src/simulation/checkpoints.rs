@@ -85,8 +85,8 @@ impl Simulation {
         })
     }
 
-    /// [`resume_newest`](Self::resume_newest) on rank 0, which makes the folder and sets damaged files aside, then on
-    /// the others, which must find the same.
+    /// [`newest`] on rank 0, which makes the folder and sets damaged files aside, then on the others, which must find
+    /// the same; all resume it together.
     fn resume_in_turn(&mut self, folder: &Path) -> Result<Option<Warning>, ContactError> {
         let root = self.plan().rank == 0;
         if root {
@@ -94,50 +94,60 @@ impl Simulation {
         } else {
             self.model.tfeti.gather(0.0)?;
         }
-        let warning = self.resume_newest(folder)?;
+        let found = newest(folder)?;
         if root {
             self.model.tfeti.gather(0.0)?;
         }
-        let own = self.state.step() as f64;
+        let own = found.as_ref().map_or(0.0, |found| found.state.step() as f64);
         let steps = self.model.tfeti.gather(own)?;
-        match steps.iter().all(|step| *step == own) {
-            true => Ok(warning),
-            false => Err(ContactError::Checkpoint {
+        if steps.iter().any(|step| *step != own) {
+            return Err(ContactError::Checkpoint {
                 reason: format!(
                     "the ranks find different ones in {}; give them a folder that all of them see",
                     folder.display()
                 ),
-            }),
+            });
         }
-    }
-
-    /// Goes on from the newest checkpoint that is not damaged, if there are any, and says which were.
-    fn resume_newest(&mut self, folder: &Path) -> Result<Option<Warning>, ContactError> {
-        let mut damaged: Vec<(PathBuf, String)> = Vec::new();
-        for (_, path) in stored(folder)? {
-            match State::load(&path) {
-                Ok(state) => {
-                    let foreign =
-                        |reason: String| format!("{}: {reason}; or give this run a folder of its own", path.display());
-                    self.resume(state).map_err(|error| explained(error, foreign))?;
-                    return set_aside(damaged, path);
-                }
-                Err(ContactError::Checkpoint { reason }) => damaged.push((path, reason)),
-                Err(other) => return Err(other),
-            }
-        }
-        if damaged.is_empty() {
+        let Some(Newest { state, path, warning }) = found else {
             return Ok(None);
-        }
-        let reasons: Vec<String> = damaged.into_iter().map(|(_, reason)| reason).collect();
-        Err(ContactError::Checkpoint {
-            reason: format!(
-                "none of those in {} can be read ({}); put copies of them back, or remove them to start anew",
-                folder.display(),
-                reasons.join(". ")
-            ),
-        })
+        };
+        let foreign = |reason: String| format!("{}: {reason}; or give this run a folder of its own", path.display());
+        self.resume(state).map_err(|error| explained(error, foreign))?;
+        Ok(warning)
     }
+}
+
+/// A checkpoint that is not damaged, and what newer ones are.
+struct Newest {
+    state: State,
+    path: PathBuf,
+    warning: Option<Warning>,
+}
+
+/// The newest checkpoint of a folder that is not damaged, if there are any; damaged ones are set aside.
+fn newest(folder: &Path) -> Result<Option<Newest>, ContactError> {
+    let mut damaged: Vec<(PathBuf, String)> = Vec::new();
+    for (_, path) in stored(folder)? {
+        match State::load(&path) {
+            Ok(state) => {
+                let warning = set_aside(damaged, path.clone())?;
+                return Ok(Some(Newest { state, path, warning }));
+            }
+            Err(ContactError::Checkpoint { reason }) => damaged.push((path, reason)),
+            Err(other) => return Err(other),
+        }
+    }
+    if damaged.is_empty() {
+        return Ok(None);
+    }
+    let reasons: Vec<String> = damaged.into_iter().map(|(_, reason)| reason).collect();
+    Err(ContactError::Checkpoint {
+        reason: format!(
+            "none of those in {} can be read ({}); put copies of them back, or remove them to start anew",
+            folder.display(),
+            reasons.join(". ")
+        ),
+    })
 }
 
 /// Checkpoints of a folder, newest first, with their steps.

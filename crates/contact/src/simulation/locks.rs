@@ -1,6 +1,6 @@
 //! Couplings that are locked after a step.
 
-use super::simulation::Simulation;
+use super::simulation::{Simulation, on_pool};
 use crate::discrete::axes;
 use crate::error::ContactError;
 use crate::scene::Scene;
@@ -9,24 +9,30 @@ use signorini_fem_mesh::vec3::dot;
 use signorini_tfeti::RigidSupport;
 use std::sync::Arc;
 
+/// For each coupling the motions at which it is locked; may be empty.
+pub(super) type Locked = Vec<[Option<f64>; 6]>;
+
 impl Simulation {
-    /// Locks the couplings whose time has come.
+    /// Locks the couplings whose time has come: before the end of the next step.
     pub(super) fn lock_due(&mut self) -> Result<(), ContactError> {
-        let scene = &self.model.scene;
-        let last = self
-            .state
-            .step()
-            .checked_sub(1)
-            .and_then(|step| scene.analysis.time(step));
-        let now = last.unwrap_or(0.0);
-        let mut locked: Vec<[Option<f64>; 6]> = scene.couplings.iter().map(|c| c.locked).collect();
+        let (scene, state) = (&self.model.scene, &self.state);
+        let end = scene.analysis.time(state.step()).unwrap_or(0.0);
+        let mut locked: Locked = scene.couplings.iter().map(|c| c.locked).collect();
         let mut due = false;
         for (k, coupling) in scene.couplings.iter().enumerate() {
-            if let Some((left, _)) = coupling.pending().filter(|(_, time)| *time <= now * (1.0 + ROUNDING)) {
-                let motion = self.state.motions.get(k).copied().unwrap_or_default();
-                for c in (0..6).filter(|&c| left[c]) {
-                    locked[k][c] = Some(motion[c]);
-                }
+            if let Some((left, _)) = coupling.pending().filter(|(_, time)| time * (1.0 + ROUNDING) < end) {
+                let motion = match state.motions.get(k) {
+                    Some(motion) => *motion,
+                    None if state.step() == 0 => [0.0; 6],
+                    None => {
+                        let reason =
+                            "it does not say how couplings moved that are to be locked; continue from a state of a \
+                            scene with these couplings"
+                                .to_owned();
+                        return Err(ContactError::Checkpoint { reason });
+                    }
+                };
+                (0..6).filter(|&c| left[c]).for_each(|c| locked[k][c] = Some(motion[c]));
                 due = true;
             }
         }
@@ -34,42 +40,45 @@ impl Simulation {
     }
 
     /// Sets the scene up anew with these motions locked, and goes on from the state.
-    fn lock(&mut self, locked: Vec<[Option<f64>; 6]>) -> Result<(), ContactError> {
+    fn lock(&mut self, locked: Locked) -> Result<(), ContactError> {
+        let fresh = self.set_up_locked(&locked)?;
         let mut state = self.state.clone();
-        let before = self.model.clone();
-        self.set_up_locked(&locked)?;
         let own = Arc::make_mut(&mut state);
-        let [old, new] = [&before, &self.model].map(|model| &model.discrete.couplings.supports);
+        let [old, new] = [&self.model, &fresh.model].map(|model| &model.discrete.couplings.supports);
         let same = |a: &RigidSupport| {
-            old.iter()
-                .position(|b| (a.subdomain, a.direction) == (b.subdomain, b.direction))
+            let is_same = |b: &RigidSupport| (a.subdomain, a.direction) == (b.subdomain, b.direction);
+            old.iter().position(is_same)
         };
         let rows: Vec<Option<usize>> = new.iter().map(same).collect();
-        own.replace_rows(before.tfeti.gluing().ranges().rigid.clone(), &rows);
+        own.replace_rows(self.model.tfeti.gluing().ranges().rigid.clone(), &rows);
         own.locked = locked;
-        own.origin = Some(self.origin.after(&self.model.scene.analysis, own.step()));
-        self.check_products(own);
+        own.origin = Some(fresh.origin.after(&fresh.model.scene.analysis, own.step()));
+        fresh.check_products(own);
+        *self = fresh;
         self.state = state;
         Ok(())
     }
 
     /// The same simulation before its first step, with these motions locked.
-    pub(super) fn set_up_locked(&mut self, locked: &[[Option<f64>; 6]]) -> Result<(), ContactError> {
+    pub(super) fn set_up_locked(&self, locked: &[[Option<f64>; 6]]) -> Result<Self, ContactError> {
         let mut scene = self.model.scene.clone();
         for (k, coupling) in scene.couplings.iter_mut().enumerate() {
-            coupling.locked = locked.get(k).copied().unwrap_or_default();
+            let own = locked.get(k).copied().unwrap_or_default();
+            let held = coupling.held;
+            coupling.locked = [0, 1, 2, 3, 4, 5].map(|c| own[c].filter(|_| !held[c]));
         }
-        let fresh = Self::set_up(scene, self.settings.clone())?;
+        let fresh = on_pool(|| Self::set_up(scene, self.settings.clone()))?;
         let (total, setup) = (self.total, self.setup + fresh.setup);
-        *self = Self { total, setup, ..fresh };
-        Ok(())
+        Ok(Self { total, setup, ..fresh })
     }
 
-    /// Motions of couplings along their axes, where some are to be locked.
-    pub(super) fn motions_to_lock(scene: &Scene, motion: impl Fn(usize) -> [[f64; 3]; 2]) -> Vec<[f64; 6]> {
-        if scene.couplings.iter().all(|c| c.pending().is_none()) {
-            return Vec::new();
-        }
+    /// What is locked now.
+    pub(super) fn locked(&self) -> Locked {
+        self.model.scene.couplings.iter().map(|c| c.locked).collect()
+    }
+
+    /// Motions of couplings along their axes.
+    pub(super) fn motions_of(scene: &Scene, motion: impl Fn(usize) -> [[f64; 3]; 2]) -> Vec<[f64; 6]> {
         let along = |(k, coupling)| {
             let axes = axes(coupling).unwrap_or_default();
             let parts = motion(k).map(|part| axes.map(|axis| dot(axis, part)));

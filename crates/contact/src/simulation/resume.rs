@@ -19,12 +19,16 @@ impl Simulation {
     /// [`ContactError::Checkpoint`] if the state does not fit; it says which part differs.
     pub fn resume(&mut self, mut state: State) -> Result<(), ContactError> {
         let refuse = |reason| Err(ContactError::Checkpoint { reason });
-        let here = self.model.scene.couplings.iter().map(|c| c.locked);
-        let locked = |list: &[[Option<f64>; 6]]| list.iter().flatten().any(Option::is_some);
-        if !here.clone().eq(state.locked.iter().copied())
-            && (locked(&state.locked) || here.flatten().any(|v| v.is_some()))
-        {
-            self.set_up_locked(&state.locked)?;
+        // what is locked belongs to the state
+        let is_locked = |list: &[[Option<f64>; 6]]| list.iter().flatten().any(Option::is_some);
+        let here = self.locked();
+        if here != state.locked && (is_locked(&here) || is_locked(&state.locked)) {
+            let fresh = self.set_up_locked(&state.locked);
+            let mut fresh = fresh.map_err(|error| self.model.scene.names.tell(error))?;
+            state.locked = fresh.locked();
+            fresh.resume(state)?;
+            *self = fresh;
+            return Ok(());
         }
         let analysis = &self.model.scene.analysis;
         if state.step() > analysis.steps() {

@@ -55,7 +55,9 @@ impl Simulation {
     ///
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.
-    pub fn new(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
+    pub fn new(mut scene: Scene, settings: Settings) -> Result<Self, ContactError> {
+        // a scene of a simulation may have been locked
+        scene.couplings.iter_mut().for_each(|c| c.locked = [None; 6]);
         let names = scene.names.clone();
         on_pool(|| Self::set_up(scene, settings)).map_err(|error| names.tell(error))
     }

@@ -30,7 +30,7 @@ impl Simulation {
         if let Some(last) = self.result.take().and_then(Arc::into_inner) {
             self.spare = last.recovered;
         }
-        let locked = on_pool(|| self.lock_due());
+        let locked = self.lock_due();
         locked.map_err(|error| self.model.scene.names.tell(error))?;
         let result = on_pool(|| self.take_step(whole)).map_err(|error| self.model.scene.names.tell(error))?;
         let result = Arc::new(result);
@@ -195,7 +195,7 @@ impl Simulation {
             let slides = |p: &PointState| p.state == ContactState::Slip;
             kept.sliding = recovered.points.iter().map(slides).collect();
         }
-        kept.motions = Self::motions_to_lock(&model.scene, |k| {
+        kept.motions = Self::motions_of(&model.scene, |k| {
             let (subdomain, point) = (model.discrete.couplings.first + k, model.scene.couplings[k].reference);
             model.tfeti.rigid_motion(subdomain, &recovered.torn, point)
         });
@@ -213,7 +213,7 @@ impl Simulation {
             // what did not converge is no scale for later steps
             let peaks: Vec<Peak> = recovered.sizes.iter().map(Sizes::peak).collect();
             state.raise(&peaks);
-        } else if history || !kept.motions.is_empty() {
+        } else if history || model.scene.couplings.iter().any(|c| c.pending().is_some()) {
             state.note_unconverged();
         }
         let old = state.advance(self.settings.extrapolate, self.operator, kept);

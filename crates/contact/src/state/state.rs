@@ -38,7 +38,7 @@ pub struct State {
     pub(crate) effort: usize,
     /// The shortest step of conjugate gradients in the last solve; 0 if there was none.
     pub(crate) shortest_step: f64,
-    /// With motions of couplings that are to be locked: those at the last step, along their axes.
+    /// Motions of couplings at the last step, along their axes.
     pub(crate) motions: Vec<[f64; 6]>,
     /// Motions at which couplings are locked; none where none are.
     pub(crate) locked: Vec<[Option<f64>; 6]>,
@@ -94,7 +94,7 @@ pub(crate) struct Kept {
     pub(crate) effort: usize,
     /// The shortest step of conjugate gradients.
     pub(crate) shortest_step: f64,
-    /// Motions of couplings that are to be locked.
+    /// Motions of couplings.
     pub(crate) motions: Vec<[f64; 6]>,
 }
 

@@ -27,6 +27,7 @@ mod gap_history;
 mod halving;
 mod invariance;
 mod levels;
+mod locks;
 mod manufactured;
 mod methods;
 mod mortar;

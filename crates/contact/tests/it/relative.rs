@@ -8,8 +8,8 @@ use signorini_fem_mesh::{SurfaceFrame, vec3};
 use signorini_tfeti::internal::on_ranks;
 
 /// The sides of a cut.
-const FIRST: FacetTag = FacetTag(31);
-const SECOND: FacetTag = FacetTag(32);
+pub(crate) const FIRST: FacetTag = FacetTag(31);
+pub(crate) const SECOND: FacetTag = FacetTag(32);
 
 /// A mesh that is cut across where the centroids of tetrahedra pass a plane.
 fn cut_at(mesh: &TetMesh, axis: usize, at: f64) -> TetMesh {
@@ -18,11 +18,11 @@ fn cut_at(mesh: &TetMesh, axis: usize, at: f64) -> TetMesh {
 }
 
 /// A bar held at both ends and cut in the middle, along faces that are not plane where its mesh is not.
-fn bar(order: usize, boxes: [usize; 3]) -> Scene {
+pub(crate) fn bar(order: usize, boxes: [usize; 3]) -> Scene {
     with_tie(order, boxes, Contact::tied(FIRST, SECOND))
 }
 
-fn with_tie(order: usize, boxes: [usize; 3], tie: Contact) -> Scene {
+pub(crate) fn with_tie(order: usize, boxes: [usize; 3], tie: Contact) -> Scene {
     let mesh = Brick::new([2.0, 1.0, 1.0], [6, 3, 3])
         .perturbed(0.1, 3)
         .build()
@@ -41,7 +41,7 @@ fn with_tie(order: usize, boxes: [usize; 3], tie: Contact) -> Scene {
         .with_boxes(boxes)
 }
 
-fn end() -> Coupling {
+pub(crate) fn end() -> Coupling {
     Coupling::relative(0, POINT)
 }
 
@@ -62,7 +62,7 @@ fn components(v: &CouplingMotion) -> [f64; 6] {
     [a[0], a[1], a[2], b[0], b[1], b[2]]
 }
 
-const ALONG: [bool; 6] = [false, true, true, true, true, true];
+pub(crate) const ALONG: [bool; 6] = [false, true, true, true, true, true];
 
 /// A coupling that holds all motions at zero is the tie; one that moves the sides is a tie with this motion.
 #[test]
@@ -165,7 +165,7 @@ fn a_hinge_transfers_no_moment_about_its_axis() {
 /// Facets between the bolt and the plates, and between these.
 const UNDER_HEAD: FacetTag = FacetTag(41);
 const ABOVE_NUT: FacetTag = FacetTag(42);
-const UPPER_TOP: FacetTag = FacetTag(43);
+pub(crate) const UPPER_TOP: FacetTag = FacetTag(43);
 const UPPER_BOTTOM: FacetTag = FacetTag(44);
 const LOWER_TOP: FacetTag = FacetTag(45);
 const LOWER_BOTTOM: FacetTag = FacetTag(46);
@@ -197,7 +197,7 @@ fn carved(
 const CELL: f64 = 0.005;
 
 /// Two plates, the lower one held at its left end, and a bolt of 10 mm with play in their holes.
-fn joint(friction: f64, order: usize) -> Scene {
+pub(crate) fn joint(friction: f64, order: usize) -> Scene {
     let plate = |z: f64, left: f64, top: FacetTag, bottom: FacetTag, end: FacetTag| {
         let hole = |p: [f64; 3]| p[0].abs() > 2.0 * CELL || p[1].abs() > 2.0 * CELL;
         carved(([left, -4.0 * CELL, z], [10, 8, 2]), hole, move |p, n| match n {
@@ -239,7 +239,7 @@ fn joint(friction: f64, order: usize) -> Scene {
 }
 
 /// The bolt tightened to 10 kN until 1 s, then a force on the upper plate until 2 s.
-fn tightened(scene: Scene, coupling: Coupling, factors: [f64; 3], pull: Load) -> Scene {
+pub(crate) fn tightened(scene: Scene, coupling: Coupling, factors: [f64; 3], pull: Load) -> Scene {
     let history =
         |[start, middle, end]: [f64; 3]| History::table(vec![(0.0, start), (1.0, middle), (2.0, end)]).expect("table");
     scene
@@ -249,16 +249,16 @@ fn tightened(scene: Scene, coupling: Coupling, factors: [f64; 3], pull: Load) ->
         .with_analysis(Analysis::quasistatic(2.0, 4))
 }
 
-fn bolt() -> Coupling {
+pub(crate) fn bolt() -> Coupling {
     Coupling::relative(0, [0.0; 3])
         .with_axis([0.0, 0.0, 1.0])
         .with_held(ALONG)
 }
 
-const AXIAL: [bool; 6] = [true, false, false, false, false, false];
+pub(crate) const AXIAL: [bool; 6] = [true, false, false, false, false, false];
 
 /// Forces of the contacts at each step, and products.
-fn forces(simulation: &mut Simulation) -> Vec<(Vec<[f64; 3]>, usize)> {
+pub(crate) fn contact_forces(simulation: &mut Simulation) -> Vec<(Vec<[f64; 3]>, usize)> {
     let mut out = Vec::new();
     while !simulation.is_finished() {
         let one = step(simulation);
@@ -286,7 +286,7 @@ fn a_bolted_joint_holds_by_friction() {
         let across = Load::force(UPPER_END, [1.5e3, 0.0, 0.0]);
         let scene = tightened(joint(0.2, order), bolt(), [0.0, 1.0, 1.0], across);
         let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
-        let found = forces(&mut simulation);
+        let found = contact_forces(&mut simulation);
         for ((forces, products), [bolt, pull]) in found.iter().zip([[5e3, 0.0], [1e4, 0.0], [1e4, 750.0], [1e4, 1.5e3]])
         {
             for (force, sign) in forces.iter().zip([1.0, 1.0, 1.0, -1.0]) {
@@ -307,76 +307,6 @@ fn a_bolted_joint_holds_by_friction() {
             .map(|_| ())
             .expect_err("slides");
         assert!(matches!(error, ContactError::NotHeld { step: 3, .. }), "{error}");
-    }
-}
-
-/// A locked bolt keeps its length, as if it had been prescribed: the force that tightened it may go, and one that pulls
-/// the plates apart is shared by bolt and plates.
-#[test]
-fn a_locked_bolt_shares_what_pulls() {
-    let pull = || Load::force(UPPER_TOP, [0.0, 0.0, 4e3]);
-    let run = |coupling: Coupling, factors| {
-        let mut simulation = Simulation::new(
-            tightened(joint(0.2, 1), coupling, factors, pull()),
-            Settings::default().with_tolerance(1e-8),
-        )
-        .expect("set-up");
-        let found = forces(&mut simulation);
-        let result = simulation.result().expect("a step");
-        (found, result.displacement(), result.couplings()[0])
-    };
-    let (unlocked, ..) = run(bolt(), [0.0, 1.0, 1.0]);
-    assert!((unlocked[3].0[0][2] - 1e4).abs() < 1.0);
-    let (locked, displacement, motion) = run(bolt().with_lock(AXIAL, 1.0), [0.0, 1.0, 1.0]);
-    let (alone, other, _) = run(bolt().with_lock(AXIAL, 1.0), [0.0, 1.0, 0.0]);
-    let length = History::table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, 1.0)]).expect("table");
-    let moved = [motion.displacement[2], 0.0, 0.0, 0.0, 0.0, 0.0];
-    let (prescribed, third, _) = run(bolt().with_held([true; 6]).with_motion(moved, length), [0.0; 3]);
-    for k in 0..4 {
-        for c in 0..4 {
-            for others in [&alone, &prescribed] {
-                assert!(
-                    norm(vec3::sub(locked[k].0[c], others[k].0[c])) < 1.0,
-                    "step {k}, contact {c}"
-                );
-            }
-        }
-    }
-    let [rises, falls] = [locked[3].0[0][2] - 1e4, 1e4 - locked[3].0[1][2]];
-    assert!(rises > 200.0 && (rises + falls - 4e3).abs() < 1.0, "{rises} {falls}");
-    assert_close(
-        other.as_flattened(),
-        displacement.as_flattened(),
-        1e-5,
-        "without the force",
-    );
-    assert_close(third.as_flattened(), displacement.as_flattened(), 1e-5, "prescribed");
-}
-
-/// A state that is stored before or after the lock continues with the same bits.
-#[test]
-fn states_know_what_is_locked() {
-    let scene = || {
-        let pull = Load::force(UPPER_TOP, [0.0, 0.0, 4e3]);
-        tightened(joint(0.2, 1), bolt().with_lock(AXIAL, 1.0), [0.0, 1.0, 0.0], pull)
-    };
-    let mut whole = Simulation::new(scene(), Settings::default()).expect("set-up");
-    let mut states = vec![whole.state().clone()];
-    let mut last = None;
-    while !whole.is_finished() {
-        last = Some(step(&mut whole));
-        states.push(whole.state().clone());
-    }
-    let last = last.expect("steps");
-    // each in a simulation of its own, and one in the place of the other
-    let mut used = Simulation::new(scene(), Settings::default()).expect("set-up");
-    for state in states.into_iter().take(4).rev() {
-        let mut fresh = Simulation::new(scene(), Settings::default()).expect("set-up");
-        for simulation in [&mut fresh, &mut used] {
-            simulation.resume(state.clone()).expect("its state");
-            let found = rest(simulation).pop().expect("steps");
-            assert_eq!(found.displacement, last.displacement, "after step {}", state.step());
-        }
     }
 }
 

@@ -145,7 +145,7 @@ impl Assembly {
                 }
                 return match (key, reader(key)) {
                     ("BOUNDARY" | "INITIALCONDITIONS" | "STEP", _) => Err(card.word.cannot(BEHIND)),
-                    ("RIGIDBODY" | "COUPLING", _) => no_numbers(card).map(|()| false),
+                    ("RIGIDBODY" | "COUPLING" | "PRE-TENSIONSECTION", _) => no_numbers(card).map(|()| false),
                     (_, Some(read)) if key != "SOLIDSECTION" => self.own(model, card, read).map(|()| true),
                     _ => Ok(false),
                 };
@@ -280,7 +280,7 @@ fn bare(card: &Card, known: &[&str]) -> Result<(), DeckError> {
 
 /// Refuses nodes by number.
 fn no_numbers(card: &Card) -> Result<(), DeckError> {
-    for key in ["REFNODE", "ROTNODE"] {
+    for key in ["REFNODE", "ROTNODE", "NODE"] {
         match card.value(key)? {
             Some(node) if label(&node.name).is_some() => return Err(node.word.cannot(ANY)),
             Some(_) | None => {}

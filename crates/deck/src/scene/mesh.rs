@@ -103,7 +103,10 @@ impl Raw {
     pub(super) fn copy(&mut self, nodes: &[u32]) {
         for &node in nodes {
             let copy = self.points.len() as u32;
-            self.copies.entry(node).or_default().push(copy);
+            // a copy of a copy is one of the node
+            let first = self.copies.iter().find(|(_, copies)| copies.contains(&node));
+            let first = first.map_or(node, |(first, _)| *first);
+            self.copies.entry(first).or_default().push(copy);
             self.points.push(self.points[node as usize]);
             self.node_labels.push(self.node_labels[node as usize]);
         }

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use signorini_contact::{Contact, Coupling};
-use signorini_fem_mesh::vec3::{Vec3, add, area_vector, centroid, norm, scale};
+use signorini_fem_mesh::vec3::{Vec3, add, area_vector, centroid, dot, norm, scale};
 use signorini_fem_mesh::{FacetTag, MeshError, SurfaceFrame, TetMesh};
 
 use super::couplings::Coupling as Node;
@@ -12,6 +12,7 @@ use super::mesh::Raw;
 use super::numbers::Sets;
 use crate::error::{DeckError, Word};
 use crate::model::{CouplingLaw, FACES, Side};
+use crate::tolerances::ALONG_SECTION;
 
 /// Why other components are refused.
 pub(super) const ONE: &str = "the node of a *PRE-TENSION SECTION has component 1 only, along the normal; give that";
@@ -81,6 +82,9 @@ impl Section {
         }
         let axis = SurfaceFrame::from_normal(normal.unwrap_or(area))
             .ok_or_else(|| word.cannot("the section has no normal; give one below *PRE-TENSION SECTION"))?;
+        if dot(axis.normal, area).abs() < ALONG_SECTION * norm(area) {
+            return Err(word.cannot("the normal lies in the section, whose sides would slide; give one across it"));
+        }
         Ok(Self {
             node: node.node,
             surface: node.surface,
@@ -91,11 +95,20 @@ impl Section {
         })
     }
 
-    /// Cuts a mesh here.
-    fn cut(&self, mesh: &TetMesh, tags: [FacetTag; 2], raw: &Raw) -> Result<(TetMesh, Vec<u32>), DeckError> {
+    /// Cuts a mesh here, whose copies of nodes so far are those of these.
+    fn cut(
+        &self,
+        (mesh, copied): (&TetMesh, &[u32]),
+        tags: [FacetTag; 2],
+        raw: &Raw,
+    ) -> Result<(TetMesh, Vec<u32>), DeckError> {
         let cut = mesh.cut(|tet| self.sides.get(&(tet as u32)).copied(), tags);
         cut.map_err(|error| match error {
-            MeshError::CutEnds { node } => {
+            MeshError::CutEnds { mut node } => {
+                let uncut = mesh.points().len() - copied.len();
+                while let Some(of) = (node as usize).checked_sub(uncut) {
+                    node = copied[of];
+                }
                 let label = raw.node_labels[node as usize];
                 let why = format!("the section ends inside the body, at node {label}; give all faces across the bolt");
                 self.word.cannot(why)
@@ -116,11 +129,19 @@ pub(super) struct Sections(pub(super) Vec<Section>);
 
 impl Sections {
     pub(super) fn new(nodes: &[Node], sets: &Sets, raw: &Raw) -> Result<Self, DeckError> {
-        let section = |node: &Node| match node.law {
-            CouplingLaw::Pretension { normal } => Some(Section::new(node, normal, sets, raw)),
-            _ => None,
-        };
-        Ok(Self(nodes.iter().filter_map(section).collect::<Result<_, _>>()?))
+        let mut list: Vec<Section> = Vec::new();
+        for node in nodes {
+            let CouplingLaw::Pretension { normal } = node.law else {
+                continue;
+            };
+            if list.iter().any(|section| section.surface == node.surface) {
+                return Err(node
+                    .word
+                    .cannot("another section is at this surface; give it a surface of its own"));
+            }
+            list.push(Section::new(node, normal, sets, raw)?);
+        }
+        Ok(Self(list))
     }
 
     /// Whether a surface is one of them.
@@ -145,7 +166,7 @@ impl Sections {
     pub(super) fn cut(&self, mut mesh: TetMesh, next: u32, raw: &Raw) -> Result<(TetMesh, Vec<u32>), DeckError> {
         let mut copied = Vec::new();
         for (section, tag) in self.0.iter().zip((next..).step_by(2)) {
-            let (cut, own) = section.cut(&mesh, [FacetTag(tag), FacetTag(tag + 1)], raw)?;
+            let (cut, own) = section.cut((&mesh, &copied), [FacetTag(tag), FacetTag(tag + 1)], raw)?;
             mesh = cut;
             copied.extend(own);
         }

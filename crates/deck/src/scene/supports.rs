@@ -34,8 +34,8 @@ struct Held {
 struct Table {
     held: BTreeMap<(u32, usize), Held>,
     rigid: BTreeMap<(u32, usize), Held>,
-    /// The step in which the node of a section is locked.
-    locks: BTreeMap<u32, usize>,
+    /// The first and the last step that lock the node of a section.
+    locks: BTreeMap<u32, [usize; 2]>,
     owners: Vec<Owner>,
     ignored: Vec<Ignored>,
 }
@@ -86,7 +86,14 @@ pub(super) fn supports(
         let rigid = table.rigid.iter();
         let rigid = rigid.map(|(key, held)| (known.model.nodes[key.0 as usize].label, key.1, held));
         let released = elastic.chain(rigid).find(|r| r.2.track.is_removed_in(step));
-        if let (Some((label, component, _)), Some((word, _))) = (released, &given.boundary.first) {
+        let released = released.map(|(label, component, _)| (label, component));
+        let mut locked = table.locks.iter().filter(|(_, lock)| removes && lock[1] < step);
+        let unlocked = || {
+            locked
+                .next()
+                .map(|(node, _)| (known.model.nodes[*node as usize].label, 0))
+        };
+        if let (Some((label, component)), Some((word, _))) = (released.or_else(unlocked), &given.boundary.first) {
             return Err(word.cannot(format!(
                 "this releases component {} of node {label}; what is held in the first step is held to the end, so \
                 give it again here",
@@ -94,6 +101,7 @@ pub(super) fn supports(
             )));
         }
     }
+    table.note_loads(known)?;
     let track = |node, component| table.rigid.get(&(node, component)).map(|held| &held.track);
     known.bodies.check_rotations(known.timeline, track)?;
     let rigid = table.couple(known, faces, (loaded, contacts))?;
@@ -162,8 +170,10 @@ impl Table {
                         that the steps before reached, and remove it",
                     ));
                 };
-                let first = self.locks.entry(node).or_insert(step);
-                *first = step.min(*first);
+                if self.rigid.contains_key(&(node, 0)) {
+                    return Err(fixed.cannot("its displacement is prescribed, and stays so; remove one of both"));
+                }
+                self.locks.entry(node).or_insert([step; 2])[1] = step;
                 found = true;
                 continue;
             }
@@ -218,6 +228,20 @@ impl Table {
         Ok(())
     }
 
+    /// Notes forces on what is locked.
+    fn note_loads(&mut self, known: Known) -> Result<(), DeckError> {
+        for (step, given) in known.model.steps.iter().enumerate().filter(|_| !self.locks.is_empty()) {
+            for line in given.forces.lines.iter().filter(|line| line.given.value != 0.0) {
+                let is_locked = |node: &u32| self.locks.get(node).is_some_and(|lock| lock[0] <= step);
+                if known.sets.nodes.find(&line.target, &line.word)?.iter().any(is_locked) {
+                    let why = "the node is FIXED, so that the force acts on nothing";
+                    self.ignored.push(Ignored::new(&line.word, why));
+                }
+            }
+        }
+        Ok(())
+    }
+
     /// Gives the nodes of what is rigid its displacements: of surfaces with *KINEMATIC, and of rigid bodies. What of it is
     /// free or `loaded` is a coupling.
     fn couple(
@@ -235,13 +259,15 @@ impl Table {
                 (0..6).for_each(|c| drop(self.rigid.remove(&(coupling.node, c))));
                 continue;
             }
-            let nodes = coupled_nodes(coupling, known, faces)?.into_keys().collect();
+            let nodes = coupled_nodes(coupling, known, faces)?.into_keys();
+            let nodes = nodes.flat_map(|n| known.raw.with_copies(n)).collect();
             let leads = (coupling.node, None);
             out.extend(self.move_rigidly(known, nodes, (leads, loaded), ("surface", &coupling.word))?);
             (0..6).for_each(|c| drop(self.rigid.remove(&(coupling.node, c))));
         }
         for ((nodes, reference, rotation), said) in known.bodies.nodes().zip(&known.model.rigid) {
-            let elastic: Vec<u32> = nodes.iter().filter_map(|n| known.raw.in_mesh(*n)).collect();
+            let elastic = nodes.iter().filter_map(|n| known.raw.in_mesh(*n));
+            let elastic: Vec<u32> = elastic.flat_map(|n| known.raw.with_copies(n)).collect();
             if !elastic.is_empty() {
                 let leads = (reference, rotation);
                 let coupling = self.move_rigidly(known, elastic, (leads, loaded), ("rigid body", &said.word))?;
@@ -284,7 +310,7 @@ impl Table {
         let mut on = [true; 6];
         on[0] = held[0].is_some();
         let mut coupling = coupling.with_held(on);
-        if let Some(&step) = self.locks.get(&section.node) {
+        if let Some(&[step, _]) = self.locks.get(&section.node) {
             let start = known.timeline.spans.get(step).map_or(0.0, |span| span.start);
             coupling = coupling.with_lock([true, false, false, false, false, false], start);
         }

@@ -110,7 +110,9 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
     let mut out = Vec::new();
     for (history, (track, nodes_of)) in &fields.groups {
         let mut rises = vec![0.0; nodes];
-        nodes_of.iter().for_each(|(node, rise)| rises[*node as usize] += rise);
+        for (node, rise) in nodes_of {
+            raw.with_copies(*node).for_each(|node| rises[node as usize] += rise);
+        }
         let warm = |strain: [f64; 6]| Eigenstrain::new(strain).with_factors(rises.clone());
         let strains: Vec<Eigenstrain> = match laws[..] {
             [Some(law), ref others @ ..] if others.iter().all(|other| *other == Some(law)) => vec![warm(law)],

@@ -143,10 +143,97 @@ fn what_is_no_section_is_refused() {
         whole.replace(twice, &format!("{twice}{twice}")),
         "stands for another surface",
     );
+    let other = "*NODE\n9001, 0., 0., 0.\n*PRE-TENSION SECTION, SURFACE=CUT, NODE=9001\n";
+    refused(
+        whole.replace(twice, &format!("{twice}{other}")),
+        "another section is at this surface",
+    );
+    refused(
+        whole.replace("NODE=9000\n", "NODE=9000\n0., 1., 0.\n"),
+        "lies in the section",
+    );
     let tie = "*TIE, NAME=T\nCUT, S2\n";
     refused(
         whole.replace(HELD, &format!("{tie}{HELD}")),
         "inside the body; name a surface",
     );
     refused(text(&step("*DSLOAD\nCUT, P, 1.\n")), "inside the body; name a surface");
+}
+
+/// With a section that stays closed nothing is else than without, also where copies of nodes matter.
+#[test]
+fn a_closed_section_changes_nothing() {
+    let warm = STEEL.replace("*DENSITY", "*EXPANSION\n1.2e-5\n*DENSITY");
+    let mesh_ = bar(1);
+    let rotation = "*NODE\n9100, 20., 0., 5.\n";
+    let side = "*COUPLING, CONSTRAINT NAME=C, REF NODE=9100, SURFACE=S3\n*KINEMATIC\n1, 6\n";
+    let ends = "*BOUNDARY\nN1, 1, 3\n";
+    let step = |more: &str| format!("*STEP\n*STATIC\n1., 1.\n*BOUNDARY\nN2, 1, 3\n{more}*END STEP\n");
+    let free = |more: &str| format!("*STEP\n*STATIC\n1., 1.\n{more}*END STEP\n");
+    for (model, steps) in [
+        (
+            String::new(),
+            step("9000, 1\n*TEMPERATURE\nN1, 100.\nN2, 100.\nINNER, 100.\n"),
+        ),
+        (
+            format!("{rotation}{side}"),
+            free("*BOUNDARY\n9000, 1\n9100, 1, 6\n*DLOAD\nALL, BX, 1.\n"),
+        ),
+    ] {
+        let inner: Vec<String> = (1..=mesh_.points().len()).map(|n| n.to_string()).collect();
+        let set = format!("*NSET, NSET=INNER\n{}\n", inner.join(",\n"));
+        let ends = if model.is_empty() { ends } else { "*BOUNDARY\n" };
+        let node = "*PRE-TENSION SECTION, SURFACE=CUT, NODE=9000\n";
+        let cut = format!(
+            "{}{warm}{}{set}{node}{model}{ends}{steps}",
+            mesh(&mesh_),
+            section(&mesh_)
+        );
+        let plain = cut
+            .replace(node, "")
+            .replace(&section(&mesh_), "")
+            .replace("9000, 1\n", "");
+        let solved = |text: &str| {
+            let scene = read(text).expect("deck").scene().expect("scene");
+            let mut simulation = Simulation::new(scene, Settings::default().with_tolerance(1e-10)).expect("set-up");
+            simulation.step().expect("step").displacement()
+        };
+        let (found, expected) = (solved(&cut), solved(&plain));
+        let size = expected.as_flattened().iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+        for (a, b) in found.iter().flatten().zip(expected.iter().flatten()) {
+            assert!((a - b).abs() < 1e-6 * size, "{a:e} for {b:e} of {size:e}");
+        }
+    }
+}
+
+/// What is locked stays so, and no other condition of it is lost in silence.
+#[test]
+fn what_is_fixed_stays() {
+    let refused = |steps: String, part: &str| {
+        let error = read(&deck(&bar(1), &steps))
+            .map(|_| ())
+            .expect_err("refused")
+            .to_string();
+        assert!(error.contains(part), "{error}");
+    };
+    let step = |lines: &str| format!("*STEP\n*STATIC\n{lines}*END STEP\n");
+    refused([LENGTH, FIXED].concat(), "its displacement is prescribed");
+    let new = step("*BOUNDARY, OP=NEW\nN1, 1, 3\nN2, 1, 3\n");
+    refused([FORCE, FIXED, &new].concat(), "this releases component 1 of node 9000");
+    let again = step("*BOUNDARY, OP=NEW\nN1, 1, 3\nN2, 1, 3\n*BOUNDARY, FIXED\n9000, 1\n");
+    assert!(read(&deck(&bar(1), &[FORCE, FIXED, &again].concat())).is_ok());
+    let loaded = read(&deck(
+        &bar(1),
+        &[FORCE, FIXED, &step("*CLOAD\n9000, 1, 3000.\n")].concat(),
+    ))
+    .expect("a deck");
+    assert!(
+        loaded
+            .ignored()
+            .iter()
+            .any(|ignored| ignored.why.contains("acts on nothing"))
+    );
+    let fixed = step("*BOUNDARY\nN2, 1, 3\n*BOUNDARY, FIXED\n9000, 1\n*CLOAD\n9000, 1, 500.\n");
+    let forces = forces(&deck(&bar(1), &fixed));
+    assert!(forces[0][0].abs() < 1e-6, "{forces:?}");
 }

@@ -10,8 +10,9 @@ use super::tet_mesh::{Facet, FacetTag, TetMesh};
 impl TetMesh {
     /// Cuts the mesh open along all faces between tetrahedra of which `is_first(tet)` is `Some(true)` and `Some(false)`;
     /// those with `None` stay joined with both. The facets of the first side get the first tag, those of the other the
-    /// second one. Nodes of the cut stay with the first side; the other side has copies of them, numbered behind all
-    /// nodes, which have the list of these nodes in this order.
+    /// second one, beside those that have them already. Nodes of the cut stay with the first side; the other side has copies of
+    /// them, numbered behind all nodes, which have the list of these nodes in this order. What of a side hangs together by an
+    /// edge or a node only still does.
     ///
     /// ```
     /// use signorini_fem_mesh::{Brick, FacetTag, vec3};

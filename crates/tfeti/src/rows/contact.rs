@@ -36,6 +36,25 @@ pub fn prescribed_points(
     Ok(contact_rows(contact, &merged, nodes, |_| 1.0)?.prescribed)
 }
 
+/// Directions in which supports hold both sides of tied constraints whose sides move [relative](ContactConstraint::relative)
+/// to each other, with the position of the constraint: no row says there how they do.
+///
+/// # Errors
+/// As [`prescribed_points`].
+pub fn unsaid_directions(
+    contact: &[ContactConstraint],
+    supports: &[NodeSupport],
+    nodes: usize,
+) -> Result<Vec<(usize, [f64; 3])>, TfetiError> {
+    let merged = MergedSupports::new(supports, nodes)?;
+    let moving = contact.iter().enumerate().filter(|(_, point)| point.relative.is_some());
+    let of = |(k, point): (usize, &ContactConstraint)| {
+        let fixed = Space::new(point, &merged, &|_| 1.0).fixed(point, Vector3::zeros());
+        fixed.into_iter().map(move |d| (k, d.into()))
+    };
+    Ok(moving.flat_map(of).collect())
+}
+
 /// One contact row: what it does to the mean displacements of the nodes of both sides.
 #[derive(Debug, Clone)]
 pub(super) struct ContactRow {
