@@ -1,6 +1,8 @@
 //! States as bytes: what was stored and read back is the same state, and continues bit for bit.
 //! Stands alone, so that it runs with the feature `checkpoint` and no other.
 
+mod locks;
+
 use allocation_counter::measure;
 use signorini_contact::{
     Accuracy, Analysis, Coefficient, Contact, ContactError, DifferenceFormula, Every, Flow, Friction, Load, Method,
