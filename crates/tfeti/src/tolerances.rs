@@ -66,7 +66,7 @@ pub const RIGID: f64 = 1e3;
 /// Largest weight of the rows of a body over that of another one down to which both are told apart. Beyond, what rounding
 /// leaves of the soft body in the coarse problem was seen, from 1e-4 on by thousands of products where bodies touch, at
 /// 1e-8 by certificates of 1e-4 where they do not.
-pub(crate) const SOFT_BODY: f64 = 1e-2;
+pub(crate) const SOFT_BODY: f64 = 1e-3;
 /// Added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come out
 /// large, but `B^T` takes them to zero.
 pub(crate) const DEPENDENT: f64 = 0.3;

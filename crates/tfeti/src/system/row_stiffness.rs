@@ -125,7 +125,7 @@ impl Tfeti {
     /// Weights of the rows for projectors where copies differ in stiffness: `1 / sum_d b_d² / K_dd`, relative to the
     /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one, and a row that
     /// gives way in proportion to both together: a soft spring takes no part in what friction holds. Bodies that differ by
-    /// more than a hundred weigh as if they differed by that. `None` where all copies [count
+    /// more than a thousand weigh as if they differed by that. `None` where all copies [count
     /// alike](Self::copy_stiffness) and no row gives way. Without contact that is so only where the factor is not small
     /// (there weights save a product), and always on springs, whose small forces weights would hide.
     pub fn row_weights(&self) -> Option<Vec<f64>> {
