@@ -5,6 +5,7 @@
 //! | `first` | the program of the README |
 //! | `tresca` | a slip bound that is data, by two methods |
 //! | `two_bodies` | a pad on a rail |
+//! | `bolt` | plates that a tightened bolt holds, until they part |
 //! | `own_mesh` | a mesh of Gmsh, files for ParaView |
 //! | `deck` | a deck of CalculiX or Abaqus, from file to ParaView |
 //! | `restart` | a run that is stopped and continued |
