@@ -7,7 +7,7 @@
 
 use std::borrow::Cow;
 
-use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, norm, scale, sub};
+use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, norm, scale, sub, unit};
 
 use super::{Faces, MaterialAxes, Member, Model, Names, Section, Set, Side, Target, mesh, property};
 use crate::error::{DeckError, Fault, Location, Word};
@@ -451,7 +451,7 @@ impl Scope<'_> {
         let Some(([a, b], degrees)) = turn else {
             return moved;
         };
-        let axis = scale(1.0 / norm(sub(*b, *a)), sub(*b, *a));
+        let axis = unit(sub(*b, *a));
         let arm = sub(moved, *a);
         let along = scale(dot(arm, axis), axis);
         let (sine, cosine) = degrees.to_radians().sin_cos();

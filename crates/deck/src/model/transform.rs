@@ -1,6 +1,6 @@
 //! `*TRANSFORM`: axes of nodes, along which supports and forces at nodes are.
 
-use signorini_fem_mesh::vec3::{Vec3, cross, norm, scale, sub};
+use signorini_fem_mesh::vec3::{Vec3, cross, norm, sub, unit};
 
 use super::Model;
 use crate::error::{DeckError, Word};
@@ -33,7 +33,6 @@ pub(super) fn two_points(line: &Word, wanted: &'static str) -> Result<[Vec3; 2],
 
 /// Unit vectors along axes: the first goes through the first point, the second one lies in the plane of both.
 pub(crate) fn rectangular([a, b]: [Vec3; 2]) -> [Vec3; 3] {
-    let unit = |v: Vec3| scale(1.0 / norm(v), v);
     let (first, third) = (unit(a), unit(cross(a, b)));
     [first, cross(third, first), third]
 }

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use signorini_contact::{Directions, Support};
 use signorini_fem_mesh::History;
 use signorini_fem_mesh::internal::cylindrical;
-use signorini_fem_mesh::vec3::{Vec3, combine, norm, scale, sub};
+use signorini_fem_mesh::vec3::{Vec3, combine, norm, scale, sub, unit};
 
 use super::couplings::Couplings;
 use super::mesh::Raw;
@@ -109,8 +109,4 @@ impl Transforms {
             _ => support,
         }
     }
-}
-
-fn unit(v: Vec3) -> Vec3 {
-    scale(1.0 / norm(v), v)
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use signorini_fem_mesh::LoadDensity;
-use signorini_fem_mesh::vec3::{Vec3, cross, dot, norm, scale, sub};
+use signorini_fem_mesh::vec3::{Vec3, cross, dot, norm, scale, sub, unit};
 
 use super::faces::Known;
 use super::history::{Histories, Track, Tracks};
@@ -91,7 +91,7 @@ impl Volume {
                 Ok(())
             }
             VolumeLaw::Centrifugal([point, along]) => {
-                let axis = [*point, scale(1.0 / norm(*along), *along)];
+                let axis = [*point, unit(*along)];
                 let index = self.axes.iter().position(|known| self.is_same(*known, axis));
                 let index = index.unwrap_or(self.axes.len());
                 if index == self.axes.len() {
