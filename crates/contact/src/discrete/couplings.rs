@@ -10,8 +10,8 @@ use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, cross, dot, is_finite, norm, sub};
 use signorini_fem_mesh::{Decomposition, History, SurfaceFrame};
 use signorini_tfeti::internal::{PrescribedDirection, forces_at_three, unsaid_directions};
-use signorini_tfeti::{ContactConstraint, RigidSupport};
-use std::collections::BTreeMap;
+use signorini_tfeti::{ContactConstraint, RigidSupport, Side};
+use std::collections::{BTreeMap, BTreeSet};
 
 /// The couplings of a scene.
 #[derive(Debug)]
@@ -218,22 +218,46 @@ impl Couplings {
     }
 
     /// Refuses ties whose sides supports hold both where their relative motion is not held at zero: no row would say
-    /// what it is there.
+    /// what it is there. Likewise where both sides rub on obstacles from the start: how they share the normal force is not
+    /// determined, nor then their friction. The points are those of the first constraints.
     pub(super) fn check_ties(
         &self,
         scene: &Scene,
+        (points, rounding): (&[ContactPoint], f64),
         constraints: &[ContactConstraint],
         supports: &Supports,
     ) -> Result<(), ContactError> {
         if self.relative.is_empty() {
             return Ok(());
         }
+        let coupling = |tied: &ContactConstraint| Some(tied.relative?.0 as usize - self.first);
+        let touching = points
+            .iter()
+            .zip(constraints)
+            .filter(|(point, _)| point.gap <= rounding);
+        let rough = touching.filter(|(_, c)| c.friction && c.partner.is_none());
+        let rough: BTreeSet<u32> = rough.flat_map(|(_, c)| c.side.nodes()).map(|n| n.0).collect();
+        for tied in constraints {
+            let (Some(coupling), Some(partner)) = (coupling(tied), &tied.partner) else {
+                continue;
+            };
+            let rubs = |side: &Side| side.nodes().iter().map(|n| n.0).find(|node| rough.contains(node));
+            if let (Some(node), Some(_)) = (rubs(&tied.side), rubs(partner)) {
+                let reason = "both sides of the cut touch obstacles with friction there, and how they share the force is not \
+                    determined; cut the body where it touches nothing, or leave one side out of the contact";
+                return Err(ContactError::Coupling {
+                    coupling,
+                    node: Some(node),
+                    reason,
+                });
+            }
+        }
         let nodes = scene.mesh.points().len();
         for (k, direction) in unsaid_directions(constraints, &supports.nodes, nodes)? {
             let (tied, node) = (&constraints[k], constraints[k].side.nodes()[0].0);
-            let index = tied
-                .relative
-                .map_or(0, |(subdomain, _)| subdomain as usize - self.first);
+            let Some(index) = coupling(tied) else {
+                continue;
+            };
             let coupling = &scene.couplings[index];
             // the axes are checked
             let axes = axes(coupling).unwrap_or(AXES);

@@ -94,7 +94,7 @@ impl DiscreteScene {
         check_gaps(scene, &conditions, &poses)?;
         check_compliance(&points)?;
         let constraints = constraints(scene, &points, &ties, &couplings);
-        couplings.check_ties(scene, &constraints, &supports)?;
+        couplings.check_ties(scene, (&points, rounding), &constraints, &supports)?;
         let nodes = scene.mesh.points().len();
         let prescribed = prescribed_points(&constraints, &supports.nodes, nodes)?;
         check_penetration(scene, &points, &prescribed, (&supports.motions, &poses), rounding)?;

@@ -16,7 +16,9 @@ impl Simulation {
     /// Locks the couplings whose time has come: before the end of the next step.
     pub(super) fn lock_due(&mut self) -> Result<(), ContactError> {
         let (scene, state) = (&self.model.scene, &self.state);
-        let end = scene.analysis.time(state.step()).unwrap_or(0.0);
+        let Some(end) = scene.analysis.time(state.step()) else {
+            return Ok(());
+        };
         let mut locked: Locked = scene.couplings.iter().map(|c| c.locked).collect();
         let mut due = false;
         for (k, coupling) in scene.couplings.iter().enumerate() {
@@ -80,6 +82,7 @@ impl Simulation {
     /// Motions of couplings along their axes.
     pub(super) fn motions_of(scene: &Scene, motion: impl Fn(usize) -> [[f64; 3]; 2]) -> Vec<[f64; 6]> {
         let along = |(k, coupling)| {
+            // they are checked
             let axes = axes(coupling).unwrap_or_default();
             let parts = motion(k).map(|part| axes.map(|axis| dot(axis, part)));
             std::array::from_fn(|c| parts[c / 3][c % 3])

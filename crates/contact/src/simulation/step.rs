@@ -21,7 +21,8 @@ impl Simulation {
     /// Solves the next step. Not converging is no error: see the report of the result.
     ///
     /// # Errors
-    /// [`ContactError::Finished`] after the last step; a breakdown of a solver. The state is then unchanged.
+    /// [`ContactError::Finished`] after the last step; a breakdown of a solver. The state is then unchanged, but for
+    /// couplings that were locked before the step.
     pub fn step(&mut self) -> Result<Arc<StepResult>, ContactError> {
         let analysis = &self.model.scene.analysis;
         let steps = analysis.steps();

@@ -184,7 +184,12 @@ fn supports(model: &Model) -> u64 {
         let what = s.direction.iter().flatten().chain(&s.point);
         std::iter::once(u64::from(s.subdomain)).chain(what.map(|v| number(*v)))
     });
-    hash(nodes.chain(couplings))
+    // what is locked later was measured along its axes
+    let frames = model.scene.couplings.iter().flat_map(|c| {
+        let axis = c.axis().unwrap_or_default();
+        axis.into_iter().chain(c.reference()).map(number)
+    });
+    hash(nodes.chain(couplings).chain(frames))
 }
 
 #[cfg(test)]

@@ -233,7 +233,7 @@ impl State {
         let mut sizes = sizes.chain(self.controller.numbers()).chain([self.shortest_step]);
         let damage = if self.halved > MOST_HALVINGS {
             "it says that a step was halved more often than it can be"
-        } else if !self.numbers().flatten().all(|v| v.is_finite()) {
+        } else if !self.numbers().flatten().chain(self.moved()).all(|v| v.is_finite()) {
             "it contains NaN or infinity"
         } else if self.unconverged.is_some_and(|k| k >= self.step) {
             "it says that a step did not converge that it has not solved"
@@ -243,6 +243,12 @@ impl State {
             return Ok(());
         };
         refuse(format!("{damage}; use an earlier checkpoint or start anew"))
+    }
+
+    /// What it says of couplings.
+    fn moved(&self) -> impl Iterator<Item = &f64> {
+        let locked = self.locked.iter().flatten().flatten();
+        self.motions.iter().flatten().chain(locked)
     }
 
     /// All vectors of numbers.

@@ -148,6 +148,18 @@ fn scenes_do_not_keep_what_is_locked() {
     let mut later = start(pulled(Some(1.0), times()));
     later.resume(before.state().clone()).expect("the same rows");
     assert!(across(&mut later).iter().all(|force| (force - 1.0).abs() < 1e-5));
+    // but not from one that knows it along other axes
+    let turned = pulled(None, times()).couplings()[0].clone().with_axis([0.0, 1.0, 0.0]);
+    let turned = turned.with_held([false; 6]).with_lock(ALONG, 3.0);
+    let mut other = start(
+        bar(1, [2, 1, 1])
+            .with_coupling(turned)
+            .with_analysis(Analysis::Quasistatic {
+                times: times(),
+                formula: DifferenceFormula::BACKWARD_EULER,
+            }),
+    );
+    other.resume(before.state().clone()).expect_err("other axes");
     // a motion that is held says all of it
     let motion = [2.0 * length, 0.0, 0.0, 0.0, 0.0, 0.0];
     let held = bar(1, [2, 1, 1]).with_coupling(end().with_held([true; 6]).with_motion(motion, History::constant(1.0)));

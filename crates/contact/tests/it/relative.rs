@@ -366,6 +366,19 @@ fn what_is_refused_says_why() {
     );
     let message = refused(bar().with_coupling(end()).with_coupling(end()));
     assert!(message.contains("another coupling says how"), "{message}");
+    // rough on both sides
+    let floor = |friction| Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(friction));
+    let rubs = |friction| {
+        bar()
+            .with_contact(floor(friction))
+            .with_coupling(end().with_held(ALONG))
+    };
+    let message = refused(rubs(0.3));
+    assert!(
+        message.contains("how they share the force is not determined"),
+        "{message}"
+    );
+    assert!(Simulation::new(rubs(0.0), Settings::default()).is_ok());
     // held on both sides where the sides may turn
     let both = Support::components(brick::Y_MIN, [false, true, false]);
     let plane = bar().with_support(both.clone()).with_coupling(end().with_held(ALONG));

@@ -82,8 +82,9 @@ impl Section {
         }
         let axis = SurfaceFrame::from_normal(normal.unwrap_or(area))
             .ok_or_else(|| word.cannot("the section has no normal; give one below *PRE-TENSION SECTION"))?;
-        if dot(axis.normal, area).abs() < ALONG_SECTION * norm(area) {
-            return Err(word.cannot("the normal lies in the section, whose sides would slide; give one across it"));
+        if dot(axis.normal, area).abs() < ALONG_SECTION * areas {
+            return Err(word.cannot("the normal lies in the section, or its faces look to both sides, so that it would not be tightened; give one across it, and \
+                faces of one side"));
         }
         Ok(Self {
             node: node.node,
@@ -113,6 +114,7 @@ impl Section {
                 let why = format!("the section ends inside the body, at node {label}; give all faces across the bolt");
                 self.word.cannot(why)
             }
+            MeshError::NoCut => (self.word).cannot("another section has these faces; give each bolt its own"),
             other => self.word.cannot(other.to_string()),
         })
     }

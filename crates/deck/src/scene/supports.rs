@@ -163,6 +163,10 @@ impl Table {
             if section && line.kind.on[1..].contains(&true) {
                 return Err(line.word.cannot(ONE));
             }
+            if line.kind.fixed.is_none() && self.locks.contains_key(&node) {
+                let why = "the node is FIXED, and stays so; remove one of both";
+                return Err(line.word.cannot(why));
+            }
             if let Some(fixed) = &line.kind.fixed {
                 let Some(step) = step.filter(|_| section && line.given.value == 0.0) else {
                     return Err(fixed.cannot(

@@ -218,6 +218,8 @@ fn what_is_fixed_stays() {
     };
     let step = |lines: &str| format!("*STEP\n*STATIC\n{lines}*END STEP\n");
     refused([LENGTH, FIXED].concat(), "its displacement is prescribed");
+    let both = "*BOUNDARY\nN2, 1, 3\n*BOUNDARY, FIXED\n9000, 1\n*BOUNDARY\n9000, 1, 1, 0.01\n";
+    refused(step(both), "the node is FIXED, and stays so");
     let new = step("*BOUNDARY, OP=NEW\nN1, 1, 3\nN2, 1, 3\n");
     refused([FORCE, FIXED, &new].concat(), "this releases component 1 of node 9000");
     let again = step("*BOUNDARY, OP=NEW\nN1, 1, 3\nN2, 1, 3\n*BOUNDARY, FIXED\n9000, 1\n");
