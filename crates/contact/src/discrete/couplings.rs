@@ -24,9 +24,9 @@ pub(crate) struct Couplings {
     of_node: BTreeMap<u32, usize>,
     /// Of tied contacts whose sides move relative to each other the coupling that says how.
     relative: BTreeMap<usize, usize>,
+    /// Of each coupling, along and about which it is told what is held.
+    axes: Vec<[Vec3; 3]>,
 }
-
-const AXES: [Vec3; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 impl Couplings {
     /// With the decomposition of all subdomains; `supports` get the histories of their motions.
@@ -40,6 +40,7 @@ impl Couplings {
             supports: Vec::new(),
             of_node: BTreeMap::new(),
             relative: BTreeMap::new(),
+            axes: Vec::with_capacity(scene.couplings.len()),
         };
         if scene.couplings.is_empty() {
             return Ok((decomposition, out));
@@ -133,6 +134,7 @@ impl Couplings {
                 true => Rigid::Places(nodes),
                 false => Rigid::Nodes(nodes),
             });
+            out.axes.push(axes);
         }
         Ok((decomposition.with_rigid(rigid)?, out))
     }
@@ -178,6 +180,12 @@ impl Couplings {
                 Ok(distinct(tags.flat_map(|tag| scene.mesh.nodes_on(*tag))))
             }
         }
+    }
+
+    /// The components along its axes of the motion of a coupling: displacement and rotation.
+    pub(crate) fn along(&self, coupling: usize, motion: [Vec3; 2]) -> [f64; 6] {
+        let axes = &self.axes[coupling];
+        std::array::from_fn(|c| dot(axes[c % 3], motion[c / 3]))
     }
 
     /// Whether a node is in a coupling.
@@ -259,10 +267,8 @@ impl Couplings {
                 continue;
             };
             let coupling = &scene.couplings[index];
-            // the axes are checked
-            let axes = axes(coupling).unwrap_or(AXES);
             let extent = norm(sub(scene.mesh.points()[node as usize], coupling.reference));
-            if !stays(scene, (coupling, &axes), (node, extent), direction) {
+            if !stays(scene, (coupling, &self.axes[index]), (node, extent), direction) {
                 let reason = "supports hold both sides in a direction in which they may move relative to each other; \
                     leave the nodes of one side out of the supports, or let the coupling hold this motion at zero";
                 return Err(ContactError::Coupling {
@@ -311,9 +317,9 @@ impl Couplings {
 }
 
 /// Along and about which it is told what is held; `None` if its axis has no direction.
-pub(crate) fn axes(coupling: &Coupling) -> Option<[Vec3; 3]> {
+fn axes(coupling: &Coupling) -> Option<[Vec3; 3]> {
     let Some(axis) = coupling.axis else {
-        return Some(AXES);
+        return Some([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
     };
     let SurfaceFrame {
         normal,

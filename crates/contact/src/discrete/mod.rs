@@ -24,7 +24,6 @@ mod springs;
 mod supports;
 mod turn;
 
-pub(crate) use couplings::axes;
 pub(crate) use creases::area_vector;
 pub(crate) use extents::Extents;
 pub(crate) use points::ContactPoint;

@@ -285,20 +285,20 @@ impl Solved<'_> {
         let model = self.model;
         for (tied, tie) in model.tied() {
             if let Some(subdomain) = model.discrete.couplings.relative(tie.surface) {
-                let by = |row: usize| self.acts(row, subdomain as usize, motions);
+                let subdomain = subdomain as usize;
+                let motion = motions[subdomain - model.discrete.couplings.first];
                 for row in tied.rows.clone() {
-                    out.to_mut()[row] -= by(row);
+                    out.to_mut()[row] -= self.acts(row, subdomain, motion);
                 }
             }
         }
         out
     }
 
-    /// What the motion of a coupling does to a row.
-    fn acts(&self, row: usize, subdomain: usize, motions: &[[Vec3; 2]]) -> f64 {
+    /// What a motion of the subdomain of a coupling does to a row.
+    fn acts(&self, row: usize, subdomain: usize, motion: [Vec3; 2]) -> f64 {
         let (scene, discrete) = (&self.model.scene, &self.model.discrete);
-        let coupling = subdomain - discrete.couplings.first;
-        let (motion, point) = (motions[coupling], scene.couplings[coupling].reference());
+        let point = scene.couplings[subdomain - discrete.couplings.first].reference();
         let nodes = &discrete.decomposition.subdomains()[subdomain].nodes;
         let own = self.model.tfeti.gluing().row(row).into_iter();
         let own = own.filter(|entry| entry.0 == subdomain).map(|(_, dof, coefficient)| {
@@ -333,20 +333,11 @@ impl Solved<'_> {
     /// The motions of couplings, of which what is held has its prescribed values.
     fn motions(&self) -> Vec<[Vec3; 2]> {
         let (model, couplings) = (self.model, &self.model.discrete.couplings);
-        let own = model.scene.couplings.iter().enumerate();
-        let own = own.map(|(k, coupling)| {
-            let torn = &self.recovered.torn;
-            model
-                .tfeti
-                .rigid_motion(couplings.first + k, torn, coupling.reference())
-        });
-        let mut motions: Vec<[Vec3; 2]> = own.collect();
+        let mut motions = model.coupling_motions(&self.recovered.torn);
         let rows = model.tfeti.gluing().ranges().rigid.clone();
         for (row, held) in rows.zip(&couplings.supports) {
             let subdomain = held.subdomain as usize;
-            let mut unit = vec![[[0.0; 3]; 2]; motions.len()];
-            unit[subdomain - couplings.first] = held.direction;
-            let value = self.problem.offset[row] / self.acts(row, subdomain, &unit);
+            let value = self.problem.offset[row] / self.acts(row, subdomain, held.direction);
             let motion = &mut motions[subdomain - couplings.first];
             // one of the two directions is zero
             let off = value - dot(&motion[0], &held.direction[0]) - dot(&motion[1], &held.direction[1]);

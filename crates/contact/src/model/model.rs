@@ -92,6 +92,14 @@ impl Model {
         entries.map(|(subdomain, dof, value)| (subdomains[subdomain].nodes[dof / 3], dof % 3, value))
     }
 
+    /// The motions of couplings in a torn displacement: of the reference point, m, and the rotation.
+    pub(crate) fn coupling_motions(&self, torn: &[f64]) -> Vec<[[f64; 3]; 2]> {
+        let subdomains = self.discrete.couplings.first..;
+        let own = subdomains.zip(&self.scene.couplings);
+        own.map(|(subdomain, coupling)| self.tfeti.rigid_motion(subdomain, torn, coupling.reference()))
+            .collect()
+    }
+
     /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales
     /// certificates.
     pub(crate) fn copies(&self) -> &CopyStiffness {

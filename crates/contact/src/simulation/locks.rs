@@ -1,11 +1,8 @@
 //! Couplings that are locked after a step.
 
 use super::simulation::{Simulation, on_pool};
-use crate::discrete::axes;
 use crate::error::ContactError;
-use crate::scene::Scene;
 use crate::tolerances::ROUNDING;
-use signorini_fem_mesh::vec3::dot;
 use signorini_tfeti::RigidSupport;
 use std::sync::Arc;
 
@@ -19,8 +16,7 @@ impl Simulation {
         let Some(end) = scene.analysis.time(state.step()) else {
             return Ok(());
         };
-        let mut locked: Locked = scene.couplings.iter().map(|c| c.locked).collect();
-        let mut due = false;
+        let (mut locked, mut due) = (self.locked(), false);
         for (k, coupling) in scene.couplings.iter().enumerate() {
             if let Some((left, _)) = coupling.pending().filter(|(_, time)| time * (1.0 + ROUNDING) < end) {
                 let motion = match state.motions.get(k) {
@@ -77,16 +73,5 @@ impl Simulation {
     /// What is locked now.
     pub(super) fn locked(&self) -> Locked {
         self.model.scene.couplings.iter().map(|c| c.locked).collect()
-    }
-
-    /// Motions of couplings along their axes.
-    pub(super) fn motions_of(scene: &Scene, motion: impl Fn(usize) -> [[f64; 3]; 2]) -> Vec<[f64; 6]> {
-        let along = |(k, coupling)| {
-            // they are checked
-            let axes = axes(coupling).unwrap_or_default();
-            let parts = motion(k).map(|part| axes.map(|axis| dot(axis, part)));
-            std::array::from_fn(|c| parts[c / 3][c % 3])
-        };
-        scene.couplings.iter().enumerate().map(along).collect()
     }
 }

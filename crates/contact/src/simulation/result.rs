@@ -10,7 +10,7 @@ use crate::result::{
     Certificate, ContactSummary, CouplingMotion, Lengths, PointState, Reactions, Recovered, SurfaceStress, coarse_mesh,
     is_strained, nodal_reactions, points_at_nodes, reactions_about, tied_forces, warnings,
 };
-use crate::scene::{Coupling, LoadKind, Scene};
+use crate::scene::{LoadKind, Scene};
 use crate::status::{StepFailure, StepStatus};
 use crate::step::StepProblem;
 use crate::tolerances::SLENDER;
@@ -151,13 +151,10 @@ impl StepResult {
 
     /// The motion of each [coupling](crate::Coupling), in the order of the scene.
     pub fn couplings(&self) -> Vec<CouplingMotion> {
-        let first = self.model.discrete.couplings.first;
-        let motion = |(k, coupling): (usize, &Coupling)| {
-            let (torn, point) = (&self.recovered.torn, coupling.reference);
-            let [displacement, rotation] = self.model.tfeti.rigid_motion(first + k, torn, point);
-            CouplingMotion { displacement, rotation }
-        };
-        self.scene().couplings.iter().enumerate().map(motion).collect()
+        let motions = self.model.coupling_motions(&self.recovered.torn).into_iter();
+        motions
+            .map(|[displacement, rotation]| CouplingMotion { displacement, rotation })
+            .collect()
     }
 
     /// Stress in every tetrahedron (xx, yy, zz, yz, xz, xy), Pa; NaN where the displacement is NaN.

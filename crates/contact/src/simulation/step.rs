@@ -196,10 +196,9 @@ impl Simulation {
             let slides = |p: &PointState| p.state == ContactState::Slip;
             kept.sliding = recovered.points.iter().map(slides).collect();
         }
-        kept.motions = Self::motions_of(&model.scene, |k| {
-            let (subdomain, point) = (model.discrete.couplings.first + k, model.scene.couplings[k].reference);
-            model.tfeti.rigid_motion(subdomain, &recovered.torn, point)
-        });
+        let motions = model.coupling_motions(&recovered.torn).into_iter().enumerate();
+        let along = |(k, motion)| model.discrete.couplings.along(k, motion);
+        kept.motions = motions.map(along).collect();
         if history && model.any_law(Friction::depends_on_rate) {
             kept.rate = recovered.points.iter().map(|p| p.slip_rate).collect();
             result.report.counters.rate_updates += 1;

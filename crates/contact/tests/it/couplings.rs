@@ -72,7 +72,7 @@ pub(crate) fn assert_close(a: &[f64], b: &[f64], within: f64, what: &str) {
     }
 }
 
-fn six(a: [f64; 3], b: [f64; 3]) -> [f64; 6] {
+pub(crate) fn six(a: [f64; 3], b: [f64; 3]) -> [f64; 6] {
     [a[0], a[1], a[2], b[0], b[1], b[2]]
 }
 

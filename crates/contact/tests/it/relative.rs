@@ -1,7 +1,7 @@
 //! Tied sides that move relative to each other: against motions of ties, held against loaded, hinges, a bolted joint.
 
 use crate::common::*;
-use crate::couplings::{POINT, YOUNG, assert_close, moved};
+use crate::couplings::{POINT, YOUNG, assert_close, moved, six};
 use signorini_contact::result::CouplingMotion;
 use signorini_fem_mesh::mesh::drop_unused_nodes;
 use signorini_fem_mesh::{SurfaceFrame, vec3};
@@ -57,11 +57,6 @@ fn solved(scene: Scene, what: &str) -> (Solved, Resultant, usize, CouplingMotion
     (one, reactions.contacts[0], products, motion)
 }
 
-fn components(v: &CouplingMotion) -> [f64; 6] {
-    let [a, b] = [v.displacement, v.rotation];
-    [a[0], a[1], a[2], b[0], b[1], b[2]]
-}
-
 pub(crate) const ALONG: [bool; 6] = [false, true, true, true, true, true];
 
 /// A coupling that holds all motions at zero is the tie; one that moves the sides is a tie with this motion.
@@ -106,7 +101,7 @@ fn loads_take_the_place_of_what_holds() {
         let kept = std::array::from_fn(|c| if held[c] { motion[c] } else { 0.0 });
         let found = solved(loaded(end().with_held(held).with_motion(kept, moved())), "loaded");
         assert_close(&found.0.displacement, &expected.0.displacement, 1e-6, "displacement");
-        assert_close(&components(&found.3), &motion, 1e-6, "motion");
+        assert_close(&six(found.3.displacement, found.3.rotation), &motion, 1e-6, "motion");
         assert_close(&found.1.force, &force, 1e-6, "force");
         assert!(
             found.2 <= expected.2 + 5,
@@ -123,7 +118,12 @@ fn loads_take_the_place_of_what_holds() {
     let kept = [0.0, b, c, turn[0], turn[1], turn[2]];
     let held = end().with_axis(axis).with_held(ALONG).with_motion(kept, moved());
     let found = solved(loaded(held), "along an axis");
-    assert_close(&components(&found.3), &motion, 1e-6, "motion along an axis");
+    assert_close(
+        &six(found.3.displacement, found.3.rotation),
+        &motion,
+        1e-6,
+        "motion along an axis",
+    );
 }
 
 /// An arm on a hinge, whose reaction follows from equilibrium alone.
@@ -265,7 +265,7 @@ pub(crate) fn contact_forces(simulation: &mut Simulation) -> Vec<(Vec<[f64; 3]>,
         assert_certified(&one, &format!("{} s", one.time));
         let result = simulation.result().expect("a step");
         let reactions = result.reactions();
-        let rest = norm(reactions.imbalance().force);
+        let rest = vec3::norm(reactions.imbalance().force);
         assert!(rest < 1e-2, "{rest:e} N are left");
         out.push((
             reactions.contacts.iter().map(|c| c.force).collect(),
@@ -273,10 +273,6 @@ pub(crate) fn contact_forces(simulation: &mut Simulation) -> Vec<(Vec<[f64; 3]>,
         ));
     }
     out
-}
-
-fn norm(v: [f64; 3]) -> f64 {
-    vec3::norm(v)
 }
 
 /// The preload presses the plates onto each other, and friction between them holds a force across.

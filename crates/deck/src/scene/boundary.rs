@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::mesh::Raw;
+use super::mesh::{Raw, key};
 use crate::model::FACES;
 
 /// Tetrahedra and numbers of the faces that no two of them share.
@@ -18,9 +18,8 @@ impl Boundary {
         let mut of_corners: BTreeMap<[u32; 3], Option<(u32, u8)>> = BTreeMap::new();
         for (tet, corners) in (0..).zip(&raw.tets) {
             for (number, face) in (1..).zip(FACES) {
-                let mut key = face.map(|i| corners[i]);
-                key.sort_unstable();
-                let first = of_corners.entry(key).and_modify(|face| *face = None);
+                let corners = key(face.map(|i| corners[i]));
+                let first = of_corners.entry(corners).and_modify(|face| *face = None);
                 first.or_insert(Some((tet, number)));
             }
         }
@@ -32,9 +31,8 @@ impl Boundary {
     }
 
     /// That with some corners.
-    pub(super) fn of_corners(&self, mut corners: [u32; 3]) -> Option<(u32, u8)> {
-        corners.sort_unstable();
-        self.of_corners.get(&corners).copied()
+    pub(super) fn of_corners(&self, corners: [u32; 3]) -> Option<(u32, u8)> {
+        self.of_corners.get(&key(corners)).copied()
     }
 
     /// Those of some tetrahedra, ascending as these.

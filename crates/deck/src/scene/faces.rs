@@ -7,11 +7,11 @@
 use std::collections::HashMap;
 
 use signorini_fem_mesh::internal::distinct;
-use signorini_fem_mesh::{Facet, FacetTag, vec3};
+use signorini_fem_mesh::{Facet, FacetTag};
 
 use super::boundary::Boundary;
 use super::couplings::Couplings;
-use super::mesh::Raw;
+use super::mesh::{Raw, key};
 use super::numbers::Sets;
 use super::pretension::Sections;
 use super::rigid::{RigidBodies, RigidFace};
@@ -53,11 +53,6 @@ pub(super) struct Known<'a> {
     pub(super) couplings: &'a Couplings,
     pub(super) transforms: &'a Transforms,
     pub(super) sections: &'a Sections,
-}
-
-fn key(mut nodes: [u32; 3]) -> [u32; 3] {
-    nodes.sort_unstable();
-    nodes
 }
 
 impl FaceTable {
@@ -308,11 +303,6 @@ impl Face {
 
     /// Its area along the outward normal.
     pub(super) fn area_vector(&self, raw: &Raw) -> [f64; 3] {
-        let [a, b, c] = self.nodes.map(|n| raw.points[n as usize]);
-        let area = vec3::area_vector(&[a, b, c]);
-        let inside = raw.tet_points(self.tet);
-        let centre = [0, 1, 2].map(|i| inside.iter().map(|p| p[i]).sum::<f64>() / 4.0);
-        let out: f64 = (0..3).map(|i| area[i] * (a[i] - centre[i])).sum();
-        if out < 0.0 { area.map(|x| -x) } else { area }
+        raw.area_vector(self.tet, self.nodes)
     }
 }

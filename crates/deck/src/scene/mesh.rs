@@ -5,7 +5,7 @@ use std::path::Path;
 
 use signorini_contact::{ContactError, Part};
 use signorini_fem_mesh::internal::EDGES;
-use signorini_fem_mesh::vec3::{add, scale, sub, tet_volume};
+use signorini_fem_mesh::vec3::{add, area_vector, scale, sub, tet_volume};
 use signorini_fem_mesh::{Facet, TetMesh};
 
 use super::numbers::{Numbers, Sets};
@@ -30,6 +30,12 @@ pub(super) struct Raw {
     /// Positions and numbers in the deck of the tetrahedra.
     pub(super) elements: Vec<u32>,
     pub(super) element_labels: Vec<u32>,
+}
+
+/// The same for a face, however its corners are listed.
+pub(super) fn key(mut nodes: [u32; 3]) -> [u32; 3] {
+    nodes.sort_unstable();
+    nodes
 }
 
 impl Raw {
@@ -142,6 +148,16 @@ impl Raw {
     pub(super) fn face(&self, tet: u32, number: u8) -> [u32; 3] {
         let corners = self.tets[tet as usize];
         FACES[usize::from(number) - 1].map(|i| corners[i])
+    }
+
+    /// The area of a face of a tetrahedron along the outward normal.
+    pub(super) fn area_vector(&self, tet: u32, face: [u32; 3]) -> [f64; 3] {
+        let [a, b, c] = face.map(|n| self.points[n as usize]);
+        let area = area_vector(&[a, b, c]);
+        let inside = self.tet_points(tet);
+        let centre = [0, 1, 2].map(|i| inside.iter().map(|p| p[i]).sum::<f64>() / 4.0);
+        let out: f64 = (0..3).map(|i| area[i] * (a[i] - centre[i])).sum();
+        if out < 0.0 { area.map(|x| -x) } else { area }
     }
 
     /// The number of a node of the mesh in the deck, where it is defined.

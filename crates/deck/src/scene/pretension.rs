@@ -4,11 +4,11 @@
 use std::collections::BTreeMap;
 
 use signorini_contact::{Contact, Coupling};
-use signorini_fem_mesh::vec3::{Vec3, add, area_vector, centroid, dot, norm, scale};
+use signorini_fem_mesh::vec3::{Vec3, add, centroid, dot, norm, scale};
 use signorini_fem_mesh::{FacetTag, MeshError, SurfaceFrame, TetMesh};
 
 use super::couplings::Coupling as Node;
-use super::mesh::Raw;
+use super::mesh::{Raw, key};
 use super::numbers::Sets;
 use crate::error::{DeckError, Word};
 use crate::model::{CouplingLaw, FACES, Side};
@@ -46,12 +46,13 @@ impl Section {
                 let tet = raw.tet(element);
                 let tet = tet.ok_or_else(|| faces.word.cannot("a section is across elastic elements"))?;
                 let nodes = raw.face(tet, number);
-                let points = nodes.map(|n| raw.points[n as usize]);
-                // these faces are numbered counter-clockwise seen from inside
-                let out = scale(-1.0, area_vector(&points));
+                let (out, middle) = (
+                    raw.area_vector(tet, nodes),
+                    centroid(&nodes.map(|n| raw.points[n as usize])),
+                );
                 area = add(area, out);
                 areas += norm(out);
-                centre = add(centre, scale(norm(out), centroid(&points)));
+                centre = add(centre, scale(norm(out), middle));
                 own.insert(key(nodes), tet);
             }
         }
@@ -59,19 +60,18 @@ impl Section {
         let mut found = 0;
         for (tet, corners) in (0..).zip(&raw.tets) {
             for face in FACES {
-                match own.get(&key(face.map(|i| corners[i]))) {
-                    Some(first) if *first != tet => {
-                        found += 1;
-                        if sides.insert(tet, false) == Some(true) {
-                            let label = raw.element_labels[tet as usize];
-                            let why = format!(
-                                "element {label} of the section lies behind another face of it, too; give faces of \
-                                elements on one side"
-                            );
-                            return Err(word.cannot(why));
-                        }
-                    }
-                    _ => {}
+                let first = own.get(&key(face.map(|i| corners[i])));
+                if first.is_none_or(|first| *first == tet) {
+                    continue;
+                }
+                found += 1;
+                if sides.insert(tet, false) == Some(true) {
+                    let label = raw.element_labels[tet as usize];
+                    let why = format!(
+                        "element {label} of the section lies behind another face of it, too; give faces of elements on \
+                        one side"
+                    );
+                    return Err(word.cannot(why));
                 }
             }
         }
@@ -83,8 +83,9 @@ impl Section {
         let axis = SurfaceFrame::from_normal(normal.unwrap_or(area))
             .ok_or_else(|| word.cannot("the section has no normal; give one below *PRE-TENSION SECTION"))?;
         if dot(axis.normal, area).abs() < ALONG_SECTION * areas {
-            return Err(word.cannot("the normal lies in the section, or its faces look to both sides, so that it would not be tightened; give one across it, and \
-                faces of one side"));
+            let why = "the normal lies in the section, or its faces look to both sides, so that it would not be tightened; give \
+                one across it, and faces of one side";
+            return Err(word.cannot(why));
         }
         Ok(Self {
             node: node.node,
@@ -118,11 +119,16 @@ impl Section {
             other => self.word.cannot(other.to_string()),
         })
     }
-}
 
-fn key(mut nodes: [u32; 3]) -> [u32; 3] {
-    nodes.sort_unstable();
-    nodes
+    /// The motion of one side of a contact relative to the other.
+    pub(super) fn coupling(&self, contact: usize) -> Coupling {
+        Coupling::relative(contact, self.centre).with_axis(self.axis)
+    }
+
+    /// A force that tightens it.
+    pub(super) fn force(&self, value: f64) -> Vec3 {
+        scale(value, self.axis)
+    }
 }
 
 /// All sections.
@@ -179,16 +185,4 @@ impl Sections {
 /// The tie of the sides of a cut, of which the first one has this tag.
 pub(super) fn tie(tag: u32) -> Contact {
     Contact::tied(FacetTag(tag), FacetTag(tag + 1))
-}
-
-impl Section {
-    /// The motion of one side of a contact relative to the other.
-    pub(super) fn coupling(&self, contact: usize) -> Coupling {
-        Coupling::relative(contact, self.centre).with_axis(self.axis)
-    }
-
-    /// A force that tightens it.
-    pub(super) fn force(&self, value: f64) -> Vec3 {
-        scale(value, self.axis)
-    }
 }

@@ -14,7 +14,7 @@ fn coupled(law: &str) -> String {
     format!("{NODE}*COUPLING, CONSTRAINT NAME=C, REF NODE=900, SURFACE=S6\n{law}\n")
 }
 
-fn step(lines: &str) -> String {
+pub(crate) fn step(lines: &str) -> String {
     format!("*STEP\n*STATIC\n{lines}*END STEP\n")
 }
 

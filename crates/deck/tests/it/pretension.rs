@@ -5,6 +5,7 @@ use signorini_fem_mesh::vec3::centroid;
 use signorini_fem_mesh::{Brick, TetMesh, brick};
 use std::fmt::Write as _;
 
+use crate::couplings::step;
 use crate::write::{STEEL, mesh, read};
 
 /// A bar of 40 mm, held at both ends and cut in the middle.
@@ -111,15 +112,16 @@ fn copies_of_nodes_are_held_as_they_are() {
     assert_eq!(read.coupling_names(), ["SURFACE=CUT"]);
 }
 
+#[track_caller]
+fn refused(text: String, part: &str) {
+    let error = read(&text).map(|_| ()).expect_err("refused").to_string();
+    assert!(error.contains(part), "{error}");
+}
+
 #[test]
 fn what_is_no_section_is_refused() {
     let mesh_ = bar(1);
     let text = |steps: &str| deck(&mesh_, steps);
-    let refused = |text: String, part: &str| {
-        let error = read(&text).map(|_| ()).expect_err("refused").to_string();
-        assert!(error.contains(part), "{error}");
-    };
-    let step = |lines: &str| format!("*STEP\n*STATIC\n{lines}*END STEP\n");
     refused(text(&step("*CLOAD\n9000, 2, 1.\n")), "component 1 only");
     refused(text(&step("*BOUNDARY\n9000, 1, 3\n")), "component 1 only");
     refused(
@@ -209,14 +211,7 @@ fn a_closed_section_changes_nothing() {
 /// What is locked stays so, and no other condition of it is lost in silence.
 #[test]
 fn what_is_fixed_stays() {
-    let refused = |steps: String, part: &str| {
-        let error = read(&deck(&bar(1), &steps))
-            .map(|_| ())
-            .expect_err("refused")
-            .to_string();
-        assert!(error.contains(part), "{error}");
-    };
-    let step = |lines: &str| format!("*STEP\n*STATIC\n{lines}*END STEP\n");
+    let refused = |steps: String, part: &str| refused(deck(&bar(1), &steps), part);
     refused([LENGTH, FIXED].concat(), "its displacement is prescribed");
     let both = "*BOUNDARY\nN2, 1, 3\n*BOUNDARY, FIXED\n9000, 1\n*BOUNDARY\n9000, 1, 1, 0.01\n";
     refused(step(both), "the node is FIXED, and stays so");

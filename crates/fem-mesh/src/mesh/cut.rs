@@ -3,6 +3,7 @@
 use crate::tables::DisjointSets;
 use std::collections::BTreeMap;
 
+use super::check;
 use super::error::MeshError;
 use super::faces::{NONE, face_nodes};
 use super::tet_mesh::{Facet, FacetTag, TetMesh};
@@ -94,17 +95,15 @@ impl TetMesh {
             copied.push(node);
             out.points.push(self.points[node as usize]);
         }
-        super::check::sizes(out.points.len(), out.tets.len())?;
-        let renumber = |tet: usize, node: u32| copies.get(&(tet, node)).copied().unwrap_or(node);
-        let touched: std::collections::BTreeSet<usize> = copies.keys().map(|key| key.0).collect();
-        for &tet in &touched {
-            out.tets[tet] = self.tets[tet].map(|node| renumber(tet, node));
-            if let Some(mids) = out.mids.get_mut(tet) {
-                *mids = mids.map(|node| renumber(tet, node));
-            }
+        check::sizes(out.points.len(), out.tets.len())?;
+        for (&(tet, node), &copy) in &copies {
+            let mids = out.mids.get_mut(tet).into_iter().flatten();
+            let places = out.tets[tet].iter_mut().chain(mids);
+            places.filter(|place| **place == node).for_each(|place| *place = copy);
         }
         for (facet, &owner) in out.facets.iter_mut().zip(&out.owners) {
-            facet.nodes = facet.nodes.map(|node| renumber(owner as usize, node));
+            let copy = |node: u32| copies.get(&(owner as usize, node)).copied();
+            facet.nodes = facet.nodes.map(|node| copy(node).unwrap_or(node));
         }
         Ok((out, copied))
     }

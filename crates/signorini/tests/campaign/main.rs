@@ -104,31 +104,19 @@ fn scenes_that_find_no_balance_are_given_up() {
 /// The same for bodies meshed apart, ties, obstacles of any shape and friction by direction.
 #[test]
 fn bodies_meshed_apart_are_solved() {
-    campaign("SIGNORINI_APART", APART, |seed, number| {
-        let scene = generate::apart::apart(seed, number);
-        let outcome = run::run_apart(&scene);
-        (scene.recipe, outcome)
-    });
+    campaign_apart("SIGNORINI_APART", APART, generate::apart::apart);
 }
 
 /// The same for discs and washers, whose rims are bent, and sleeves around one another.
 #[test]
 fn round_bodies_are_solved() {
-    campaign("SIGNORINI_ROUND", ROUND, |seed, number| {
-        let scene = generate::round::round(seed, number);
-        let outcome = run::run_apart(&scene);
-        (scene.recipe, outcome)
-    });
+    campaign_apart("SIGNORINI_ROUND", ROUND, generate::round::round);
 }
 
 /// The same for shafts, tubes and rings in one another, with interference or clearance, on arbors and in bores.
 #[test]
 fn fitted_bodies_are_solved() {
-    campaign("SIGNORINI_FIT", FIT, |seed, number| {
-        let scene = generate::fit::fit(seed, number);
-        let outcome = run::run_apart(&scene);
-        (scene.recipe, outcome)
-    });
+    campaign_apart("SIGNORINI_FIT", FIT, generate::fit::fit);
 }
 
 /// The estimate of the error moved a node that supports let move along the surface only out of a side meshed apart, by
@@ -168,11 +156,7 @@ fn bodies_that_grow_are_solved() {
 /// The same for bodies meshed apart with rigid couplings.
 #[test]
 fn coupled_bodies_are_solved() {
-    campaign("SIGNORINI_GRIP", GRIP, |seed, number| {
-        let scene = generate::grip::grip(seed, number);
-        let outcome = run::run_apart(&scene);
-        (scene.recipe, outcome)
-    });
+    campaign_apart("SIGNORINI_GRIP", GRIP, generate::grip::grip);
 }
 
 /// Scenes of both kinds on two ranks: what they do is the same on both, bit for bit that of one process.
@@ -198,6 +182,15 @@ fn ranks_change_no_bit() {
             }
         }
     }
+}
+
+/// The same for scenes of bodies meshed apart.
+fn campaign_apart(name: &str, scenes: u64, generate: impl Fn(u64, u64) -> apart::Apart + Sync) {
+    campaign(name, scenes, |seed, number| {
+        let scene = generate(seed, number);
+        let outcome = run::run_apart(&scene);
+        (scene.recipe, outcome)
+    });
 }
 
 /// Runs many scenes, or the one that `name` gives the number of; `name` with an S is their number.

@@ -168,12 +168,15 @@ impl Tfeti {
     /// row between bodies is one of the softer.
     fn compare_weights(&self, weights: &mut [f64]) {
         let body = &self.coarse().0.mobility.part_of;
-        let bodies = |row: usize| self.gluing().row(row).into_iter().map(|entry| body[entry.0] as usize);
+        // of a single body no row is asked for its own
+        let several = body.iter().any(|body| *body > 0);
+        let rows = |row: usize| if several { self.gluing().row(row) } else { Vec::new() };
+        let bodies = |row: usize| rows(row).into_iter().map(|entry| body[entry.0] as usize);
         let mut largest = vec![0.0_f64; body.len()];
         for (row, weight) in weights.iter().enumerate() {
             bodies(row).for_each(|body| largest[body] = largest[body].max(*weight));
         }
-        let most = largest.iter().fold(0.0_f64, |m, w| m.max(*w));
+        let most = weights.iter().fold(0.0_f64, |m, w| m.max(*w));
         for (row, weight) in weights.iter_mut().enumerate() {
             let own = bodies(row).map(|body| largest[body]).fold(most, f64::min);
             *weight = if *weight > 0.0 {
