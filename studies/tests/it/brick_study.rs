@@ -67,6 +67,23 @@ fn elements_of_order_two_need_little_more_products() {
     assert!(bad.to_string().contains("order 1 or 2"));
 }
 
+/// Steps that follow the mesh, so that the contact front passes as many nodes in each: 12.4, 12.5 and 12.2 products a
+/// step, and 12.6 still at n = 8.
+#[test]
+fn products_a_step_do_not_grow_with_the_mesh_if_steps_follow_it() {
+    for n in [1, 2, 3] {
+        let steps = 25 * n;
+        let line = format!("brick --n {n} --loading b --cells 2 --order 2 --steps {steps} --quiet");
+        let record = &run(&line).0[0].record;
+        assert!(
+            record.unconverged.is_empty() && record.largest_certificate < 1e-6,
+            "{record:?}"
+        );
+        let products = record.n_m as f64 / steps as f64;
+        assert!(products < 12.6, "n = {n}: {products} products a step");
+    }
+}
+
 #[test]
 fn five_steps_of_both_loadings_by_all_methods_agree() {
     let (face, text) = run("brick --n 1 --steps 5 --quiet --threads 1 --tolerance 1e-8");
