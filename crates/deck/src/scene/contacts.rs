@@ -20,59 +20,43 @@ pub(super) fn contacts(
     leads: &[Result<Lead, FreeLead>],
     ignored: &mut Vec<Ignored>,
 ) -> Result<Vec<Contact>, DeckError> {
-    let model = known.model;
-    let clearances = clearances(model)?;
+    let (model, clearances) = (known.model, clearances(known.model)?);
     let mut out = Vec::with_capacity(model.pairs.len());
     for pair in &model.pairs {
-        let interaction = match &pair.law {
-            Law::Contact(Touch { interaction, .. }) => Some(model.interactions.find(
-                "interaction",
-                &interaction.name,
-                &interaction.word,
-            )?),
+        let law = match &pair.law {
+            Law::Contact(Touch { interaction, .. }) => {
+                let Named { name, word } = interaction;
+                let found = model.interactions.find("interaction", name, word)?;
+                Some(model.interactions.at(found))
+            }
             Law::Tied(_) => None,
         };
-        let surface = |Named { name, word }: &Named| surfaces.find("surface", name, word);
-        let (dependent, other) = (surface(&pair.slave)?, surface(&pair.master)?);
-        let (slave, master) = (surfaces.at(dependent), surfaces.at(other));
-        let [own, partner] = [&pair.slave.word, &pair.master.word];
-        known.sections.check_outside(dependent, own)?;
-        known.sections.check_outside(other, partner)?;
-        if slave.is_empty() {
-            return Err(own.cannot("a rigid surface has to be the second (independent) one of a pair; swap them"));
+        let sides = sides(known, surfaces, pair)?;
+        if let (Law::Tied(tie), false) = (&pair.law, surfaces.at(sides[1]).is_empty()) {
+            ignored.extend(ties::check(known, faces, (pair, tie), sides)?);
         }
-        if slave.iter().any(|tag| master.contains(tag)) {
-            return Err(partner.cannot(format!(
-                "{} and {} share faces; a face does not touch itself, so give two surfaces",
-                own.text, partner.text
-            )));
-        }
-        if let (Law::Tied(tie), false) = (&pair.law, master.is_empty()) {
-            ignored.extend(ties::check(known, faces, (pair, tie), [dependent, other])?);
-        }
+        let [slave, master] = sides.map(|side| &surfaces.at(side)[..]);
         // a gap is that to a plane or along measured normals; the rim of another rigid surface has none
-        let (mut contact, takes_gap) = match (&master[..], interaction) {
+        let (contact, takes_gap) = match (master, law) {
             ([], None) => {
                 let why = "a rigid surface cannot be tied; hold the nodes with *BOUNDARY, or use *CONTACT PAIR";
-                return Err(partner.cannot(why));
+                return Err(pair.master.word.cannot(why));
             }
             ([], Some(_)) => {
-                let nodes = faces.places_of(known.raw, dependent as u32);
+                let nodes = faces.places_of(known.raw, sides[0] as u32);
                 let moves = (known.timeline, leads);
-                obstacle(&faces.rigid[other], moves, (slave[0], &nodes), partner)?
+                obstacle(&faces.rigid[sides[1]], moves, (slave[0], &nodes), &pair.master.word)?
             }
-            ([first, more @ ..], interaction) => {
-                let between = match interaction {
+            ([first, more @ ..], law) => {
+                let contact = match law {
                     Some(_) => Contact::between(slave[0], *first),
                     None => Contact::tied(slave[0], *first),
                 };
-                (more.iter().fold(between, |c, tag| c.with_partner(*tag)), true)
+                (more.iter().fold(contact, |c, tag| c.with_partner(*tag)), true)
             }
         };
-        for &tag in &slave[1..] {
-            contact = contact.with_tag(tag);
-        }
-        if let Some(law) = interaction.map(|found| model.interactions.at(found)) {
+        let mut contact = slave[1..].iter().fold(contact, |c, tag| c.with_tag(*tag));
+        if let Some(law) = law {
             let [normal, tangential] = law.compliance;
             contact = contact
                 .with_normal_compliance(normal)
@@ -81,35 +65,63 @@ pub(super) fn contacts(
                 contact = contact.with_friction(Friction::coulomb(coefficient));
             }
         }
-        if let Law::Contact(Touch { adjust, .. }) = &pair.law {
-            contact = match (clearances.get(&surfaces_of(pair)), adjust) {
-                (Some(given), _) if !takes_gap => {
-                    return Err(given.word.cannot(
-                        "the gap to a rigid surface is prescribed only where that is a half-space: flat, below all \
-                        nodes of the first surface, and not turning; remove this and put the nodes where they are",
-                    ));
-                }
-                (Some(given), adjust) => {
-                    let why = "the gap of this pair is that of its *CLEARANCE";
-                    ignored.extend(adjust.iter().map(|(word, _)| Ignored::new(word, why)));
-                    contact.with_gap(given.value)
-                }
-                (None, Some((word, _))) if master.is_empty() => {
-                    let why = "gaps to a rigid surface are not closed; put the nodes on it, and remove ADJUST";
-                    return Err(word.cannot(why));
-                }
-                (None, Some((word, reach))) => {
-                    let why =
-                        "nodes are not moved; where a gap is not larger than this, the sides touch without stress";
-                    ignored.push(Ignored::new(word, why));
-                    contact.with_closed_gaps(*reach)
-                }
-                (None, None) => contact,
-            };
+        if let Law::Contact(touch) = &pair.law {
+            let given = clearances.get(&surfaces_of(pair)).copied();
+            contact = with_gap(contact, (given, takes_gap), (touch, master.is_empty()), ignored)?;
         }
         out.push(contact);
     }
     Ok(out)
+}
+
+/// The positions of both surfaces of a pair, which have no face in common; the dependent one has faces of elements.
+fn sides(known: Known, surfaces: &Names<Vec<FacetTag>>, pair: &Pair) -> Result<[usize; 2], DeckError> {
+    let surface = |Named { name, word }: &Named| surfaces.find("surface", name, word);
+    let (dependent, other) = (surface(&pair.slave)?, surface(&pair.master)?);
+    let [own, partner] = [&pair.slave.word, &pair.master.word];
+    known.sections.check_outside(dependent, own)?;
+    known.sections.check_outside(other, partner)?;
+    let (slave, master) = (surfaces.at(dependent), surfaces.at(other));
+    if slave.is_empty() {
+        return Err(own.cannot("a rigid surface has to be the second (independent) one of a pair; swap them"));
+    }
+    match slave.iter().any(|tag| master.contains(tag)) {
+        true => Err(partner.cannot(format!(
+            "{} and {} share faces; a face does not touch itself, so give two surfaces",
+            own.text, partner.text
+        ))),
+        false => Ok([dependent, other]),
+    }
+}
+
+/// The contact with the gap of its `*CLEARANCE`, where it takes one, or without those that `ADJUST` closes.
+fn with_gap(
+    contact: Contact,
+    (given, takes_gap): (Option<&Clearance>, bool),
+    (touch, is_rigid): (&Touch, bool),
+    ignored: &mut Vec<Ignored>,
+) -> Result<Contact, DeckError> {
+    match (given, &touch.adjust) {
+        (Some(given), _) if !takes_gap => Err(given.word.cannot(
+            "the gap to a rigid surface is prescribed only where that is a half-space: flat, below all nodes of the \
+            first surface, and not turning; remove this and put the nodes where they are",
+        )),
+        (Some(given), adjust) => {
+            let why = "the gap of this pair is that of its *CLEARANCE";
+            ignored.extend(adjust.iter().map(|(word, _)| Ignored::new(word, why)));
+            Ok(contact.with_gap(given.value))
+        }
+        (None, Some((word, _))) if is_rigid => {
+            let why = "gaps to a rigid surface are not closed; put the nodes on it, and remove ADJUST";
+            Err(word.cannot(why))
+        }
+        (None, Some((word, reach))) => {
+            let why = "nodes are not moved; where a gap is not larger than this, the sides touch without stress";
+            ignored.push(Ignored::new(word, why));
+            Ok(contact.with_closed_gaps(*reach))
+        }
+        (None, None) => Ok(contact),
+    }
 }
 
 /// The names of both surfaces.

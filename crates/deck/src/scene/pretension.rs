@@ -31,39 +31,52 @@ pub(super) struct Section {
     centre: Vec3,
 }
 
-impl Section {
-    fn new(node: &Node, normal: Option<Vec3>, sets: &Sets, raw: &Raw) -> Result<Self, DeckError> {
-        let word = &node.word;
-        let mut own: BTreeMap<[u32; 3], u32> = BTreeMap::new();
-        let (mut area, mut areas, mut centre) = ([0.0; 3], 0.0, [0.0; 3]);
-        for faces in sets.model.surfaces.at(node.surface) {
+/// The faces of a section.
+struct Faces {
+    /// The tetrahedron of the surface at each.
+    own: BTreeMap<[u32; 3], u32>,
+    /// Out of these tetrahedra.
+    area_vector: Vec3,
+    area: f64,
+    centre: Vec3,
+}
+
+impl Faces {
+    fn new(surface: usize, sets: &Sets, raw: &Raw) -> Result<Self, DeckError> {
+        let (mut own, mut area_vector, mut area, mut centre) = (BTreeMap::new(), [0.0; 3], 0.0, [0.0; 3]);
+        for faces in sets.model.surfaces.at(surface) {
             let Side::Face(number) = faces.side else {
-                return Err(faces
-                    .word
-                    .expected("faces S1 to S4 of solid elements, all on one side of the section"));
+                let what = "faces S1 to S4 of solid elements, all on one side of the section";
+                return Err(faces.word.expected(what));
             };
             for element in sets.elements.find(&faces.target, &faces.word)? {
                 let tet = raw.tet(element);
                 let tet = tet.ok_or_else(|| faces.word.cannot("a section is across elastic elements"))?;
                 let nodes = raw.face(tet, number);
-                let (out, middle) = (
-                    raw.area_vector(tet, nodes),
-                    centroid(&nodes.map(|n| raw.points[n as usize])),
-                );
-                area = add(area, out);
-                areas += norm(out);
+                let out = raw.area_vector(tet, nodes);
+                area_vector = add(area_vector, out);
+                area += norm(out);
+                let middle = centroid(&nodes.map(|n| raw.points[n as usize]));
                 centre = add(centre, scale(norm(out), middle));
                 own.insert(key(nodes), tet);
             }
         }
-        let mut sides: BTreeMap<u32, bool> = own.values().map(|tet| (*tet, true)).collect();
+        Ok(Self {
+            own,
+            area_vector,
+            area,
+            centre: scale(1.0 / area, centre),
+        })
+    }
+
+    /// Whether a tetrahedron at a face is one of the surface, or on the other side.
+    fn sides(&self, word: &Word, raw: &Raw) -> Result<BTreeMap<u32, bool>, DeckError> {
+        let mut sides: BTreeMap<u32, bool> = self.own.values().map(|tet| (*tet, true)).collect();
         let mut found = 0;
         for (tet, corners) in (0..).zip(&raw.tets) {
-            for face in FACES {
-                let first = own.get(&key(face.map(|i| corners[i])));
-                if first.is_none_or(|first| *first == tet) {
-                    continue;
-                }
+            let keys = FACES.map(|face| key(face.map(|i| corners[i])));
+            let own = keys.iter().filter_map(|face| self.own.get(face));
+            for _ in own.filter(|own| **own != tet) {
                 found += 1;
                 if sides.insert(tet, false) == Some(true) {
                     let label = raw.element_labels[tet as usize];
@@ -75,25 +88,41 @@ impl Section {
                 }
             }
         }
-        if found < own.len() {
-            return Err(
-                word.cannot("a face of the section is on the boundary; give faces between elements, across the bolt")
-            );
+        match found < self.own.len() {
+            true => {
+                Err(word
+                    .cannot("a face of the section is on the boundary; give faces between elements, across the bolt"))
+            }
+            false => Ok(sides),
         }
-        let axis = SurfaceFrame::from_normal(normal.unwrap_or(area))
-            .ok_or_else(|| word.cannot("the section has no normal; give one below *PRE-TENSION SECTION"))?;
-        if dot(axis.normal, area).abs() < ALONG_SECTION * areas {
-            let why = "the normal lies in the section, or its faces look to both sides, so that it would not be tightened; give \
-                one across it, and faces of one side";
-            return Err(word.cannot(why));
+    }
+
+    /// Along which the section is tightened: a given normal, or the mean one.
+    fn axis(&self, normal: Option<Vec3>, word: &Word) -> Result<Vec3, DeckError> {
+        let frame = SurfaceFrame::from_normal(normal.unwrap_or(self.area_vector));
+        let why = "the section has no normal; give one below *PRE-TENSION SECTION";
+        let axis = frame.ok_or_else(|| word.cannot(why))?.normal;
+        match dot(axis, self.area_vector).abs() < ALONG_SECTION * self.area {
+            true => Err(word.cannot(
+                "the normal lies in the section, or its faces look to both sides, so that it would not be tightened; \
+                give one across it, and faces of one side",
+            )),
+            false => Ok(axis),
         }
+    }
+}
+
+impl Section {
+    fn new(node: &Node, normal: Option<Vec3>, sets: &Sets, raw: &Raw) -> Result<Self, DeckError> {
+        let word = &node.word;
+        let faces = Faces::new(node.surface, sets, raw)?;
         Ok(Self {
             node: node.node,
             surface: node.surface,
             word: word.clone(),
-            sides,
-            axis: axis.normal,
-            centre: scale(1.0 / areas, centre),
+            sides: faces.sides(word, raw)?,
+            axis: faces.axis(normal, word)?,
+            centre: faces.centre,
         })
     }
 
