@@ -7,7 +7,7 @@
 //! | you want | you use |
 //! |---|---|
 //! | a body on a rigid obstacle | [`Scene`], [`Support`], [`Load`], [`Contact`] with a gap and a [`Friction`] law |
-//! | bodies that touch each other | [`Contact::between`] |
+//! | bodies that touch each other | [`Contact::between`]; [`ContactPair::find`] finds where |
 //! | a part of a body that is rigid; a bolt, a hinge | [`Coupling`], loaded by [`Load::on_coupling`] |
 //! | friction that depends on place or slip rate | [`Coefficient`], [`SlipBound`] |
 //! | time steps | [`Analysis`] with a [`DifferenceFormula`]; for one state [`Analysis::Static`] |
@@ -105,8 +105,8 @@ pub use plan::Plan;
 pub use report::{RunReport, Warning};
 pub use result::{Certificate, ContactState, PointState};
 pub use scene::{
-    Analysis, Coefficient, Contact, Coupling, DifferenceFormula, Friction, Load, Obstacle, Partition, Place, Scene,
-    SlipBound, Spring, Support,
+    Analysis, Coefficient, Contact, ContactPair, Coupling, DifferenceFormula, Friction, Load, Obstacle, Partition,
+    Place, Scene, SlipBound, Spring, Support,
 };
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
 pub use signorini_tfeti::internal::Rate;

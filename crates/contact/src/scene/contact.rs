@@ -53,7 +53,7 @@ pub struct Contact {
 }
 
 /// Angle between the normals of two neighbouring facets from which on their edge is a crease, degrees.
-const CREASE: f64 = 60.0;
+pub(super) const CREASE: f64 = 60.0;
 
 impl Contact {
     /// Contact of the facets with a tag with a rigid obstacle: touching, along the body's normals, no friction.

@@ -36,6 +36,7 @@ mod moving_obstacle;
 mod orthotropic;
 mod pairs;
 mod pairs_cost;
+mod pairs_found;
 mod pairs_supported;
 mod partitions;
 mod patch;
