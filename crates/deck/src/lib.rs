@@ -84,7 +84,7 @@
 //! | `*COUPLING` | `CONSTRAINT NAME`, `REF NODE`, `SURFACE` | a node that stands for a surface, as the card behind it says |
 //! | `*DISTRIBUTING` | `COUPLING=CONTINUUM`, `WEIGHTING METHOD=UNIFORM` | forces and moments of the node are spread over the surface by areas (of flat faces), growing linearly from its centroid; it stays elastic |
 //! | `*KINEMATIC` | | the surface has the displacement and the small rotation of the node, whose components 1 to 6 are held, moved, loaded or free |
-//! | `*PRE-TENSION SECTION` | `SURFACE`, `NODE` | a bolt is cut at faces between elements, all on one side, and its parts move towards each other along the mean normal, or one given, under the force or the displacement of component 1 of the node; sides of quadratic elements are tied in the mean; CalculiX is wrong here for tetrahedra |
+//! | `*PRE-TENSION SECTION` | `SURFACE`, `NODE` | a bolt is cut at faces between elements, all on one side, and its parts move towards each other along the mean normal, or one given, under the force or the displacement of component 1 of the node; CalculiX is wrong here for tetrahedra |
 //! | `*TRANSFORM` | `NSET`, `TYPE=R`, `C` | axes of nodes, along which their supports and forces are |
 //! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT`, `FIXED` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `XASYMM` and so on; rotations held at zero are ignored on solids; `FIXED` of the node of a section only, whose motion then stays |
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |

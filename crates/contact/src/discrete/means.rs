@@ -2,7 +2,8 @@
 //!
 //! Under a constant pressure the corners of a quadratic facet carry no force, so that conditions at single nodes fail.
 //! A contact point is a corner all the same; what counts is a mean of the displacement around it ([`Surface::mean`]),
-//! and the same mean of the gap. The force of a point over its area is then the pressure there.
+//! and the same mean of the gap. The force of a point over its area is then the pressure there. Tied sides whose nodes
+//! are the same need no means: each node is tied to its partner, mid-nodes too.
 
 use super::creases::around;
 use super::partners::{Partner, Partners};
@@ -10,7 +11,7 @@ use super::side::{Sides, mean_place};
 use crate::error::ContactError;
 use crate::scene::Contact;
 use signorini_fem_mesh::internal::Lists;
-use signorini_fem_mesh::vec3::sub;
+use signorini_fem_mesh::vec3::{norm, sub};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
 use signorini_tfeti::Side;
@@ -54,6 +55,27 @@ impl<'a> Means<'a> {
         })
     }
 
+    /// The mid-nodes of a surface with their partners, if all are in one place: nodes can then be tied one by one.
+    pub(super) fn matching_mids(&self) -> Option<Vec<MatchingMid>> {
+        let place = |node: u32| self.mesh.points()[node as usize];
+        let mut out = Vec::new();
+        for (triangle, &facet) in self.surface.triangles().iter().zip(self.surface.facets()) {
+            let [a, b, c] = *triangle;
+            for (ends, node) in [[a, b], [b, c], [c, a]]
+                .into_iter()
+                .zip(self.mesh.facet_mids(facet as usize))
+            {
+                let partner = *self.partners.get(&node)?;
+                let apart = norm(sub(place(partner), place(node)));
+                (apart <= self.rounding).then_some(())?;
+                out.push(MatchingMid { node, partner, ends });
+            }
+        }
+        out.sort_by_key(|mid| mid.node);
+        out.dedup_by_key(|mid| mid.node);
+        Some(out)
+    }
+
     /// Where the force of a node acts that is one point, m: in the mean of its side.
     pub(super) fn place(&self, local: usize) -> [f64; 3] {
         mean_place(&self.side(local, self.around.of(local)), |node| {
@@ -95,6 +117,15 @@ impl<'a> Means<'a> {
         };
         Ok((sides, gap))
     }
+}
+
+/// A mid-node in the place of one of the other side.
+#[derive(Debug)]
+pub(super) struct MatchingMid {
+    pub(super) node: u32,
+    pub(super) partner: u32,
+    /// The ends of its edge, by places in the surface.
+    pub(super) ends: [u32; 2],
 }
 
 /// The gap of a side along a normal, m: the mean over its nodes, at which `measured` says what coordinates do.

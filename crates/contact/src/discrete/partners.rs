@@ -15,7 +15,7 @@ use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
 use signorini_fem_mesh::{Materials, Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 /// Distance over the size of the facets up to which partners are looked for first: gaps are mostly small.
 const NEAR: f64 = 10.0;
@@ -166,7 +166,9 @@ fn nodes(
     // tied nodes that are apart may turn (`mortar`)
     let together = |found: &Vec<Partner>| !contact.tied || found.iter().all(|p| p.gap == 0.0);
     let found = found.filter(together);
-    Ok(found.filter(|found| match_facets(mesh, surface, found, &other.surface, rounding)))
+    Ok(found
+        .filter(|found| differ_in_place(mesh, surface, found, rounding))
+        .and_then(|found| match_facets(mesh, surface, found, &other.surface)))
 }
 
 /// Refuses bodies that lie in each other deeper than the facets of a node and its partner, unless the gap is given: tied
@@ -191,27 +193,46 @@ pub(super) fn check_overlap(
     Ok(())
 }
 
-/// Whether facets match where nodes have partners: those of other nodes differ, and the partners of each facet are a
-/// facet of the other side. Other diagonals, or a node within, give nodes other areas: forces at nodes would be right
-/// in sum only.
-fn match_facets(mesh: &TetMesh, surface: &Surface, found: &[Partner], other: &Surface, rounding: f64) -> bool {
+/// Whether the partners of nodes in different places differ.
+fn differ_in_place(mesh: &TetMesh, surface: &Surface, found: &[Partner], rounding: f64) -> bool {
     let place = |node: u32| &mesh.points()[node as usize];
     let mut owners = HashMap::new();
-    for (partner, &second) in found.iter().zip(surface.nodes()) {
-        if let Some(first) = owners.insert(partner.node, second)
-            && vector::distance(place(first), place(second)) > rounding
-        {
-            return false;
-        }
-    }
+    found.iter().zip(surface.nodes()).all(|(partner, &second)| {
+        let first = owners.insert(partner.node, second);
+        first.is_none_or(|first| vector::distance(place(first), place(second)) <= rounding)
+    })
+}
+
+/// The partners, if those of each facet are a facet of the other side. Other diagonals, or a node within, give nodes
+/// other areas: forces at nodes would be right in sum only. Of several nodes in one place, where cuts cross, the partner
+/// is that of the facets.
+fn match_facets(mesh: &TetMesh, surface: &Surface, mut found: Vec<Partner>, other: &Surface) -> Option<Vec<Partner>> {
+    let mut first_in: HashMap<[u64; 3], u32> = HashMap::new();
+    let mut first = |node: u32| {
+        let place = mesh.points()[node as usize].map(f64::to_bits);
+        *first_in.entry(place).or_insert(node)
+    };
     let ascending = |mut nodes: [u32; 3]| {
         nodes.sort_unstable();
         nodes
     };
-    let facets = other.triangles().iter().map(|t| t.map(|n| other.nodes()[n as usize]));
-    let there: HashSet<[u32; 3]> = facets.map(ascending).collect();
-    let mut seen = surface.triangles().iter().map(|t| t.map(|n| found[n as usize].node));
-    seen.all(|facet| there.contains(&ascending(facet)))
+    let firsts: Vec<u32> = other.nodes().iter().map(|node| first(*node)).collect();
+    let facets = other.triangles().iter();
+    let there: HashMap<[u32; 3], &[u32; 3]> = facets.map(|t| (ascending(t.map(|n| firsts[n as usize])), t)).collect();
+    let seen: Vec<u32> = found.iter().map(|partner| first(partner.node)).collect();
+    let mut settled = vec![false; found.len()];
+    for own in surface.triangles() {
+        let facet = there.get(&ascending(own.map(|n| seen[n as usize])))?;
+        for own in own.map(|n| n as usize) {
+            let partner = facet.iter().find(|n| firsts[**n as usize] == seen[own])?;
+            let partner = other.nodes()[*partner as usize];
+            if std::mem::replace(&mut settled[own], true) && found[own].node != partner {
+                return None;
+            }
+            found[own].node = partner;
+        }
+    }
+    Some(found)
 }
 
 /// A contact node that looks for its partner.

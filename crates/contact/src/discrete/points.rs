@@ -9,7 +9,7 @@
 //! judges the former.
 
 use super::creases::{SurfaceSide, creases};
-use super::means::{Means, mean_gap};
+use super::means::{MatchingMid, Means, mean_gap};
 use super::normals::{along_axis, differ, shape_frames};
 use super::partners::{Paired, Partners, check_overlap};
 use super::side::{Sides, mean_place, turned};
@@ -86,6 +86,8 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
     for (index, (contact, paired)) in scene.contacts.iter().zip(paired).enumerate() {
         let (surface, fixed, partners) = (&paired.surface, paired.fixed, &paired.partners);
         let means = Means::new(&scene.mesh, (index, contact), surface, partners, rounding);
+        let mids = means.as_ref().filter(|_| contact.tied).and_then(Means::matching_mids);
+        let means = means.filter(|_| mids.is_none());
         let place = |local: usize| match &means {
             Some(means) => means.place(local),
             None => scene.mesh.points()[surface.nodes()[local] as usize],
@@ -160,8 +162,38 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                 });
             }
         }
+        let mids = mids.into_iter().flatten();
+        out.extend(mids.map(|mid| tied_mid(scene, (index, surface), fixed, &mid)));
     }
     Ok(out)
+}
+
+/// The tie of a mid-node. Normal and area are those of the ends of its edge, in the mean.
+fn tied_mid(
+    scene: &Scene,
+    (contact, surface): (usize, &Surface),
+    fixed: Option<SurfaceFrame>,
+    mid: &MatchingMid,
+) -> ContactPoint {
+    let [a, b] = mid.ends.map(|end| end as usize);
+    let [one, other] = [a, b].map(|end| surface.frames()[end]);
+    let frame = fixed.or_else(|| SurfaceFrame::from_normal(vec3::add(one.normal, other.normal)));
+    let position = scene.mesh.points()[mid.node as usize];
+    ContactPoint {
+        surface: contact,
+        sides: Sides {
+            own: Side::node(mid.node),
+            partner: Some(Side::node(mid.partner)),
+            swapped: false,
+        },
+        position,
+        centre: position,
+        frame: frame.unwrap_or(one),
+        area: 0.5 * (surface.areas()[a] + surface.areas()[b]),
+        gap: 0.0,
+        stretch: 1.0,
+        compliance: [0.0; 2],
+    }
 }
 
 fn place_of(mesh: &TetMesh) -> impl Fn(u32) -> [f64; 3] {

@@ -120,7 +120,7 @@ impl Contact {
     }
 
     /// Bonds two bodies, or two parts of one with non-matching meshes: both sides have the same displacement where they
-    /// face each other. A distance between them, or between facets of curved sides, is bridged by linear extrapolation,
+    /// face each other, exactly where their nodes are the same, else in the mean of facets. A distance between them, or between facets of curved sides, is bridged by linear extrapolation,
     /// so that rigid rotations stay free. [`with_motion`](Self::with_motion) prescribes a jump,
     /// [`Coupling::relative`](crate::Coupling::relative) any rigid motion between the sides: bolts, hinges. Sides that
     /// penetrate each other by more than a facet size are refused.

@@ -76,9 +76,7 @@ fn a_tightened_bar_has_the_forces_of_calculix() {
         let found = forces(&deck(&bar(order), &steps.concat()));
         assert!((found[0][0] / first - 1.0).abs() < 1e-6, "{found:?}");
         assert!((found[1][0] / second - 1.0).abs() < 1e-6, "{found:?}");
-        // sides of quadratic elements are tied in the mean
-        let within = if order == 1 { 1e-6 } else { 2e-4 };
-        assert!((found[1][2] / across - 1.0).abs() < within, "{found:?}");
+        assert!((found[1][2] / across - 1.0).abs() < 1e-6, "{found:?}");
     }
 }
 

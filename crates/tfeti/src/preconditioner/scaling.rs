@@ -4,7 +4,7 @@ use super::joined::{JoinedGroups, JoinedScratch, torn_entries};
 use crate::error::TfetiError;
 use crate::linalg::dense;
 use crate::system::tfeti::Tfeti;
-use crate::tolerances::{DEPENDENT, DEPENDENT_FEW, DEPENDENT_JOINED, GROUP_ROWS, SINGULAR};
+use crate::tolerances::{DEPENDENT, DEPENDENT_FEW, DEPENDENT_JOINED, DEPENDENT_TIED, GROUP_ROWS, SINGULAR};
 use signorini_fem_mesh::internal::Lists;
 use signorini_qp::active_set::{ActiveSetView, Freedom};
 use std::collections::HashMap;
@@ -117,10 +117,11 @@ impl Scaling {
             }
             if gluing.is_dependent(rows[0].0) {
                 let size = (0..count).map(|k| matrix[k * (count + 1)]).fold(0.0, f64::max);
-                let part = if count > DEPENDENT_FEW {
-                    DEPENDENT_JOINED
-                } else {
-                    DEPENDENT
+                let contact = gluing.ranges().contact();
+                let part = match rows.iter().any(|r| contact.contains(&(r.1 as usize))) {
+                    false => DEPENDENT_TIED,
+                    true if count > DEPENDENT_FEW => DEPENDENT_JOINED,
+                    true => DEPENDENT,
                 };
                 (0..count).for_each(|k| matrix[k * (count + 1)] += part * size);
             }
