@@ -84,6 +84,10 @@ pub(crate) const FACING: f64 = 0.1;
 /// Mean area of the facets of a side over that of the other from which on it is the coarser one.
 pub(crate) const COARSER: f64 = 1.1;
 
+/// Shear modulus of a body over that of the other from which on it leaves the points to the other where it reaches beyond
+/// that: thousands of products otherwise.
+pub(crate) const HARDER: f64 = 10.0;
+
 /// Part of the area of a facet or node below which what covers it counts as nothing.
 pub(crate) const COVERED: f64 = 1e-10;
 

@@ -9,7 +9,7 @@ use super::normals::{differ, fixed_frame};
 use crate::error::ContactError;
 use crate::mortar::{MortarNode, mortar_nodes};
 use crate::scene::{Contact, Gap};
-use crate::tolerances::{BESIDE, COARSER, FACING, LOCKING, MOST_TILT, TILT};
+use crate::tolerances::{BESIDE, COARSER, FACING, HARDER, LOCKING, MOST_TILT, OVERLAP, TILT};
 use rayon::prelude::*;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
@@ -60,7 +60,8 @@ impl Paired {
     /// Finds the sides of a contact. Where meshes match the first side has the points, else the coarser one, of sides with
     /// facets of one size that with fewer points: rows are farther from depending on one another, and pressures smoother.
     /// But a curved side that hardly changes its volume has them, in meshes of order 2: between points of larger facets
-    /// it gives way, and loses its pressure. Linear tetrahedra are too stiff to.
+    /// it gives way, and loses its pressure. Linear tetrahedra are too stiff to. And that of a much harder body that reaches
+    /// beyond has none: a rim of the softer one would be all that several of them press.
     pub(super) fn new(
         mesh: &TetMesh,
         materials: &Materials,
@@ -111,6 +112,12 @@ impl Paired {
                 }
             }
         };
+        let [own, others] = [&paired.surface, &other.surface].map(|s| hardness(mesh, materials, s));
+        let (mortar, swapped) = match swapped {
+            false if own > HARDER * others && reaches_beyond(&paired.surface, &mortar) => (back(), true),
+            true if others > HARDER * own && reaches_beyond(&other.surface, &mortar) => (there(), false),
+            _ => (mortar, swapped),
+        };
         if mortar.iter().all(Option::is_none) {
             let distance = other.distance(&paired.surface);
             let contact = index;
@@ -124,6 +131,19 @@ impl Paired {
         }
         Ok(paired)
     }
+}
+
+/// Whether a side goes on where the other one ends.
+fn reaches_beyond(surface: &Surface, seen: &[Option<MortarNode>]) -> bool {
+    let mut seen = seen.iter().zip(surface.areas());
+    seen.any(|(seen, area)| seen.as_ref().is_some_and(|s| s.area < (1.0 - OVERLAP) * area))
+}
+
+/// The largest shear modulus behind a side, Pa.
+fn hardness(mesh: &TetMesh, materials: &Materials, surface: &Surface) -> f64 {
+    let region = |facet: &u32| mesh.regions()[mesh.facet_owner(*facet as usize)];
+    let shear = |region: u32| materials.get(region).map_or(0.0, |hooke| hooke.voigt()[3][3]);
+    surface.facets().iter().map(|f| shear(region(f))).fold(0.0, f64::max)
 }
 
 /// Whether a body behind a side is nearly incompressible.

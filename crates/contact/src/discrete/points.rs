@@ -124,6 +124,10 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                     (one[0].frame, one[0].area) = (seen.frame, seen.area);
                     let normal = fixed.unwrap_or(seen.frame).normal;
                     let gap = mortar_gap(scene, index, surface, (local, &normal), seen)?;
+                    // weights are in part negative: over a curved side a mean may be inside where nothing is
+                    let deepest = seen.nearest.min(0.0);
+                    let inside = scene.mesh.order() == 1 && !contact.tied && gap < deepest - rounding;
+                    let gap = if inside { deepest } else { gap };
                     let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
                     measured = if gap.abs() <= weights * rounding { 0.0 } else { gap };
                     mean.clone_from(&seen.own);

@@ -96,6 +96,8 @@ pub(super) struct Cover {
     pub(super) own: Vec<(u32, [f64; 3])>,
     /// The same of the ways to triangles that are not in the plane of the facet, m³.
     pub(super) ways: [f64; 3],
+    /// The smallest distance of the other side over the part, m; negative inside.
+    pub(super) nearest: f64,
 }
 
 /// Adds to what a node has.
@@ -112,11 +114,14 @@ pub(super) struct Piece {
     polygon: Vec<Point>,
     pub(super) area: f64,
     laid: Laid,
+    /// The smallest distance of the triangle over it, m; negative inside.
+    pub(super) nearest: f64,
 }
 
 impl Piece {
-    /// The part of a triangle inside a facet (corners counter-clockwise); `None` if they do not overlap.
-    pub(super) fn new(facet: &[Point; 3], laid: Laid) -> Option<Self> {
+    /// The part of a triangle inside a facet (corners counter-clockwise); `None` if they do not overlap. `heights` are the
+    /// distances of its corners, m.
+    pub(super) fn new(facet: &[Point; 3], laid: Laid, heights: [f64; 3]) -> Option<Self> {
         let mut polygon = laid.corners.to_vec();
         let whole = area(facet);
         for k in 0..3 {
@@ -127,7 +132,20 @@ impl Piece {
             }
         }
         let area = area(&polygon);
-        (area > COVERED * whole).then_some(Self { polygon, area, laid })
+        let height = |p: &Point| {
+            barycentric(&laid.corners, *p)
+                .iter()
+                .zip(heights)
+                .map(|(l, h)| l * h)
+                .sum()
+        };
+        let nearest = polygon.iter().map(height).fold(f64::INFINITY, f64::min);
+        (area > COVERED * whole).then_some(Self {
+            polygon,
+            area,
+            laid,
+            nearest,
+        })
     }
 
     /// Mean of the points.
@@ -270,6 +288,7 @@ impl Cover {
             weights,
             own: own.map(|(node, moments)| (node, multipliers.take(moments))).collect(),
             ways: multipliers.take(&ways[0]),
+            nearest: pieces.iter().map(|piece| piece.nearest).fold(f64::INFINITY, f64::min),
         })
     }
 }
@@ -404,7 +423,7 @@ mod tests {
         ];
         let linear = |p: Point| 2.0 - 3.0 * p[0] + 0.7 * p[1];
         for laid in covers {
-            let pieces: Vec<Piece> = laid.iter().filter_map(|&l| Piece::new(&facet, l)).collect();
+            let pieces: Vec<Piece> = laid.iter().filter_map(|&l| Piece::new(&facet, l, [0.0; 3])).collect();
             assert_eq!(pieces.len(), laid.len());
             let flat = Flat {
                 corners: facet,

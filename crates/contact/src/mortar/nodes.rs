@@ -20,6 +20,8 @@ pub(crate) struct MortarNode {
     pub(crate) partner: Vec<(u32, f64)>,
     /// Mean distance between tied sides along the normal, m, as far as the nodes of the partner do not have it.
     pub(crate) way: f64,
+    /// The smallest distance of facets of both sides around it, as if they were flat, m; negative inside.
+    pub(crate) nearest: f64,
     /// Integral of the dual shape function of the node over what is covered: `D_jj`, m².
     pub(crate) area: f64,
     /// Normal of the covered facets, out of the first side, and tangents: of curved ones the mean that displacements of its
@@ -95,6 +97,7 @@ impl Share {
 struct Sums {
     area: f64,
     way: f64,
+    nearest: Option<f64>,
     normal: [f64; 3],
     own: BTreeMap<u32, f64>,
     partner: BTreeMap<u32, f64>,
@@ -104,6 +107,7 @@ impl Sums {
     fn add(&mut self, share: &Share, corners: &[u32; 3], cover: &Cover, normals: &Normals) {
         self.area += share.of(&cover.areas);
         self.way += share.of(&cover.ways);
+        self.nearest = Some(self.nearest.map_or(cover.nearest, |known| known.min(cover.nearest)));
         match normals {
             Normals::Plane(normal) => self.normal = add(self.normal, scale(cover.area, *normal)),
             // the mean that displacements have; three times, as plane facets count whole
@@ -154,6 +158,7 @@ impl Sums {
             own,
             partner,
             way: self.way / self.area,
+            nearest: self.nearest?,
             area: self.area,
             frame,
         })

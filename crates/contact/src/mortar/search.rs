@@ -317,7 +317,7 @@ impl OtherSide {
         };
         laid.bend = seen_from.bend(mesh, plane, &laid.corners);
         laid.way = tied.and_then(|own| seen_from.way(mesh, plane, own));
-        let piece = Piece::new(&plane.corners, laid)?;
+        let piece = Piece::new(&plane.corners, laid, seen.map(|s| s.1))?;
         let shape = barycentric(&laid.corners, piece.middle());
         let distance: f64 = shape.iter().zip(&seen).map(|(l, s)| l * s.1).sum();
         (distance.abs() <= reach).then_some((piece, distance))

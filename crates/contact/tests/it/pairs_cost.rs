@@ -37,6 +37,47 @@ fn planes_of_symmetry_cost_no_products() {
     }
 }
 
+/// A pad between plates of coarser cells that reach beyond it: had the plates the points, several of them would press the
+/// rim of the pad alone, by 6,000 products.
+#[test]
+fn a_soft_pad_between_plates_that_reach_beyond_costs_few_products() {
+    let plate = |z: f64| {
+        let plate = Brick::new([2.2, 1.9, 0.5], [5, 4, 1])
+            .with_origin([-0.2, -0.3, z])
+            .build()
+            .expect("plate");
+        plate
+            .map_points(|[x, y, z]| [x + 0.04 * (5.0 * y).sin(), y + 0.03 * (7.0 * x).sin(), z])
+            .expect("plate")
+    };
+    let pad = Brick::new([1.5, 1.2, 0.4], [5, 4, 2])
+        .with_origin([0.0, 0.0, 0.5])
+        .build()
+        .expect("pad");
+    let (under, over) = (
+        |tag: FacetTag| FacetTag(tag.0 + 200),
+        |tag: FacetTag| FacetTag(tag.0 + 100),
+    );
+    let mesh = pad.append(&plate(0.0).map_tags(under)).expect("plate");
+    let mesh = mesh.append(&plate(0.9).map_tags(over)).expect("plates");
+    let regions = mesh.components().iter().map(|body| u32::from(*body > 0)).collect();
+    let rubber = Hooke::isotropic(6e6, 0.45).expect("rubber");
+    let steel = Hooke::isotropic(2.1e11, 0.3).expect("steel");
+    let rough = Friction::coulomb(0.5);
+    let scene = Scene::new(
+        mesh.with_regions(regions).expect("regions"),
+        Materials::new(vec![(0, rubber), (1, steel)]).expect("materials"),
+    )
+    .with_support(Support::fixed(under(brick::Z_MIN)))
+    .with_support(Support::fixed(over(brick::Z_MAX)).with_motion([0.01, 0.0, -0.02], ramp()))
+    .with_contact(Contact::between(brick::Z_MIN, under(brick::Z_MAX)).with_friction(rough.clone()))
+    .with_contact(Contact::between(brick::Z_MAX, over(brick::Z_MIN)).with_friction(rough));
+    let (_, results) = run(scene, Settings::default());
+    let products = results[0].report.counters.products;
+    println!("{products} products");
+    assert!(products <= 100, "{products} products");
+}
+
 /// Quadratic cells between planes that hold them: no point has a row across, whatever share of its mean the planes hold,
 /// so that products grow like the root of length over thickness. With rows of half of the points they grew like that
 /// ratio, to the iteration limit.
