@@ -340,7 +340,8 @@ pub(crate) const NO_SPRING: f64 = 1e-12;
 /// Most rounds of conjugate gradients, and iterations of each, by which points are moved together.
 pub(crate) const SHARED_ROUNDS: usize = 3;
 pub(crate) const SHARED_MOVES: usize = 300;
-/// Tolerance of the contact problem that finds which points touch, where nodes that can move are too few.
+/// Tolerance of each round, and of the contact problem that finds which points touch where nodes that can move are too
+/// few.
 pub(crate) const SETTLE_STOP: f64 = 1e-10;
 /// Distance from its place, over the displacement, from which on a point is there.
 pub(crate) const SHARED_STOP: f64 = 1e-14;
