@@ -118,6 +118,9 @@ pub(crate) const FREE_WORK: f64 = 1e-9;
 /// with that body.
 pub(crate) const ALONGSIDE: f64 = 0.5;
 
+/// Motion that a coupling leaves free, over the largest of them, from which on a report names it.
+pub(crate) const LEFT_FREE: f64 = 0.1;
+
 /// What contact forces leave of loads of length one, below which it is rounding.
 pub(crate) const WRENCH_RESIDUAL: f64 = 1e-8;
 
