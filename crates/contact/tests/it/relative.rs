@@ -78,6 +78,29 @@ fn held_in_all_motions_it_is_the_tie() {
     }
 }
 
+/// A half that is moved and nothing pulls at: forces are the rounding errors of its motion, which took 10,001 products at
+/// order 2 and stagnated at tolerances below 2e-8.
+#[test]
+fn a_half_that_only_moves_takes_no_products() {
+    for order in [1, 2] {
+        let held = end().with_held([true; 6]);
+        let held = held.with_motion([1e-4, 2e-5, 3e-5, 1e-5, -2e-5, 3e-5], moved());
+        let bar = bar(order, [3, 1, 1]);
+        let scene = Scene::new(bar.mesh().clone(), bar.materials().clone())
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_contact(Contact::tied(FIRST, SECOND))
+            .with_boxes([3, 1, 1])
+            .with_coupling(held);
+        for tolerance in [1e-6, 1e-9] {
+            let mut simulation = Simulation::new(scene.clone(), at(tolerance)).expect("set-up");
+            let one = step(&mut simulation);
+            let products = one.report.counters.products;
+            assert_eq!(one.report.status, StepStatus::Converged, "order {order}, {tolerance:e}");
+            assert!(products <= 3, "order {order}, {tolerance:e}: {products} products");
+        }
+    }
+}
+
 /// Loads in the place of what holds make the same state, for any part of the motions, along any axis.
 #[test]
 fn loads_take_the_place_of_what_holds() {
