@@ -1,5 +1,6 @@
 //! What can be wrong with a scene.
 
+use crate::status::FreeCoupling;
 use signorini_fem_mesh as fem;
 use signorini_qp::QpError;
 use signorini_tfeti::TfetiError;
@@ -13,15 +14,21 @@ fn held_by(friction: Option<f64>) -> &'static str {
 }
 
 /// What would hold a body.
-fn held_remedy(friction: Option<f64>) -> String {
-    match friction {
+fn held_remedy(friction: Option<f64>, coupling: Option<&FreeCoupling>) -> String {
+    let others = match friction {
         Some(factor) => format!(
             "friction would have to be more than {:.3} times as large: press harder, pull less, add a support, or \
              move the body by its supports if it is to slide",
             (1e3 * factor).floor() / 1e3
         ),
         None => "add a support, contact or friction, or balance the loads".to_owned(),
-    }
+    };
+    others + &freed_remedy(coupling)
+}
+
+/// What a coupling could hold.
+fn freed_remedy(coupling: Option<&FreeCoupling>) -> String {
+    coupling.map_or_else(String::new, |coupling| format!("; or hold {coupling}"))
 }
 
 impl ContactError {
@@ -155,13 +162,17 @@ signorini_fem_mesh::errors! {
         Stiffness { region: u32, value: f64, least: f64, most: f64 } =
             "region {region}: its material has a stiffness of {value:e}, and squares of what follows from it would \
             overflow or vanish (at least {least:e}, at most {most:e}); check the units of its material";
-        NotHeld { step: usize, body: usize, node: u32, mode: String, force: f64, friction: Option<f64> } =
+        NotHeld {
+            step: usize, body: usize, node: u32, mode: String, force: f64, friction: Option<f64>,
+            coupling: Option<Box<FreeCoupling>>
+        } =
             "step {step}: body {body} (with node {node}) cannot be in equilibrium: {mode} is {}, and the loads push \
             along it with a force of {force:.3e}; {}",
-            held_by(*friction), held_remedy(*friction);
-        NotDetermined { body: usize, node: u32, count: usize, motions: String } =
+            held_by(*friction), held_remedy(*friction, coupling.as_deref());
+        NotDetermined { body: usize, node: u32, count: usize, motions: String, coupling: Option<Box<FreeCoupling>> } =
             "the place of body {body} (with node {node}) is not determined: the loads are in balance, but {count} rigid motion(s) are \
-            held neither by supports nor by contact ({motions}); add supports that stop them";
+            held neither by supports nor by contact ({motions}); add supports that stop them{}",
+            freed_remedy(coupling.as_deref());
         Setting { name: &'static str, value: f64, range: &'static str } =
             "setting {name} = {value} is outside its range {range}";
         Doubling { reason: &'static str } = "step doubling: {reason}";

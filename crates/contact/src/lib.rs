@@ -115,4 +115,4 @@ pub use signorini_tfeti::{Communicator, Directions};
 pub use simulation::Every;
 pub use simulation::{Flow, Observer, Progress, Silent, Simulation, StepDoubling, StepResult, TimeError};
 pub use state::State;
-pub use status::{Slide, StepFailure, StepStatus};
+pub use status::{FreeCoupling, Slide, StepFailure, StepStatus};

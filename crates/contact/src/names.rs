@@ -2,7 +2,7 @@
 
 use crate::error::ContactError;
 use crate::part::Part;
-use crate::status::Slide;
+use crate::status::{FreeCoupling, Slide};
 use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::{FacetTag, LoadError, MaterialError, MeshError, SurfaceError};
 use signorini_tfeti::TfetiError;
@@ -81,9 +81,17 @@ impl ContactError {
             Self::CoefficientAt { node, .. }
             | Self::SlipBound { node, .. }
             | Self::SupportInObstacle { node, .. }
-            | Self::NotDetermined { node, .. }
             | Self::Probe { node, .. } => vec![Part::Node(*node)],
-            Self::NotHeld { step, node, .. } => vec![Part::Node(*node), Part::Step(*step)],
+            Self::NotHeld {
+                step, node, coupling, ..
+            } => {
+                let own = [Part::Node(*node), Part::Step(*step)].into_iter();
+                own.chain(of_coupling(coupling.as_deref())).collect()
+            }
+            Self::NotDetermined { node, coupling, .. } => [Part::Node(*node)]
+                .into_iter()
+                .chain(of_coupling(coupling.as_deref()))
+                .collect(),
             Self::Time { step, .. } | Self::UnequalSteps { step, .. } | Self::UnconvergedHistory { step } => {
                 vec![Part::Step(*step)]
             }
@@ -108,7 +116,8 @@ impl ContactError {
                 let others = |s: &Slide| s.others.into_iter().flatten().map(|(_, node)| node);
                 let nodes = failure.slide.iter().flat_map(|s| [s.node].into_iter().chain(others(s)));
                 let step = [Part::Step(failure.step)].into_iter();
-                step.chain(nodes.map(Part::Node)).collect()
+                let coupling = failure.slide.iter().flat_map(|s| of_coupling(s.coupling.as_ref()));
+                step.chain(nodes.map(Part::Node)).chain(coupling).collect()
             }
             Self::Load { index, source } => match source {
                 LoadError::UnknownNode { node, .. } => vec![Part::Load(*index), Part::Node(*node)],
@@ -135,6 +144,16 @@ impl ContactError {
         });
         parts
     }
+}
+
+fn of_coupling(coupling: Option<&FreeCoupling>) -> impl Iterator<Item = Part> + use<> {
+    let own = coupling.map(|c| {
+        [
+            Some(Part::Coupling(c.coupling as usize)),
+            c.tied.map(|t| Part::Contact(t as usize)),
+        ]
+    });
+    own.into_iter().flatten().flatten()
 }
 
 fn of_tfeti(error: &TfetiError) -> Vec<Part> {

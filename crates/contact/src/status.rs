@@ -68,6 +68,36 @@ impl fmt::Display for StepStatus {
     }
 }
 
+/// A coupling that leaves free a motion which nothing else stops.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
+pub struct FreeCoupling {
+    /// Its number in the scene.
+    pub coupling: u32,
+    /// Of a relative one the tied contact whose sides it lets move.
+    pub tied: Option<u32>,
+    /// Which of its motions are part of it: displacements along its axes, then rotations about them.
+    pub free: [bool; 6],
+    /// Its axes.
+    pub axes: [[f64; 3]; 3],
+}
+
+impl fmt::Display for FreeCoupling {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "coupling {}", self.coupling)?;
+        if let Some(contact) = self.tied {
+            write!(f, ", which lets the sides of contact {contact} move,")?;
+        }
+        let free = (0..6).filter(|&c| self.free[c]).map(|c| {
+            let kind = if c < 3 { "displacement along" } else { "rotation about" };
+            let [x, y, z] = self.axes[c % 3].map(|v| if v.abs() < IN_WORDS { 0.0 } else { v });
+            format!("{kind} ({x:.3}, {y:.3}, {z:.3})")
+        });
+        let free: Vec<String> = free.collect();
+        write!(f, " in its {} (Coupling::with_held)", free.join(" and "))
+    }
+}
+
 /// How a body slides away that friction does not hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -84,6 +114,8 @@ pub struct Slide {
     pub force: f64,
     /// Other bodies that go at least half as far with it, each with a node of it: the first three.
     pub others: [Option<(u32, u32)>; 3],
+    /// The coupling that leaves it free, if one does.
+    pub coupling: Option<FreeCoupling>,
 }
 
 impl Slide {
@@ -158,15 +190,28 @@ impl fmt::Display for StepFailure {
             f,
             "step {step}, at {time} s, did not converge ({status}, certificate {certificate:.1e}, {condition}); "
         )?;
-        if let Some(slide @ Slide { body, node, force, .. }) = slide {
+        if let Some(
+            slide @ Slide {
+                body,
+                node,
+                force,
+                coupling,
+                ..
+            },
+        ) = slide
+        {
             let [away, remedy] = match *status == StepStatus::NotHeld {
                 true => ["slides away", ""],
                 false => ["may slide away", "press it more, or hold it by a support; else "],
             };
             write!(
                 f,
-                "body {body} (with node {node}) {away} along {slide}, because {force:.3e} N are missing; {remedy}"
+                "body {body} (with node {node}) {away} along {slide}, because {force:.3e} N are missing; "
             )?;
+            if let Some(coupling) = coupling {
+                write!(f, "hold {coupling}, or ")?;
+            }
+            f.write_str(remedy)?;
         }
         if let Some(slender) = slender {
             write!(

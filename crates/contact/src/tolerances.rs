@@ -122,6 +122,9 @@ pub(crate) const FREE_WORK: f64 = 1e-9;
 /// with that body.
 pub(crate) const ALONGSIDE: f64 = 0.5;
 
+/// Motion that a coupling leaves free, over the largest of them, from which on a report names it.
+pub(crate) const LEFT_FREE: f64 = 0.1;
+
 /// What contact forces leave of loads of length one, below which it is rounding.
 pub(crate) const WRENCH_RESIDUAL: f64 = 1e-8;
 
@@ -344,7 +347,8 @@ pub(crate) const NO_SPRING: f64 = 1e-12;
 /// Most rounds of conjugate gradients, and iterations of each, by which points are moved together.
 pub(crate) const SHARED_ROUNDS: usize = 3;
 pub(crate) const SHARED_MOVES: usize = 300;
-/// Tolerance of the contact problem that finds which points touch, where nodes that can move are too few.
+/// Tolerance of each round, and of the contact problem that finds which points touch where nodes that can move are too
+/// few.
 pub(crate) const SETTLE_STOP: f64 = 1e-10;
 /// Distance from its place, over the displacement, from which on a point is there.
 pub(crate) const SHARED_STOP: f64 = 1e-14;

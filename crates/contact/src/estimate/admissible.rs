@@ -39,6 +39,8 @@ pub(crate) struct AdmissibleNode {
     /// Where supports hold the node in part, and the other side's, of several the freest, has to move, too: the first
     /// of those that else stay.
     both: Option<Box<Shifts>>,
+    /// Whether supports hold its own node, so that one of several moves that other points have too.
+    shares: bool,
 }
 
 impl AdmissibleNode {
@@ -97,9 +99,11 @@ impl AdmissibleNode {
             still.swap(0, other);
             shifts(&own, &still[0].1, rows.len())
         });
+        let alone = point.contact.sides.own.nodes().len() == 1;
         Self {
             node,
             rows,
+            shares: alone && last > 1 && (moving > 0 || both.is_some()),
             stretch: point.stretch,
             own,
             still,
@@ -140,6 +144,11 @@ impl AdmissibleNode {
     pub(crate) fn push_out(&self, offset: &[f64], v: &mut [f64]) {
         let depth = self.conditions(offset, v).depth(self.value(v)).max(0.0);
         self.shift(v, 0, -depth);
+    }
+
+    /// Whether it moves one of several nodes of a partner, which other points have too.
+    pub(crate) fn shares(&self) -> bool {
+        self.shares
     }
 
     /// The nodes that move.

@@ -13,6 +13,7 @@
 
 use super::admissible::{AdmissibleNode, Correction};
 use super::shared::{SharedNodes, Target};
+use super::sprung::SprungNodes;
 use crate::model::Model;
 use crate::report::AlgebraicError;
 use crate::result::{Lengths, PointState, Recovered};
@@ -39,21 +40,34 @@ pub(crate) struct Weights {
     /// What moves at each contact point.
     nodes: Vec<AdmissibleNode>,
     /// Where points share the nodes that move.
-    shared: Option<SharedNodes>,
+    pub(super) shared: Option<SharedNodes>,
+    /// Where springs pull at nodes that move.
+    sprung: SprungNodes,
     /// Made where a step needs it: the active-set method leaves nothing to balance.
     interior: OnceLock<Option<CoarseFactor>>,
 }
 
 impl Weights {
-    fn new(model: &Model) -> Self {
+    pub(super) fn new(model: &Model) -> Self {
         let contact = model.tfeti.gluing().ranges().contact().end;
         let mut rows = vec![0.0; contact];
         model.tfeti.row_stiffness(0..contact, &mut rows);
-        let nodes = model.points.iter().map(|p| AdmissibleNode::new(model, p)).collect();
+        let nodes: Vec<_> = model.points.iter().map(|p| AdmissibleNode::new(model, p)).collect();
+        let stiffness = || {
+            let mut sums = vec![0.0; model.discrete.decomposition.nodes()];
+            for (k, node) in model.discrete.decomposition.torn_nodes().enumerate() {
+                if let Some(node) = node {
+                    sums[node as usize] += model.copies().weight(k);
+                }
+            }
+            sums
+        };
+        let sprung = SprungNodes::new(model, stiffness);
         Self {
             rows,
+            shared: SharedNodes::new(model, &nodes, &sprung, stiffness),
+            sprung,
             nodes,
-            shared: SharedNodes::new(model),
             interior: OnceLock::new(),
         }
     }
@@ -73,7 +87,9 @@ impl Weights {
 /// What estimates need of a model, made when it is first asked for.
 #[derive(Debug, Default)]
 pub(crate) struct Caches {
-    weights: OnceLock<Weights>,
+    pub(super) weights: OnceLock<Weights>,
+    /// Whether ties reach contact points.
+    pub(super) ties_meet_points: OnceLock<bool>,
     /// Patches of the estimate of the discretisation error.
     pub(crate) recovery: OnceLock<StrainRecovery>,
     /// Lengths that results are compared with.
@@ -98,13 +114,14 @@ impl Solved<'_> {
         let mut v = tfeti.mean_by(model.copies(), &self.recovered.torn);
         let mean = (tfeti.subdomains() > 1).then(|| tfeti.nodal_mean(&self.recovered.torn));
         self.couple(&motions, &mut v);
+        weights.sprung.begin(offset, &mut v);
         let points = || self.recovered.points.iter().zip(&weights.nodes);
         let moved: Vec<Correction> = match &weights.shared {
             None => points()
                 .map(|(state, node)| Correction::new(node, state, offset, &weights.rows, &mut v))
                 .collect(),
             Some(shared) => {
-                self.support(offset, &mut v);
+                self.support(weights, offset, &mut v);
                 let planned = |(state, node): (&PointState, &AdmissibleNode)| {
                     let at = |node: u32| 3 * node as usize..3 * node as usize + 3;
                     let before: Vec<(u32, [f64; 3])> =
@@ -132,12 +149,12 @@ impl Solved<'_> {
                 planned
             }
         };
-        self.support(offset, &mut v);
+        self.support(weights, offset, &mut v);
         if weights.shared.is_none() {
             self.agree(&moved, &weights.nodes, offset, &mut v);
             self.tie(offset, &mut v);
         }
-        let (mut terms, mut change) = (0.0, 0.0);
+        let (mut terms, mut change) = (weights.sprung.energy(offset, &v), 0.0);
         for ((state, node), moved) in points().zip(&moved) {
             let conditions = node.conditions(offset, &v);
             terms += moved.gap(state, &conditions, node.value(&mut v));
@@ -361,10 +378,11 @@ impl Solved<'_> {
         }
     }
 
-    /// Sets supported directions to their prescribed values.
-    fn support(&self, offset: &[f64], v: &mut [f64]) {
+    /// Sets supported directions to their prescribed values, and nodes to where springs are but for those that move.
+    fn support(&self, weights: &Weights, offset: &[f64], v: &mut [f64]) {
         let gluing = self.model.tfeti.gluing();
-        for row in gluing.ranges().dirichlet.clone() {
+        let supports = gluing.ranges().dirichlet.clone();
+        for row in supports.filter(|row| !weights.sprung.has(*row)) {
             let Some(node) = gluing.node(row) else {
                 continue;
             };

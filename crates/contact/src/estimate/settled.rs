@@ -23,7 +23,7 @@ impl SharedNodes {
         offset: &[f64],
         v: &mut [f64],
     ) -> Vec<Target> {
-        let (n, tied) = (self.rows.len(), self.tied.len());
+        let (n, fixed) = (self.rows.len(), self.fixed.len());
         let (mut segments, mut lambda, mut is_normal) = (Vec::new(), Vec::with_capacity(n), vec![false; n]);
         for (&count, (force, bound)) in self.counts.iter().zip(&forces) {
             segments.push(Segment::upper(vec![0.0]));
@@ -35,9 +35,9 @@ impl SharedNodes {
             is_normal[lambda.len()] = true;
             lambda.extend_from_slice(&force[..count]);
         }
-        segments.push(Segment::Free(tied));
+        segments.push(Segment::Free(fixed));
         lambda.resize(n, 0.0);
-        touching.extend_from_slice(&offset[self.tied.clone()]);
+        touching.extend(self.fixed.iter().map(|&row| offset[row]));
         let at = |touching: Vec<f64>| touching.into_iter().map(Target::At).collect();
         let (Ok(mut set), Ok(mut projector)) = (ProductSet::new(segments), DenseProjector::new(0, n, Vec::new()))
         else {

@@ -4,15 +4,21 @@
 //! weighted by stiffness, is `C Pᵀ y` with `P C Pᵀ y` what is missing: rows `P`, compliances `C`. The matrix is like a
 //! mass matrix of the surface, so that conjugate gradients need few iterations.
 
+use super::admissible::AdmissibleNode;
+use super::sprung::SprungNodes;
 use crate::discrete::ContactPoint;
 use crate::model::{ConstrainedPoint, Model};
-use crate::tolerances::{SHARED_MOVES, SHARED_ROUNDS, SHARED_STOP};
+use crate::tolerances::{FREEDOM_TAKEN, SETTLE_STOP, SHARED_MOVES, SHARED_ROUNDS, SHARED_STOP};
+use crate::vec3::dot;
 use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::problem::Diagonal;
 use signorini_qp::{
     ActiveSetSettings, DenseProjector, MovingSet, ProductSet, Segment, SymmetricOperator, active_set, vector,
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
+
+/// Coefficients on components of the displacement.
+type Row = Vec<(usize, f64)>;
 
 /// What a row has to measure, m.
 #[derive(Debug, Clone, Copy)]
@@ -27,25 +33,29 @@ pub(crate) enum Target {
 #[derive(Debug)]
 pub(crate) struct SharedNodes {
     /// Coefficients of each row on the displacement of the nodes, in metres: the normal row of each point and those
-    /// along the surface, point by point, then tied rows.
-    pub(super) rows: Vec<Vec<(usize, f64)>>,
-    /// The rows of tied contacts.
-    pub(super) tied: std::ops::Range<usize>,
+    /// along the surface, point by point, then fixed rows.
+    pub(super) rows: Vec<Row>,
+    /// The numbers of the rows of tied contacts, and of supports along which rows of points move their nodes.
+    pub(super) fixed: Vec<usize>,
     /// Rows of each point.
     pub(super) counts: Vec<usize>,
     /// Of each displacement component of a node, relative.
     compliance: Vec<f64>,
     /// Inverse of the diagonal of the matrix.
     pub(super) inverse: Diagonal,
-    /// Whether there may be more points than nodes that can move.
+    /// Whether there may be more points than nodes that can move, or fixed rows may want what points do not.
     is_scarce: bool,
 }
 
 impl SharedNodes {
     /// `None` where each point has a node of its own that can move.
-    pub(crate) fn new(model: &Model) -> Option<Self> {
+    pub(crate) fn new(
+        model: &Model,
+        nodes: &[AdmissibleNode],
+        sprung: &SprungNodes,
+        stiffness: impl Fn() -> Vec<f64>,
+    ) -> Option<Self> {
         let (gluing, discrete) = (model.tfeti.gluing(), &model.discrete);
-        let tied = gluing.ranges().tied.clone();
         let is_coupled = |node: u32| discrete.couplings.has(node);
         let several = |point: &ContactPoint| point.sides.own.nodes().len() > 1;
         // of a single partner the node moves in the place of one that is coupled, but not where both are tied
@@ -54,11 +64,14 @@ impl SharedNodes {
             is_coupled(point.node()) && partner.max().is_some_and(|count| count > others)
         };
         let points = || model.points.iter().map(|p| &p.contact);
-        let is_scarce = points().any(|p| stays(p, 1)) || discrete.ties.iter().any(|tie| stays(tie, 0));
+        let mut is_scarce = points().any(|p| stays(p, 1))
+            || ties_meet_points(model)
+            || nodes.iter().any(AdmissibleNode::shares)
+            || discrete.ties.iter().any(|tie| stays(tie, 0));
         if !is_scarce && !points().chain(&discrete.ties).any(several) {
             return None;
         }
-        let row = |row: usize, scale: f64| -> Vec<(usize, f64)> {
+        let row = |row: usize, scale: f64| -> Row {
             let mut sums: BTreeMap<usize, f64> = BTreeMap::new();
             for (node, c, coefficient) in model.row(row) {
                 *sums.entry(3 * node as usize + c).or_insert(0.0) += coefficient / scale;
@@ -69,21 +82,21 @@ impl SharedNodes {
         let counts = model.points.iter().map(|p| of_point(p).len()).collect();
         let of_points = model.points.iter().flat_map(of_point);
         let mut rows: Vec<_> = of_points.map(|(_, number, scale)| row(number, scale)).collect();
-        rows.extend(tied.clone().map(|number| row(number, 1.0)));
-        let mut stiffness = vec![0.0; discrete.decomposition.nodes()];
-        for (k, node) in discrete.decomposition.torn_nodes().enumerate() {
-            if let Some(node) = node {
-                stiffness[node as usize] += model.copies().weight(k);
-            }
-        }
+        let mut fixed: Vec<usize> = gluing.ranges().tied.clone().collect();
+        let dragging = dragging(model, &rows);
+        is_scarce |= !dragging.is_empty();
+        fixed.extend(dragging);
+        rows.extend(fixed.iter().map(|&number| row(number, 1.0)));
+        let mut stiffness = stiffness();
+        sprung.stiffness().for_each(|(node, k)| stiffness[node as usize] += k);
         // couplings stay as they are
         let own = |(node, s): (u32, &f64)| if is_coupled(node) { 0.0 } else { 1.0 / s };
         let compliance: Vec<f64> = (0..).zip(&stiffness).flat_map(|node| [own(node); 3]).collect();
-        let square = |row: &Vec<(usize, f64)>| row.iter().map(|&(at, v)| v * v * compliance[at]).sum::<f64>();
+        let square = |row: &Row| row.iter().map(|&(at, v)| v * v * compliance[at]).sum::<f64>();
         let inverse = Diagonal::new(rows.iter().map(square).map(f64::recip).collect()).ok()?;
         Some(Self {
             rows,
-            tied,
+            fixed,
             counts,
             compliance,
             inverse,
@@ -95,10 +108,14 @@ impl SharedNodes {
         self.is_scarce
     }
 
-    /// Moves the displacement `v` such that rows of points meet their targets, and tied rows their `offset`.
+    /// Moves the displacement `v` such that rows of points meet their targets, and fixed rows their `offset`.
     pub(crate) fn reach(&self, mut targets: Vec<Target>, offset: &[f64], v: &mut [f64]) {
-        targets.extend(offset[self.tied.clone()].iter().map(|value| Target::At(*value)));
-        let value = |row: &Vec<(usize, f64)>, v: &[f64]| row.iter().map(|&(at, c)| c * v[at]).sum::<f64>();
+        targets.extend(self.fixed.iter().map(|&row| Target::At(offset[row])));
+        self.reach_all(&targets, v);
+    }
+
+    fn reach_all(&self, targets: &[Target], v: &mut [f64]) {
+        let value = |row: &Row, v: &[f64]| row.iter().map(|&(at, c)| c * v[at]).sum::<f64>();
         let largest = targets.iter().filter_map(|target| match target {
             Target::At(value) | Target::Below(value) => Some(value.abs()),
             Target::Any => None,
@@ -109,20 +126,25 @@ impl SharedNodes {
         let Ok(mut projector) = DenseProjector::new(0, n, Vec::new()) else {
             return;
         };
-        let settings = ActiveSetSettings::default().with_tolerance(SHARED_STOP);
+        let settings = ActiveSetSettings::default().with_tolerance(SETTLE_STOP);
         let settings = settings.with_max_products(SHARED_MOVES);
         let mut work = ActiveSetWorkspace::new(self, &self.inverse);
         let (mut moved, mut sum) = (vec![0.0; v.len()], vec![0.0; n]);
         for _ in 0..SHARED_ROUNDS {
-            let rows = self.rows.iter().zip(&targets).zip(&sum);
-            let missing = rows.map(|((row, target), sum)| match target {
-                Target::At(at) => at - value(row, v),
-                Target::Below(at) if *sum == 0.0 => (at - value(row, v)).min(0.0),
-                Target::Below(at) => at - value(row, v),
+            let rows = self.rows.iter().zip(targets);
+            let missing = rows.map(|(row, target)| match target {
+                Target::At(at) | Target::Below(at) => at - value(row, v),
                 Target::Any => 0.0,
             });
             let missing: Vec<f64> = missing.collect();
-            if vector::max_abs(&missing) <= SHARED_STOP * size {
+            let known = targets.iter().zip(&missing).zip(&sum);
+            let off = known.map(|((target, off), sum)| match target {
+                // room is left
+                Target::Below(_) if *sum == 0.0 => (-off).max(0.0),
+                _ => off.abs(),
+            });
+            let off = off.fold(0.0, f64::max);
+            if off <= SHARED_STOP * size {
                 return;
             }
             // forces of rows push towards their targets only
@@ -158,6 +180,17 @@ impl SharedNodes {
         }
     }
 
+    /// The smallest change of a displacement by which rows of ties grow by so much.
+    pub(super) fn change_of_ties(&self, growth: Vec<f64>) -> Vec<f64> {
+        let mut change = vec![0.0; self.compliance.len()];
+        let points = self.rows.len() - self.fixed.len();
+        let mut targets = vec![Target::Any; points];
+        targets.extend(growth.into_iter().map(Target::At));
+        targets.resize(self.rows.len(), Target::At(0.0));
+        self.reach_all(&targets, &mut change);
+        change
+    }
+
     /// `C Pᵀ y`
     pub(super) fn spread(&self, y: &[f64], out: &mut [f64]) {
         out.fill(0.0);
@@ -165,6 +198,42 @@ impl SharedNodes {
             row.iter().for_each(|&(at, c)| out[at] += c * y * self.compliance[at]);
         }
     }
+}
+
+/// Whether nodes of ties are nodes of contact points.
+pub(super) fn ties_meet_points(model: &Model) -> bool {
+    let tied = model.discrete.ties.iter().flat_map(|tie| tie.sides.nodes());
+    let tied: HashSet<u32> = tied.map(|(node, _)| node).collect();
+    let mut points = model.points.iter().map(|p| &p.contact.sides);
+    !tied.is_empty() && points.any(|sides| sides.nodes().any(|(node, _)| tied.contains(&node)))
+}
+
+/// Rows of supports along which rows of points move their nodes: where supports drag points along, no row is without
+/// what they fix.
+fn dragging(model: &Model, rows: &[Row]) -> Vec<usize> {
+    let gluing = model.tfeti.gluing();
+    if gluing.dependent_nodes().is_empty() {
+        return Vec::new();
+    }
+    let mut parts: BTreeMap<usize, Vec<[f64; 3]>> = BTreeMap::new();
+    for row in rows {
+        for same in row.chunk_by(|a, b| a.0 / 3 == b.0 / 3) {
+            let mut part = [0.0; 3];
+            same.iter().for_each(|&(at, c)| part[at % 3] = c);
+            parts.entry(same[0].0 / 3).or_default().push(part);
+        }
+    }
+    let springs = gluing.ranges().total() - gluing.springs().len();
+    let supports = gluing.ranges().dirichlet.start..springs;
+    let drags = |row: &usize| {
+        let direction = gluing.direction(*row);
+        let along = |part: &[f64; 3]| dot(part, &direction).powi(2) > FREEDOM_TAKEN * dot(&direction, &direction);
+        let moves = |node: &u32| gluing.is_dependent(*node) && !model.discrete.couplings.has(*node);
+        let node = gluing.node(*row).filter(moves);
+        let own = node.and_then(|node| parts.get(&(node as usize)));
+        own.is_some_and(|parts| parts.iter().any(along))
+    };
+    supports.filter(drags).collect()
 }
 
 /// `P C Pᵀ`

@@ -12,8 +12,8 @@ use super::friction_cone::{Generators, Separation, WrenchCone};
 use super::model::Model;
 use crate::error::ContactError;
 use crate::scene::Friction;
-use crate::status::Slide;
-use crate::tolerances::{ALONGSIDE, FREE_WORK, NEAR_BALANCE, ROUNDING};
+use crate::status::{FreeCoupling, Slide};
+use crate::tolerances::{ALONGSIDE, FREE_WORK, LEFT_FREE, NEAR_BALANCE, ROUNDING};
 use signorini_qp::vector;
 use signorini_tfeti::{BodyMotion, FreeMotion, RowWeights};
 
@@ -220,6 +220,7 @@ fn escape(
         mode,
         force,
         friction,
+        coupling: slide.coupling.map(Box::new),
     };
     Escape { step, force, error }
 }
@@ -282,6 +283,46 @@ struct Part {
     motion: [f64; 6],
 }
 
+/// The coupling that leaves free most of a sum of motions, of this length in a body of this radius.
+pub(crate) fn freed(
+    model: &Model,
+    motions: &[&FreeMotion],
+    factors: &[f64],
+    (length, radius): (f64, f64),
+) -> Option<FreeCoupling> {
+    let (tfeti, couplings) = (&model.tfeti, &model.discrete.couplings);
+    if model.scene.couplings.is_empty() {
+        return None;
+    }
+    let mut torn = vec![0.0; tfeti.torn_dim()];
+    for subdomain in couplings.first..tfeti.subdomains() {
+        let own = &mut torn[tfeti.torn_range(subdomain)];
+        for (motion, factor) in motions.iter().zip(factors) {
+            let amplitudes = &motion.amplitudes[6 * subdomain..6 * (subdomain + 1)];
+            tfeti.kernel(subdomain).add_motion(*factor, amplitudes, own);
+        }
+    }
+    let mut found: Option<(f64, FreeCoupling)> = None;
+    let motions = model.coupling_motions(&torn).into_iter().zip(&model.scene.couplings);
+    for (k, (motion, coupling)) in motions.enumerate() {
+        let (along, holds) = (couplings.along(k, motion), coupling.holds());
+        let free = |c: usize| if holds[c] { 0.0 } else { along[c].abs() };
+        let sizes: [f64; 6] = std::array::from_fn(|c| if c < 3 { free(c) } else { radius * free(c) });
+        let largest = sizes.iter().copied().fold(0.0, f64::max);
+        let enough = largest > 0.0 && largest >= ALONGSIDE * length;
+        if enough && found.is_none_or(|other| largest > other.0 * (1.0 + ROUNDING)) {
+            let free = FreeCoupling {
+                coupling: k as u32,
+                tied: coupling.tied().map(|contact| contact as u32),
+                free: sizes.map(|size| size >= LEFT_FREE * largest),
+                axes: couplings.axes(k),
+            };
+            found = Some((largest, free));
+        }
+    }
+    found.map(|(_, free)| free)
+}
+
 /// The part that moves most in a sum of motions, and how: one of length one; its radius, and its length in the sum.
 fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, f64, f64) {
     let subdomains = model.discrete.decomposition.subdomains();
@@ -333,6 +374,7 @@ fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, 
         rotation: [m[3], m[4], m[5]],
         force: 0.0,
         others,
+        coupling: freed(model, motions, factors, (length, most.radius)),
     };
     (slide, most.radius, length)
 }

@@ -14,5 +14,5 @@ mod friction_cone;
 mod model;
 
 pub use contact_point::ConstrainedPoint;
-pub(crate) use equilibrium::{check_equilibrium, friction_could_hold, slides};
+pub(crate) use equilibrium::{check_equilibrium, freed, friction_could_hold, slides};
 pub(crate) use model::{DISCS, INTERVALS, Model};

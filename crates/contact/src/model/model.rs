@@ -7,6 +7,7 @@ use crate::error::ContactError;
 use crate::plan::Plan;
 use crate::scene::{Friction, Scene};
 use crate::settings::Settings;
+use signorini_fem_mesh::vec3::{moved, norm, sub};
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti::internal::CopyStiffness;
 use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder, TfetiError, TiedRows};
@@ -38,7 +39,7 @@ pub(crate) struct Model {
     pub(crate) standing: Vec<Option<usize>>,
     /// Set with zero radii.
     pub(crate) set: ProductSet,
-    /// Stiffness of the rows of supports and ties that move.
+    /// Stiffness of the rows of supports, ties and couplings that move.
     moved_stiffness: OnceLock<Vec<f64>>,
     /// Stiffness of the copies of each node, made with the first certificate.
     copies: OnceLock<CopyStiffness>,
@@ -46,20 +47,30 @@ pub(crate) struct Model {
 
 impl Model {
     /// What prescribed displacements in `offset` (row units), and eigenstrains with these `factors` of the loads, would
-    /// do to their nodes with all others held: for each body the norm of these forces, N. Empty if no support and no tie
-    /// moves, and where there is no eigenstrain.
+    /// do to their nodes with all others held: for each body the norm of these forces, N. Empty if no support, no tie and
+    /// no coupling moves, and where there is no eigenstrain.
     pub(crate) fn prescribed_force(&self, offset: &[f64], factors: &[f64]) -> Vec<f64> {
         let ranges = self.tfeti.gluing().ranges();
         let supports = (!self.discrete.supports.motions.is_empty()).then(|| ranges.dirichlet.clone());
         let ties = self.plan.effects.moving_ties.then(|| ranges.tied.clone());
-        let moved = [supports, ties].into_iter().flatten();
+        let couplings = !self
+            .discrete
+            .couplings
+            .supports
+            .iter()
+            .all(|held| held.values.is_empty());
+        let couplings = couplings.then(|| ranges.rigid.clone());
+        let moved = [supports, ties, couplings.clone()].into_iter().flatten();
         if moved.clone().next().is_none() && self.strained.iter().all(Vec::is_empty) {
             return Vec::new();
         }
         let stiffness = self.moved_stiffness.get_or_init(|| {
             let of = |rows: Range<usize>| {
                 let mut out = vec![0.0; rows.len()];
-                self.tfeti.row_stiffness(rows, &mut out);
+                match couplings.as_ref() == Some(&rows) {
+                    true => self.coupling_stiffness(&mut out),
+                    false => self.tfeti.row_stiffness(rows, &mut out),
+                }
                 out
             };
             moved.clone().flat_map(of).collect()
@@ -75,6 +86,32 @@ impl Model {
         }
         out.iter_mut().for_each(|v| *v = v.sqrt());
         out
+    }
+
+    /// What the motions that rows of couplings hold do to the nodes, over the values of the rows, N/m: these reach three
+    /// places of a subdomain without stiffness.
+    fn coupling_stiffness(&self, out: &mut [f64]) {
+        let (gluing, couplings) = (self.tfeti.gluing(), &self.discrete.couplings);
+        let subdomains = self.discrete.decomposition.subdomains();
+        for ((out, row), held) in out
+            .iter_mut()
+            .zip(gluing.ranges().rigid.clone())
+            .zip(&couplings.supports)
+        {
+            let nodes = &subdomains[held.subdomain as usize].nodes;
+            let at = |node: u32| moved(held.direction, sub(self.scene.mesh.points()[node as usize], held.point));
+            let entries = gluing.row(row).into_iter();
+            let value: f64 = entries
+                .map(|(_, dof, coefficient)| coefficient * at(nodes[dof / 3])[dof % 3])
+                .sum();
+            let square = |&node: &u32| {
+                let copies = self.discrete.decomposition.copies(node as usize).iter();
+                let elastic = copies.filter(|copy| (copy.subdomain as usize) < couplings.first);
+                let stiffness: f64 = elastic.map(|copy| self.copies().of(copy)).sum();
+                (stiffness * norm(at(node))).powi(2)
+            };
+            *out = nodes.iter().map(square).sum::<f64>().sqrt() / value.abs();
+        }
     }
 
     /// The rows of tied contacts, each with its point.

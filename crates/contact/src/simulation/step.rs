@@ -192,7 +192,8 @@ impl Simulation {
             ..Kept::default()
         };
         if history {
-            kept.trace = traces(model, problem, &recovered.rows);
+            let rows = self.caches.agreed(model, &problem.offset, &recovered.rows);
+            kept.trace = traces(model, problem, &rows);
             let slides = |p: &PointState| p.state == ContactState::Slip;
             kept.sliding = recovered.points.iter().map(slides).collect();
         }

@@ -1,10 +1,11 @@
 //! Orthonormal coarse rows, which the paper's methods need.
 
 use crate::error::ContactError;
-use crate::model::Model;
+use crate::model::{Model, freed};
+use crate::status::FreeCoupling;
 use signorini_qp::{Equality, vector};
 use signorini_tfeti::internal::CoarseScratch;
-use signorini_tfeti::{FreeMotion, OrthonormalCoarse};
+use signorini_tfeti::{BodyMotion, FreeMotion, OrthonormalCoarse};
 
 /// The rows with their right side and work memory.
 pub(super) struct OrthonormalRows {
@@ -58,5 +59,13 @@ pub(super) fn not_determined(model: &Model, motions: &[FreeMotion]) -> ContactEr
         node: body.map_or(0, |b| model.discrete.decomposition.subdomains()[b.subdomain].nodes[0]),
         count: motions.len(),
         motions: words.join("; "),
+        coupling: motions.iter().find_map(|motion| left_free(model, motion)).map(Box::new),
     }
+}
+
+/// The coupling that leaves a motion free.
+fn left_free(model: &Model, motion: &FreeMotion) -> Option<FreeCoupling> {
+    let size = |b: &BodyMotion| vector::norm(&b.translation).hypot(vector::norm(&b.rotation));
+    let bodies = motion.bodies.iter().map(|b| (size(b), b.radius));
+    freed(model, &[motion], &[1.0], bodies.max_by(|a, b| a.0.total_cmp(&b.0))?)
 }

@@ -170,7 +170,7 @@ fn random_couplings_keep_what_they_promise() {
     keep_what_they_promise(random_coupled, 0, 10.0);
 }
 
-fn keep_what_they_promise(scene: impl Fn(u64) -> Scene, most_left_out: usize, most_index: f64) {
+pub(crate) fn keep_what_they_promise(scene: impl Fn(u64) -> Scene, most_left_out: usize, most_index: f64) {
     let (mut least, mut most, mut left_out) = (f64::INFINITY, 0.0_f64, 0);
     for seed in 0..40 {
         let scene = scene(seed);

@@ -21,6 +21,7 @@ mod effects;
 mod eigenstrain;
 mod estimates;
 mod estimates_coupled;
+mod estimates_tied;
 mod explicit;
 mod free_bodies;
 mod gap_history;

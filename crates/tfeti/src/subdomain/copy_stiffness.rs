@@ -82,7 +82,8 @@ impl CopyStiffness {
         self.values.get(k).copied().unwrap_or(1.0)
     }
 
-    pub(crate) fn of(&self, copy: &NodeCopy) -> f64 {
+    /// The same of a copy.
+    pub fn of(&self, copy: &NodeCopy) -> f64 {
         self.weight(self.first[copy.subdomain as usize] + copy.local as usize)
     }
 
