@@ -37,12 +37,12 @@ fn planes_of_symmetry_cost_no_products() {
     }
 }
 
-/// A pad between plates of coarser cells that reach beyond it: had the plates the points, several of them would press the
-/// rim of the pad alone, by 6,000 products.
+/// A pad between plates of as many cells that reach beyond it: had the plates the points, several of them would press the
+/// rim of the pad alone, in 12,765 products, and it would not be held.
 #[test]
 fn a_soft_pad_between_plates_that_reach_beyond_costs_few_products() {
     let plate = |z: f64| {
-        let plate = Brick::new([2.2, 1.9, 0.5], [5, 4, 1])
+        let plate = Brick::new([2.2, 1.9, 0.5], [7, 6, 1])
             .with_origin([-0.2, -0.3, z])
             .build()
             .expect("plate");
@@ -75,7 +75,7 @@ fn a_soft_pad_between_plates_that_reach_beyond_costs_few_products() {
     let (_, results) = run(scene, Settings::default());
     let products = results[0].report.counters.products;
     println!("{products} products");
-    assert!(products <= 100, "{products} products");
+    assert!(products <= 130, "{products} products");
 }
 
 /// Quadratic cells between planes that hold them: no point has a row across, whatever share of its mean the planes hold,
