@@ -60,8 +60,8 @@ impl Paired {
     /// Finds the sides of a contact. Where meshes match the first side has the points, else the coarser one, of sides with
     /// facets of one size that with fewer points: rows are farther from depending on one another, and pressures smoother.
     /// But a curved side that hardly changes its volume has them, in meshes of order 2: between points of larger facets
-    /// it gives way, and loses its pressure. Linear tetrahedra are too stiff to. And that of a much harder body that reaches
-    /// beyond has none: a rim of the softer one would be all that several of them press.
+    /// it gives way, and loses its pressure. Linear tetrahedra are too stiff to. And a flat one of a much harder body that
+    /// reaches beyond has none: a rim of the softer one would be all that several of them press.
     pub(super) fn new(
         mesh: &TetMesh,
         materials: &Materials,
@@ -112,8 +112,10 @@ impl Paired {
                 }
             }
         };
+        let is_flat = mesh.order() == 1 && !is_curved(&paired.surface) && !is_curved(&other.surface);
         let [own, others] = [&paired.surface, &other.surface].map(|s| hardness(mesh, materials, s));
         let (mortar, swapped) = match swapped {
+            _ if !is_flat => (mortar, swapped),
             false if own > HARDER * others && reaches_beyond(&paired.surface, &mortar) => (back(), true),
             true if others > HARDER * own && reaches_beyond(&other.surface, &mortar) => (there(), false),
             _ => (mortar, swapped),
