@@ -140,6 +140,12 @@ impl ContactError {
 fn of_tfeti(error: &TfetiError) -> Vec<Part> {
     match error {
         TfetiError::Material { element, .. } => vec![Part::Tet(*element)],
+        TfetiError::Equation {
+            equation, node, others, ..
+        } => {
+            let equations = [equation].into_iter().chain(others).map(|k| Part::Equation(*k));
+            equations.chain(node.map(Part::Node)).collect()
+        }
         TfetiError::Spring { node, .. }
         | TfetiError::UnknownNode { node, .. }
         | TfetiError::ContactNodeTwice { node }

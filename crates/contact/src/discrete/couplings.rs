@@ -3,11 +3,11 @@
 use super::points::ContactPoint;
 use super::supports::Supports;
 use crate::error::ContactError;
-use crate::scene::{Coupled, Coupling, CouplingLoad, Place, Scene};
+use crate::scene::{Coupled, Coupling, CouplingLoad, LoadKind, Place, Scene};
 use crate::tolerances::{ALONG, FAR};
 use signorini_fem_mesh::decomposition::Rigid;
 use signorini_fem_mesh::internal::distinct;
-use signorini_fem_mesh::vec3::{Vec3, cross, dot, is_finite, norm, sub};
+use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, is_finite, norm, scale, sub, unit};
 use signorini_fem_mesh::{Decomposition, History, SurfaceFrame};
 use signorini_tfeti::internal::{PrescribedDirection, forces_at_three, unsaid_directions};
 use signorini_tfeti::{ContactConstraint, RigidSupport, Side};
@@ -25,7 +25,10 @@ pub(crate) struct Couplings {
     /// Of tied contacts whose sides move relative to each other the coupling that says how.
     relative: BTreeMap<usize, usize>,
     /// Of each coupling, along and about which it is told what is held.
-    axes: Vec<[Vec3; 3]>,
+    pub(crate) axes: Vec<[Vec3; 3]>,
+    /// The point of each whose displacement is told: its reference point, or of a point alone the mean of its places, any
+    /// of which has the displacement.
+    pub(crate) about: Vec<Vec3>,
 }
 
 impl Couplings {
@@ -41,6 +44,7 @@ impl Couplings {
             of_node: BTreeMap::new(),
             relative: BTreeMap::new(),
             axes: Vec::with_capacity(scene.couplings.len()),
+            about: Vec::with_capacity(scene.couplings.len()),
         };
         if scene.couplings.is_empty() {
             return Ok((decomposition, out));
@@ -48,8 +52,12 @@ impl Couplings {
         let mut rigid = Vec::with_capacity(scene.couplings.len());
         for (index, coupling) in scene.couplings.iter().enumerate() {
             let nodes = out.nodes_of(scene, index)?;
-            let point = coupling.reference;
             let places: Vec<_> = nodes.iter().map(|&n| scene.mesh.points()[n as usize]).collect();
+            let point = match coupling.is_point() {
+                false => coupling.reference,
+                // not far from them, wherever it is said to be
+                true => scale(1.0 / places.len() as f64, places.iter().copied().fold([0.0; 3], add)),
+            };
             let refuse = |node, reason| {
                 let coupling = index;
                 Err(ContactError::Coupling { coupling, node, reason })
@@ -61,8 +69,11 @@ impl Couplings {
                     "its axis has no direction; give it one of finite length, not zero",
                 );
             };
-            if !is_finite(point) || motions().any(|(way, _)| !way.is_finite()) {
+            if !is_finite(coupling.reference) || motions().any(|(way, _)| !way.is_finite()) {
                 return refuse(None, "its reference point and its motions must be finite");
+            }
+            if coupling.is_point() {
+                check_point(scene, index)?;
             }
             if motions().any(|(way, held)| *way != 0.0 && !held) {
                 return refuse(
@@ -89,7 +100,7 @@ impl Couplings {
                     rounding is all that its motions tell; give it a nearer one";
                 return refuse(None, why);
             }
-            let relative = matches!(coupling.coupled, Coupled::Tied(_));
+            let relative = !matches!(coupling.coupled, Coupled::Nodes(_));
             for &node in nodes.iter().filter(|_| !relative) {
                 if out.of_node.insert(node, index).is_some() {
                     let why = "it is in another coupling, too; give it to one of them, or make one coupling of both";
@@ -130,11 +141,23 @@ impl Couplings {
                     values: values.filter(|v| v.1 != 0.0).collect(),
                 });
             }
+            let idle = if coupling.is_point() {
+                idle(scene, index, &axes)?
+            } else {
+                Vec::new()
+            };
+            out.supports.extend(idle.into_iter().map(|along| RigidSupport {
+                subdomain,
+                point,
+                direction: [along, [0.0; 3]],
+                values: Vec::new(),
+            }));
             rigid.push(match relative {
                 true => Rigid::Places(nodes),
                 false => Rigid::Nodes(nodes),
             });
             out.axes.push(axes);
+            out.about.push(point);
         }
         Ok((decomposition.with_rigid(rigid)?, out))
     }
@@ -146,7 +169,7 @@ impl Couplings {
             .map(|coupling| (self.first + coupling) as u32)
     }
 
-    /// Nodes of a coupling, ascending; of a relative one those of both sides.
+    /// Nodes of a coupling, ascending; of a relative one those of both sides, of a point any that are not on a line.
     fn nodes_of(&mut self, scene: &Scene, coupling: usize) -> Result<Vec<u32>, ContactError> {
         let count = scene.mesh.points().len();
         let refuse = |node, reason| ContactError::Coupling { coupling, node, reason };
@@ -162,6 +185,11 @@ impl Couplings {
                     "the mesh has no such node; they are numbered from 0",
                 )),
             },
+            Coupled::Point => {
+                let places = scene.mesh.points();
+                let chosen = forces_at_three(places, places[0], [0.0; 3], [0.0; 3]);
+                Ok(distinct(chosen.into_iter().flatten().map(|(node, _)| node as u32)))
+            }
             Coupled::Tied(contact) => {
                 let tied = scene.contacts.get(*contact).filter(|c| c.tied);
                 let tied = tied.ok_or_else(|| {
@@ -296,7 +324,7 @@ impl Couplings {
         let subdomains = decomposition.subdomains();
         let mut out: Vec<Vec<f64>> = subdomains.iter().map(|s| vec![0.0; s.dofs()]).collect();
         let rigid = out.iter_mut().zip(subdomains).skip(self.first);
-        let Some((own, (target, nodes))) = scene.couplings.iter().zip(rigid).nth(coupling) else {
+        let Some((target, nodes)) = rigid.take(scene.couplings.len()).nth(coupling) else {
             let couplings = scene.couplings.len();
             return Err(ContactError::UnknownCoupling {
                 load: index,
@@ -305,14 +333,69 @@ impl Couplings {
             });
         };
         let places = nodes.points(&scene.mesh);
+        let about = self.about[coupling];
         // nodes are not on a line: that is checked
-        for (node, force) in forces_at_three(&places, own.reference, force, moment)
-            .into_iter()
-            .flatten()
-        {
+        for (node, force) in forces_at_three(&places, about, force, moment).into_iter().flatten() {
             target[3 * node..3 * node + 3].copy_from_slice(&force);
         }
         Ok(out)
+    }
+}
+
+/// Refuses what a point alone does not have: moments and rotations.
+fn check_point(scene: &Scene, index: usize) -> Result<(), ContactError> {
+    let turned = scene.couplings[index]
+        .motions
+        .iter()
+        .any(|(way, _)| way[3..] != [0.0; 3]);
+    let moments = scene.loads.iter().any(|load| match &load.kind {
+        LoadKind::Coupling(own) => own.coupling == index && own.moment != [0.0; 3],
+        LoadKind::Density(_) | LoadKind::Eigenstrain(_) => false,
+    });
+    match turned || moments {
+        false => Ok(()),
+        true => Err(ContactError::Coupling {
+            coupling: index,
+            node: None,
+            reason: "a point has no rotations, and takes no moments; give it displacements and forces",
+        }),
+    }
+}
+
+/// The directions of a point of which neither an equation nor the coupling itself says anything: it stays there.
+fn idle(scene: &Scene, index: usize, axes: &[Vec3; 3]) -> Result<Vec<Vec3>, ContactError> {
+    let holds = scene.couplings[index].holds();
+    let mut known: Vec<Vec3> = (0..3).filter(|&c| holds[c]).map(|c| axes[c]).collect();
+    let rest = |known: &[Vec3], vector: Vec3| {
+        let all = [known, known].concat();
+        let rest = all.iter().fold(vector, |rest, d| sub(rest, scale(dot(rest, *d), *d)));
+        let is_left = norm(rest) > ALONG * norm(vector);
+        is_left.then(|| unit(rest))
+    };
+    let terms = scene.equations.iter().flat_map(|e| &e.points);
+    for (_, vector) in terms.filter(|term| term.0 == index && is_finite(term.1)) {
+        known.extend(rest(&known, *vector));
+    }
+    let told = known.len();
+    for axis in axes {
+        known.extend(rest(&known, *axis));
+    }
+    let idle = known.split_off(told);
+    let pushed = scene.loads.iter().any(|load| match &load.kind {
+        LoadKind::Coupling(own) => {
+            let along = |d: &Vec3| dot(own.force, *d).abs() > ALONG * norm(own.force);
+            own.coupling == index && idle.iter().any(along)
+        }
+        LoadKind::Density(_) | LoadKind::Eigenstrain(_) => false,
+    });
+    match pushed {
+        false => Ok(idle),
+        true => Err(ContactError::Coupling {
+            coupling: index,
+            node: None,
+            reason: "a load pushes the point in a direction of which no equation says anything, so that it acts on nothing; \
+                give it an equation, or leave the load out",
+        }),
     }
 }
 

@@ -4,9 +4,10 @@
 //! weighted by stiffness, is `C Pᵀ y` with `P C Pᵀ y` what is missing: rows `P`, compliances `C`. The matrix is like a
 //! mass matrix of the surface, so that conjugate gradients need few iterations.
 
-use crate::discrete::ContactPoint;
+use crate::discrete::{ContactPoint, Couplings};
 use crate::model::{ConstrainedPoint, Model};
 use crate::tolerances::{SHARED_MOVES, SHARED_ROUNDS, SHARED_STOP};
+use signorini_fem_mesh::vec3::Vec3;
 use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::problem::Diagonal;
 use signorini_qp::{
@@ -27,9 +28,10 @@ pub(crate) enum Target {
 #[derive(Debug)]
 pub(crate) struct SharedNodes {
     /// Coefficients of each row on the displacement of the nodes, in metres: the normal row of each point and those
-    /// along the surface, point by point, then tied rows.
+    /// along the surface, point by point, then those of ties and equations. Displacements of couplings that are points stand
+    /// behind those of nodes, along the axes of the coupling.
     pub(super) rows: Vec<Vec<(usize, f64)>>,
-    /// The rows of tied contacts.
+    /// The rows of ties and equations.
     pub(super) tied: std::ops::Range<usize>,
     /// Rows of each point.
     pub(super) counts: Vec<usize>,
@@ -42,11 +44,13 @@ pub(crate) struct SharedNodes {
 }
 
 impl SharedNodes {
-    /// `None` where each point has a node of its own that can move.
+    /// `None` where each point has a node of its own that can move, and there are no equations.
     pub(crate) fn new(model: &Model) -> Option<Self> {
         let (gluing, discrete) = (model.tfeti.gluing(), &model.discrete);
-        let tied = gluing.ranges().tied.clone();
-        let is_coupled = |node: u32| discrete.couplings.has(node);
+        let equations = gluing.ranges().equations.clone();
+        let tied = gluing.ranges().tied.start..equations.end;
+        let (couplings, nodes) = (&discrete.couplings, discrete.decomposition.nodes());
+        let is_coupled = |node: u32| couplings.has(node);
         let several = |point: &ContactPoint| point.sides.own.nodes().len() > 1;
         // of a single partner the node moves in the place of one that is coupled, but not where both are tied
         let stays = |point: &ContactPoint, others: usize| {
@@ -55,13 +59,21 @@ impl SharedNodes {
         };
         let points = || model.points.iter().map(|p| &p.contact);
         let is_scarce = points().any(|p| stays(p, 1)) || discrete.ties.iter().any(|tie| stays(tie, 0));
-        if !is_scarce && !points().chain(&discrete.ties).any(several) {
+        if !is_scarce && equations.is_empty() && !points().chain(&discrete.ties).any(several) {
             return None;
         }
         let row = |row: usize, scale: f64| -> Vec<(usize, f64)> {
             let mut sums: BTreeMap<usize, f64> = BTreeMap::new();
             for (node, c, coefficient) in model.row(row) {
                 *sums.entry(3 * node as usize + c).or_insert(0.0) += coefficient / scale;
+            }
+            for (k, axes) in couplings.axes.iter().enumerate().filter(|_| equations.contains(&row)) {
+                let own = gluing.row(row).into_iter().filter(|e| e.0 == couplings.first + k);
+                for (_, dof, coefficient) in own.filter(|_| model.scene.couplings[k].is_point()) {
+                    for (c, axis) in axes.iter().enumerate() {
+                        *sums.entry(3 * (nodes + k) + c).or_insert(0.0) += coefficient * axis[dof % 3];
+                    }
+                }
             }
             sums.into_iter().collect()
         };
@@ -70,7 +82,7 @@ impl SharedNodes {
         let of_points = model.points.iter().flat_map(of_point);
         let mut rows: Vec<_> = of_points.map(|(_, number, scale)| row(number, scale)).collect();
         rows.extend(tied.clone().map(|number| row(number, 1.0)));
-        let mut stiffness = vec![0.0; discrete.decomposition.nodes()];
+        let mut stiffness = vec![0.0; nodes];
         for (k, node) in discrete.decomposition.torn_nodes().enumerate() {
             if let Some(node) = node {
                 stiffness[node as usize] += model.copies().weight(k);
@@ -78,7 +90,14 @@ impl SharedNodes {
         }
         // couplings stay as they are
         let own = |(node, s): (u32, &f64)| if is_coupled(node) { 0.0 } else { 1.0 / s };
-        let compliance: Vec<f64> = (0..).zip(&stiffness).flat_map(|node| [own(node); 3]).collect();
+        let mut compliance: Vec<f64> = (0..).zip(&stiffness).flat_map(|node| [own(node); 3]).collect();
+        if !equations.is_empty() {
+            let stiffest = stiffness.iter().fold(0.0, |most: f64, s| most.max(*s));
+            for coupling in &model.scene.couplings {
+                let holds = coupling.holds();
+                compliance.extend((0..3).map(|c| if holds[c] { 0.0 } else { 1.0 / stiffest }));
+            }
+        }
         let square = |row: &Vec<(usize, f64)>| row.iter().map(|&(at, v)| v * v * compliance[at]).sum::<f64>();
         let inverse = Diagonal::new(rows.iter().map(square).map(f64::recip).collect()).ok()?;
         Some(Self {
@@ -89,6 +108,17 @@ impl SharedNodes {
             inverse,
             is_scarce,
         })
+    }
+
+    /// The displacements of couplings behind those of the nodes, as far as rows know of them.
+    pub(crate) fn with_points(&self, couplings: &Couplings, motions: &[[Vec3; 2]], v: &mut Vec<f64>) {
+        if self.compliance.len() > v.len() {
+            let along = motions
+                .iter()
+                .enumerate()
+                .map(|(k, motion)| couplings.along(k, *motion));
+            v.extend(along.flat_map(|along| [along[0], along[1], along[2]]));
+        }
     }
 
     pub(crate) fn is_scarce(&self) -> bool {

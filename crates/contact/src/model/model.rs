@@ -38,7 +38,7 @@ pub(crate) struct Model {
     pub(crate) standing: Vec<Option<usize>>,
     /// Set with zero radii.
     pub(crate) set: ProductSet,
-    /// Stiffness of the rows of supports and ties that move.
+    /// Stiffness of the rows of supports, ties and equations that move.
     moved_stiffness: OnceLock<Vec<f64>>,
     /// Stiffness of the copies of each node, made with the first certificate.
     copies: OnceLock<CopyStiffness>,
@@ -52,7 +52,8 @@ impl Model {
         let ranges = self.tfeti.gluing().ranges();
         let supports = (!self.discrete.supports.motions.is_empty()).then(|| ranges.dirichlet.clone());
         let ties = self.plan.effects.moving_ties.then(|| ranges.tied.clone());
-        let moved = [supports, ties].into_iter().flatten();
+        let equations = Some(ranges.equations.clone()).filter(|rows| supports.is_some() && !rows.is_empty());
+        let moved = [supports, ties, equations].into_iter().flatten();
         if moved.clone().next().is_none() && self.strained.iter().all(Vec::is_empty) {
             return Vec::new();
         }
@@ -95,8 +96,8 @@ impl Model {
     /// The motions of couplings in a torn displacement: of the reference point, m, and the rotation.
     pub(crate) fn coupling_motions(&self, torn: &[f64]) -> Vec<[[f64; 3]; 2]> {
         let subdomains = self.discrete.couplings.first..;
-        let own = subdomains.zip(&self.scene.couplings);
-        own.map(|(subdomain, coupling)| self.tfeti.rigid_motion(subdomain, torn, coupling.reference()))
+        let own = subdomains.zip(&self.discrete.couplings.about);
+        own.map(|(subdomain, about)| self.tfeti.rigid_motion(subdomain, torn, *about))
             .collect()
     }
 
@@ -112,6 +113,7 @@ impl Model {
         let tfeti = TfetiBuilder::of_forecast(&forecast)
             .with_supports(&discrete.supports.nodes)
             .with_rigid_supports(&discrete.couplings.supports)
+            .with_equations(&discrete.equations)
             .with_springs(&discrete.springs.nodal)
             .with_contact(&discrete.constraints)
             .with_communicator(&settings.communicator)
