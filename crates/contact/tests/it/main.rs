@@ -19,6 +19,8 @@ mod edges;
 mod edges_apart;
 mod effects;
 mod eigenstrain;
+mod equations;
+mod equations_more;
 mod estimates;
 mod estimates_coupled;
 mod explicit;

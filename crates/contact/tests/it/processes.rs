@@ -6,7 +6,7 @@ use signorini_tfeti::{CommunicationError, Communicator, Traffic};
 use std::sync::Arc;
 
 /// Bits of all steps with their counters and estimates, the state at the end, bytes of inverses, and the traffic.
-type Run = (Vec<(Vec<u64>, Counters, AlgebraicError)>, State, u64, Traffic);
+pub(crate) type Run = (Vec<(Vec<u64>, Counters, AlgebraicError)>, State, u64, Traffic);
 
 fn solved(scene: &Scene, settings: Settings) -> Run {
     let mut simulation = Simulation::new(scene.clone(), settings).expect("set-up");
@@ -22,7 +22,7 @@ fn solved(scene: &Scene, settings: Settings) -> Run {
 }
 
 /// Runs of 1, 2, 3 and 4 ranks, of which all ranks have the same bits as one process; by rank.
-fn the_same_on(ranks: &[usize], scene: &Scene, settings: Settings, what: &str) -> Vec<Vec<Run>> {
+pub(crate) fn the_same_on(ranks: &[usize], scene: &Scene, settings: Settings, what: &str) -> Vec<Vec<Run>> {
     let plain = solved(scene, settings.clone());
     assert_eq!(plain.3, Traffic::default(), "{what}: one process sends nothing");
     let run = |&count: &usize| {
