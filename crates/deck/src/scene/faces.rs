@@ -11,6 +11,7 @@ use signorini_fem_mesh::{Facet, FacetTag};
 
 use super::boundary::Boundary;
 use super::couplings::Couplings;
+use super::equations::Points;
 use super::mesh::{Raw, key};
 use super::numbers::Sets;
 use super::pretension::Sections;
@@ -51,6 +52,7 @@ pub(super) struct Known<'a> {
     pub(super) raw: &'a Raw,
     pub(super) timeline: &'a Timeline<'a>,
     pub(super) couplings: &'a Couplings,
+    pub(super) points: &'a Points,
     pub(super) transforms: &'a Transforms,
     pub(super) sections: &'a Sections,
 }
