@@ -3,8 +3,8 @@
 use super::points::ContactPoint;
 use super::supports::Supports;
 use crate::error::ContactError;
-use crate::scene::{Coupled, Coupling, CouplingLoad, LoadKind, Place, Scene};
-use crate::tolerances::{ALONG, FAR};
+use crate::scene::{Coupled, Coupling, CouplingLoad, Equation, LoadKind, Place, Scene};
+use crate::tolerances::{ALIKE, ALONG, FAR};
 use signorini_fem_mesh::decomposition::Rigid;
 use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, is_finite, norm, scale, sub, unit};
@@ -29,6 +29,8 @@ pub(crate) struct Couplings {
     /// The point of each whose displacement is told: its reference point, or of a point alone the mean of its places, any
     /// of which has the displacement.
     pub(crate) about: Vec<Vec3>,
+    /// What its places move per displacement of a point, so that both are of one size; one of other couplings.
+    pub(crate) unit: Vec<f64>,
 }
 
 impl Couplings {
@@ -45,6 +47,7 @@ impl Couplings {
             relative: BTreeMap::new(),
             axes: Vec::with_capacity(scene.couplings.len()),
             about: Vec::with_capacity(scene.couplings.len()),
+            unit: Vec::with_capacity(scene.couplings.len()),
         };
         if scene.couplings.is_empty() {
             return Ok((decomposition, out));
@@ -124,6 +127,7 @@ impl Couplings {
                 return refuse(nodes.first().copied(), why);
             }
             let subdomain = (out.first + index) as u32;
+            let unit = size(scene, index);
             let cases: Vec<u32> = coupling.motions.iter().map(|(_, h)| supports.case(h)).collect();
             let holds = coupling.holds();
             let locked = coupling.locked.iter().any(Option::is_some);
@@ -134,6 +138,7 @@ impl Couplings {
                 let values = cases.iter().zip(&coupling.motions);
                 let values = values.map(|(&case, (motion, _))| (case, motion[component]));
                 let values = values.chain(still.zip(coupling.locked[component]));
+                let values = values.map(|(case, value)| (case, unit * value));
                 out.supports.push(RigidSupport {
                     subdomain,
                     point,
@@ -158,6 +163,7 @@ impl Couplings {
             });
             out.axes.push(axes);
             out.about.push(point);
+            out.unit.push(unit);
         }
         Ok((decomposition.with_rigid(rigid)?, out))
     }
@@ -333,10 +339,10 @@ impl Couplings {
             });
         };
         let places = nodes.points(&scene.mesh);
-        let about = self.about[coupling];
+        let (about, unit) = (self.about[coupling], self.unit[coupling]);
         // nodes are not on a line: that is checked
         for (node, force) in forces_at_three(&places, about, force, moment).into_iter().flatten() {
-            target[3 * node..3 * node + 3].copy_from_slice(&force);
+            target[3 * node..3 * node + 3].copy_from_slice(&force.map(|f| f / unit));
         }
         Ok(out)
     }
@@ -359,6 +365,21 @@ fn check_point(scene: &Scene, index: usize) -> Result<(), ContactError> {
             node: None,
             reason: "a point has no rotations, and takes no moments; give it displacements and forces",
         }),
+    }
+}
+
+/// How much nodes move per displacement of a point, by the equation in which it counts most: a power of two.
+fn size(scene: &Scene, index: usize) -> f64 {
+    let ratio = |equation: &Equation| {
+        let sum = |vectors: &mut dyn Iterator<Item = Vec3>| vectors.map(|v| dot(v, v)).sum::<f64>().sqrt();
+        let own = sum(&mut equation.points.iter().filter(|p| p.0 == index).map(|p| p.1));
+        own / sum(&mut equation.terms.iter().map(|t| t.1))
+    };
+    let ratios = scene.equations.iter().map(ratio).filter(|r| r.is_finite());
+    let most = ratios.fold(0.0, f64::max);
+    match most > 0.0 && !(1.0 / ALIKE..=ALIKE).contains(&most) {
+        true => most.log2().round().exp2(),
+        false => 1.0,
     }
 }
 

@@ -38,7 +38,10 @@ pub(super) fn equations(
             return refuse(None, reason);
         }
         let value = given.value.as_ref();
-        let places = given.points.iter().map(|(k, v)| ((couplings.first + k) as u32, *v));
+        let places = given.points.iter().map(|(k, v)| {
+            let place = (couplings.first + k) as u32;
+            (place, v.map(|c| c / couplings.unit[*k]))
+        });
         out.push(NodalEquation {
             terms: given.terms.clone(),
             places: places.collect(),

@@ -299,12 +299,13 @@ impl Solved<'_> {
     /// What a motion of the subdomain of a coupling does to a row.
     fn acts(&self, row: usize, subdomain: usize, motion: [Vec3; 2]) -> f64 {
         let (scene, discrete) = (&self.model.scene, &self.model.discrete);
-        let point = discrete.couplings.about[subdomain - discrete.couplings.first];
+        let coupling = subdomain - discrete.couplings.first;
+        let (point, unit) = (discrete.couplings.about[coupling], discrete.couplings.unit[coupling]);
         let nodes = &discrete.decomposition.subdomains()[subdomain].nodes;
         let own = self.model.tfeti.gluing().row(row).into_iter();
         let own = own.filter(|entry| entry.0 == subdomain).map(|(_, dof, coefficient)| {
             let arm = sub(scene.mesh.points()[nodes[dof / 3] as usize], point);
-            coefficient * moved(motion, arm)[dof % 3]
+            unit * coefficient * moved(motion, arm)[dof % 3]
         });
         own.sum()
     }

@@ -71,7 +71,8 @@ impl SharedNodes {
                 let own = gluing.row(row).into_iter().filter(|e| e.0 == couplings.first + k);
                 for (_, dof, coefficient) in own.filter(|_| model.scene.couplings[k].is_point()) {
                     for (c, axis) in axes.iter().enumerate() {
-                        *sums.entry(3 * (nodes + k) + c).or_insert(0.0) += coefficient * axis[dof % 3];
+                        *sums.entry(3 * (nodes + k) + c).or_insert(0.0) +=
+                            couplings.unit[k] * coefficient * axis[dof % 3];
                     }
                 }
             }
@@ -93,9 +94,9 @@ impl SharedNodes {
         let mut compliance: Vec<f64> = (0..).zip(&stiffness).flat_map(|node| [own(node); 3]).collect();
         if !equations.is_empty() {
             let stiffest = stiffness.iter().fold(0.0, |most: f64, s| most.max(*s));
-            for coupling in &model.scene.couplings {
-                let holds = coupling.holds();
-                compliance.extend((0..3).map(|c| if holds[c] { 0.0 } else { 1.0 / stiffest }));
+            for (coupling, unit) in model.scene.couplings.iter().zip(&couplings.unit) {
+                let (holds, own) = (coupling.holds(), 1.0 / (stiffest * unit * unit));
+                compliance.extend((0..3).map(|c| if holds[c] { 0.0 } else { own }));
             }
         }
         let square = |row: &Vec<(usize, f64)>| row.iter().map(|&(at, v)| v * v * compliance[at]).sum::<f64>();

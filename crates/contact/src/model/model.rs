@@ -96,9 +96,13 @@ impl Model {
     /// The motions of couplings in a torn displacement: of the reference point, m, and the rotation.
     pub(crate) fn coupling_motions(&self, torn: &[f64]) -> Vec<[[f64; 3]; 2]> {
         let subdomains = self.discrete.couplings.first..;
-        let own = subdomains.zip(&self.discrete.couplings.about);
-        own.map(|(subdomain, about)| self.tfeti.rigid_motion(subdomain, torn, *about))
-            .collect()
+        let couplings = &self.discrete.couplings;
+        let own = subdomains.zip(&couplings.about).zip(&couplings.unit);
+        own.map(|((subdomain, about), unit)| {
+            let [displacement, rotation] = self.tfeti.rigid_motion(subdomain, torn, *about);
+            [displacement.map(|u| u / unit), rotation]
+        })
+        .collect()
     }
 
     /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales

@@ -306,7 +306,7 @@ fn by_coupling(model: &Model, recovered: &Recovered, (arm, about): (impl Fn(u32)
         let coupling = held.subdomain as usize - couplings.first;
         if let Some(arm) = point_arm(model, coupling, about) {
             let whole = model.tfeti.gluing().direction(row);
-            out[coupling].add(arm, scale(*lambda, whole));
+            out[coupling].add(arm, scale(lambda * couplings.unit[coupling], whole));
         }
         for (node, c, coefficient) in model.row(row) {
             let mut force = [0.0; 3];

@@ -229,6 +229,32 @@ fn a_uniform_cell_has_the_modulus_of_its_material() {
     }
 }
 
+/// A small cell whose points have strains for displacements: units of their own, and forces to these.
+#[test]
+fn points_may_have_units_of_their_own() {
+    let (length, strain, stress) = (1e-6, 1e-3, 2e8);
+    let mesh = Brick::new([1.0; 3], [2; 3]).build().expect("brick");
+    for boxes in [[1, 1, 1], [2, 2, 2]] {
+        let plain = cell(mesh.clone(), uniform(YOUNG, 0.3), [Some(strain), None, None]);
+        let small = mesh.clone().map_points(|p| p.map(|c| c * length)).expect("small");
+        let scene = Scene::new(small, uniform(YOUNG, 0.3)).with_support(plain.supports()[0].clone());
+        let scene = plain.couplings().iter().cloned().fold(scene, Scene::with_coupling);
+        let strained = |e: &Equation| {
+            let own = Equation::new(e.terms().to_vec());
+            e.points().iter().fold(own, |own, (k, v)| own.with_point(*k, v.map(|c| c * length)))
+        };
+        let scene = plain.equations().iter().map(strained).fold(scene, Scene::with_equation);
+        let work = stress * length.powi(3);
+        let scene = scene.with_load(Load::on_coupling(1, [0.0, work, 0.0], [0.0; 3]));
+        let found = solved(scene.with_boxes(boxes), tight(), "strains");
+        let across = (stress - 0.3 * found.reactions.couplings[0].force[0] / length.powi(3)) / YOUNG;
+        assert!((found.points[1][1] / across - 1.0).abs() < 1e-8, "{:?}", found.points);
+        assert!((found.points[0][0] / strain - 1.0).abs() < 1e-9, "{:?}", found.points);
+        let force = found.reactions.couplings[0].force[0] / length.powi(3);
+        assert!((force / (YOUNG * strain + 0.3 * stress) - 1.0).abs() < 1e-8, "{force:e}");
+    }
+}
+
 /// A cell with a stiff core off its middle, displaced nodes and shear, on any number of subdomains.
 #[test]
 fn a_cell_with_a_core_knows_nothing_of_subdomains() {

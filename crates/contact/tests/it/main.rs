@@ -21,6 +21,7 @@ mod effects;
 mod eigenstrain;
 mod equations;
 mod equations_more;
+mod equations_random;
 mod estimates;
 mod estimates_coupled;
 mod explicit;
