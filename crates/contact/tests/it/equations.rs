@@ -4,7 +4,7 @@ use crate::common::*;
 use crate::couplings::YOUNG;
 use signorini_contact::result::EquationForce;
 use signorini_fem_mesh::vec3;
-use std::collections::HashMap;
+use std::collections::BTreeMap;
 
 pub(crate) const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
@@ -18,7 +18,7 @@ pub(crate) fn alike(a: u32, b: u32) -> impl Iterator<Item = Equation> {
 }
 
 /// Nodes by their places.
-pub(crate) fn by_place(mesh: &TetMesh, nodes: impl IntoIterator<Item = u32>) -> HashMap<[i64; 3], u32> {
+pub(crate) fn by_place(mesh: &TetMesh, nodes: impl IntoIterator<Item = u32>) -> BTreeMap<[i64; 3], u32> {
     let key = |n: u32| mesh.points()[n as usize].map(|c| (c * 1e6).round() as i64);
     nodes.into_iter().map(|n| (key(n), n)).collect()
 }
@@ -51,12 +51,12 @@ fn total(forces: &[EquationForce]) -> [f64; 3] {
 }
 
 /// The sides of a cut.
-const LOWER: FacetTag = FacetTag(31);
-const UPPER: FacetTag = FacetTag(32);
+pub(crate) const LOWER: FacetTag = FacetTag(31);
+pub(crate) const UPPER: FacetTag = FacetTag(32);
 
 /// A column that is cut across the middle.
-fn blocks() -> Scene {
-    let mesh = block([1.0, 1.0, 2.0], [3, 3, 6]);
+pub(crate) fn column(cells: usize) -> Scene {
+    let mesh = block([1.0, 1.0, 2.0], [cells, cells, 2 * cells]);
     let is_lower = |tet: usize| Some(vec3::centroid(&mesh.tet_points(tet))[2] < 1.0);
     let mesh = mesh.cut(is_lower, [LOWER, UPPER]).expect("cut").0;
     Scene::new(mesh, uniform(YOUNG, 0.3))
@@ -65,7 +65,7 @@ fn blocks() -> Scene {
 }
 
 /// Nodes of the upper side with those of the lower one at their places.
-fn pairs(scene: &Scene) -> Vec<(u32, u32)> {
+pub(crate) fn pairs(scene: &Scene) -> Vec<(u32, u32)> {
     let mesh = scene.mesh();
     let below = by_place(mesh, mesh.nodes_on(LOWER));
     let above = by_place(mesh, mesh.nodes_on(UPPER));
@@ -77,12 +77,12 @@ fn pairs(scene: &Scene) -> Vec<(u32, u32)> {
 #[test]
 fn nodes_that_move_alike_are_tied() {
     for boxes in [[1, 1, 2], [2, 2, 4]] {
-        let tied = blocks().with_contact(Contact::tied(UPPER, LOWER));
+        let tied = column(3).with_contact(Contact::tied(UPPER, LOWER));
         let expected = solved(tied.with_boxes(boxes), tight(), "tied");
-        let joined = pairs(&blocks());
+        let joined = pairs(&column(3));
         let equations = joined.iter().flat_map(|(a, b)| alike(*a, *b));
         let found = solved(
-            equations.fold(blocks(), Scene::with_equation).with_boxes(boxes),
+            equations.fold(column(3), Scene::with_equation).with_boxes(boxes),
             tight(),
             "alike",
         );
@@ -107,13 +107,13 @@ fn nodes_that_move_alike_are_tied() {
 fn values_are_those_of_ties_that_move() {
     let jump = [1e-4, -2e-4, 5e-5];
     let tie = Contact::tied(UPPER, LOWER).with_motion(jump, ramp());
-    let expected = solved(blocks().with_contact(tie).with_boxes([2, 1, 2]), tight(), "tied");
+    let expected = solved(column(3).with_contact(tie).with_boxes([2, 1, 2]), tight(), "tied");
     let parted = |(a, b)| {
         let all = alike(a, b).zip(jump);
         all.map(|(equation, jump)| equation.with_value(jump, ramp()))
     };
-    let equations = pairs(&blocks()).into_iter().flat_map(parted);
-    let scene = equations.fold(blocks(), Scene::with_equation).with_boxes([2, 1, 2]);
+    let equations = pairs(&column(3)).into_iter().flat_map(parted);
+    let scene = equations.fold(column(3), Scene::with_equation).with_boxes([2, 1, 2]);
     let found = solved(scene, tight(), "parted");
     assert_close(
         &found.one.displacement,
@@ -241,7 +241,9 @@ fn points_may_have_units_of_their_own() {
         let scene = plain.couplings().iter().cloned().fold(scene, Scene::with_coupling);
         let strained = |e: &Equation| {
             let own = Equation::new(e.terms().to_vec());
-            e.points().iter().fold(own, |own, (k, v)| own.with_point(*k, v.map(|c| c * length)))
+            e.points()
+                .iter()
+                .fold(own, |own, (k, v)| own.with_point(*k, v.map(|c| c * length)))
         };
         let scene = plain.equations().iter().map(strained).fold(scene, Scene::with_equation);
         let work = stress * length.powi(3);
@@ -251,7 +253,10 @@ fn points_may_have_units_of_their_own() {
         assert!((found.points[1][1] / across - 1.0).abs() < 1e-8, "{:?}", found.points);
         assert!((found.points[0][0] / strain - 1.0).abs() < 1e-9, "{:?}", found.points);
         let force = found.reactions.couplings[0].force[0] / length.powi(3);
-        assert!((force / (YOUNG * strain + 0.3 * stress) - 1.0).abs() < 1e-8, "{force:e}");
+        assert!(
+            (force / (YOUNG * strain + 0.3 * stress) - 1.0).abs() < 1e-8,
+            "{force:e}"
+        );
     }
 }
 

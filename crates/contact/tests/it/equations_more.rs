@@ -2,7 +2,7 @@
 
 use crate::common::*;
 use crate::couplings::YOUNG;
-use crate::equations::{AXES, alike, cell, minus, solved};
+use crate::equations::{AXES, LOWER, UPPER, alike, cell, column, minus, pairs, solved};
 use crate::processes::the_same_on;
 use signorini_fem_mesh::vec3;
 
@@ -300,4 +300,26 @@ fn what_is_not_there_costs_nothing() {
     let idle = run(scene.with_coupling(Coupling::point([9.0; 3])), Settings::default());
     assert_eq!(idle.0.result().expect("a step").couplings()[0].displacement, [0.0; 3]);
     assert_close(&idle.1[0].displacement, &plain[0].displacement, 1e-5, "displacement");
+}
+
+/// Products are those of supports and of ties.
+#[test]
+fn products_are_those_of_other_rows() {
+    let products = |scene: Scene| solve(scene, Settings::default()).report.counters.products;
+    let load = Load::body([0.0, 3e8, -2e8]);
+    for (cells, boxes) in [(8, [2; 3]), (12, [4; 3])] {
+        let mesh = block([1.0; 3], [cells; 3]);
+        let clamped = Scene::new(mesh.clone(), uniform(YOUNG, 0.3)).with_support(Support::fixed(brick::X_MIN));
+        let clamped = products(clamped.with_load(load.clone()).with_boxes(boxes));
+        let periodic = cell(mesh, uniform(YOUNG, 0.3), [Some(1e-3), None, None]);
+        let periodic = products(periodic.with_load(load.clone()).with_boxes(boxes));
+        assert!(periodic <= clamped + 2, "{periodic} products, clamped {clamped}");
+        let tied = column(cells)
+            .with_contact(Contact::tied(UPPER, LOWER))
+            .with_boxes(boxes);
+        let joined = pairs(&column(cells)).into_iter().flat_map(|(a, b)| alike(a, b));
+        let joined = joined.fold(column(cells), Scene::with_equation).with_boxes(boxes);
+        let [joined, tied] = [joined, tied].map(products);
+        assert!(joined <= tied + 1, "{joined} products, tied {tied}");
+    }
 }

@@ -117,16 +117,8 @@ fn judge(seed: u64) -> Result<usize, String> {
         Err(error) => return Err(error.to_string()),
     };
     let one = step(&mut simulation);
-    if !one.report.status.converged() {
-        println!(
-            "{seed}: {:?} {:?}",
-            one.report.status,
-            one.certificate.parts().map(|(n, v)| (n, v.relative()))
-        );
-        return Ok(0);
-    }
+    assert_certified(&one, &format!("{seed}"));
     let result = simulation.result().expect("a step");
-    if one.report.counters.products > 100 { println!("{:?} {:?} {:?}", one.report, one.summary, scene.couplings()); }
     let (u, reactions) = (&one.displacement, result.reactions());
     let points: Vec<_> = result.couplings().iter().map(|c| c.displacement).collect();
     let most = u.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
@@ -205,33 +197,27 @@ fn judge(seed: u64) -> Result<usize, String> {
     let estimate = rough.result().expect("a step").algebraic_error();
     let truth = energy_distance(&scene, &found.displacement, u);
     let bound = estimate.energy.sqrt();
-    if bound * 1.001 + 1e-7 * estimate.elastic.sqrt() < truth || bound > 20.0 * truth + 1e-7 * estimate.elastic.sqrt() {
-        println!("{seed}: estimate {bound:e} of {truth:e}, {:e} contacts {}", estimate.elastic.sqrt(), scene.contacts().len());
-    }
+    let rounding = 1e-7 * estimate.elastic.sqrt();
+    assert!(
+        bound * 1.001 + rounding >= truth && bound <= 20.0 * truth + rounding,
+        "{seed}: {bound:e} of {truth:e}"
+    );
     Ok(one.report.counters.products)
 }
 
+/// Half of the scenes would do; some are refused, since supports or equations contradict one another.
 #[test]
 fn random_equations_are_satisfied_and_in_balance() {
-    let (mut most, mut refused) = (0, 0);
-    let first: u64 = std::env::var("EQ_FIRST").map_or(0, |v| v.parse().unwrap());
-    let count: u64 = std::env::var("EQ_COUNT").map_or(60, |v| v.parse().unwrap());
-    for seed in first..first + count {
+    let known = ["contradict", "prescribe different displacements", "inside the obstacle"];
+    let mut solved = 0;
+    for seed in 0..40 {
         match judge(seed) {
             Ok(products) => {
-                if products > 100 { println!("{seed}: {products} products, {}", scene(seed).contacts().len()); }
-                most = most.max(products)
+                assert!(products < 100, "{seed}: {products} products");
+                solved += 1;
             }
-            Err(error) => {
-                if !error.contains("contradicts")
-                    && !error.contains("supports 0 and 1")
-                    && !error.contains("support at node")
-                {
-                    println!("{seed}: {error}");
-                }
-                refused += 1;
-            }
+            Err(error) => assert!(known.iter().any(|why| error.contains(why)), "{seed}: {error}"),
         }
     }
-    println!("{most} products, {refused} refused");
+    assert!(solved > 20, "{solved}");
 }
