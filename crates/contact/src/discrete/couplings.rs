@@ -26,8 +26,8 @@ pub(crate) struct Couplings {
     relative: BTreeMap<usize, usize>,
     /// Of each coupling, along and about which it is told what is held.
     pub(crate) axes: Vec<[Vec3; 3]>,
-    /// The point of each whose displacement is told: its reference point, or of a point alone the mean of its places, any
-    /// of which has the displacement.
+    /// The point of each whose displacement is told: its reference point, or of a point alone the mean of its places,
+    /// any of which has the displacement.
     pub(crate) about: Vec<Vec3>,
     /// What its places move per displacement of a point, so that both are of one size; one of other couplings.
     pub(crate) unit: Vec<f64>,
@@ -414,8 +414,8 @@ fn idle(scene: &Scene, index: usize, axes: &[Vec3; 3]) -> Result<Vec<Vec3>, Cont
         true => Err(ContactError::Coupling {
             coupling: index,
             node: None,
-            reason: "a load pushes the point in a direction of which no equation says anything, so that it acts on nothing; \
-                give it an equation, or leave the load out",
+            reason: "a load pushes the point in a direction of which no equation says anything, so that it acts on \
+                nothing; give it an equation, or leave the load out",
         }),
     }
 }

@@ -28,8 +28,8 @@ pub(crate) enum Target {
 #[derive(Debug)]
 pub(crate) struct SharedNodes {
     /// Coefficients of each row on the displacement of the nodes, in metres: the normal row of each point and those
-    /// along the surface, point by point, then those of ties and equations. Displacements of couplings that are points stand
-    /// behind those of nodes, along the axes of the coupling.
+    /// along the surface, point by point, then those of ties and equations. Displacements of couplings that are points
+    /// stand behind those of nodes, along the axes of the coupling.
     pub(super) rows: Vec<Vec<(usize, f64)>>,
     /// The rows of ties and equations.
     pub(super) tied: std::ops::Range<usize>,

@@ -1,8 +1,8 @@
 //! Which bodies can touch each other, and to which of them rows and subdomains belong.
 //!
-//! Bodies that may touch each other count as one here, and so do parts that hinges or equations join. An obstacle is rigid, so the
-//! others know nothing of each other: a scene with several is several problems in one, and norms over all of them
-//! would let the heaviest alone decide when the others are done.
+//! Bodies that may touch each other count as one here, and so do parts that hinges or equations join. An obstacle is
+//! rigid, so the others know nothing of each other: a scene with several is several problems in one, and norms over all
+//! of them would let the heaviest alone decide when the others are done.
 
 use crate::discrete::DiscreteScene;
 use signorini_fem_mesh::internal::DisjointSets;

@@ -74,7 +74,8 @@ impl SupportReaction {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[non_exhaustive]
 pub struct EquationForce {
-    /// Each node, and point, is pushed by this, N, times its coefficients in the equation. Zero of equations that say what others, or supports, say already.
+    /// Each node, and point, is pushed by this, N, times its coefficients in the equation. Zero of equations that say
+    /// what others, or supports, say already.
     pub multiplier: f64,
     /// All of these forces together.
     pub resultant: Resultant,

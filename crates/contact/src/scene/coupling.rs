@@ -98,9 +98,9 @@ impl Coupling {
         Self::of(Coupled::Tied(contact), reference)
     }
 
-    /// A point alone, m, for [equations](crate::Equation): a control node that is moved, loaded or free. It has no rotations,
-    /// and stays where neither an equation nor this coupling says how it moves. It costs as much as a subdomain, and a
-    /// hundred of them much more.
+    /// A point alone, m, for [equations](crate::Equation): a control node that is moved, loaded or free. It has no
+    /// rotations, and stays where neither an equation nor this coupling says how it moves. It costs as much as a
+    /// subdomain, and the set-up grows with the cube of their number: a hundred take a second.
     pub fn point(place: [f64; 3]) -> Self {
         Self::of(Coupled::Point, place)
     }

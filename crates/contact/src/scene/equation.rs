@@ -2,16 +2,17 @@
 
 use signorini_fem_mesh::History;
 
-/// A linear equation between displacements of nodes, `sum a . u = value`: nodes that move alike, faces of a periodic cell, a
-/// lever, a direction in which a node may not move. Elsewhere: multi-point constraint, `*EQUATION` (CalculiX, Abaqus), MPC
-/// (Nastran).
+/// A linear equation between displacements of nodes, `sum a . u = value`: nodes that move alike, faces of a periodic
+/// cell, a lever, a direction in which a node may not move. Elsewhere: multi-point constraint, `*EQUATION` (CalculiX,
+/// Abaqus), MPC (Nastran).
 ///
-/// Its [force](crate::result::Reactions::equations) acts on each node along the coefficients there. [Points](crate::Coupling::point)
-/// without elements may take part: control nodes that are moved or loaded, whose displacement is that of many others.
+/// Its [force](crate::result::Reactions::equations) acts on each node along the coefficients there.
+/// [Points](crate::Coupling::point) without elements may take part: control nodes that are moved or loaded, whose
+/// displacement is that of many others.
 ///
 /// Equations may say what others, or supports, say already: such a one has no force. Contradictions are refused, and
-/// equations that say how nodes move that may touch something, are tied or coupled, as far as contact, tie or coupling say
-/// the same. What equations leave free needs supports, as without them.
+/// equations that name nodes of rigid couplings, or say what ties or contact say of the same nodes. What equations leave
+/// free needs supports, as without them.
 ///
 /// ```
 /// use signorini_contact::{Coupling, Equation, Load, Scene, Settings, Simulation, Support};

@@ -11,9 +11,9 @@ use signorini_fem_mesh::{Facet, FacetTag};
 
 use super::boundary::Boundary;
 use super::couplings::Couplings;
-use super::equations::Points;
 use super::mesh::{Raw, key};
 use super::numbers::Sets;
+use super::points::Points;
 use super::pretension::Sections;
 use super::rigid::{RigidBodies, RigidFace};
 use super::timeline::Timeline;

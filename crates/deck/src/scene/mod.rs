@@ -15,6 +15,7 @@ mod materials;
 mod mesh;
 mod numbers;
 mod parts;
+mod points;
 mod pretension;
 mod rigid;
 mod spread;
@@ -69,7 +70,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         let copied = sections.cut(whole, 0, &raw)?.1;
         raw.copy(&copied);
     }
-    let points = equations::Points::new(&sets, &bodies, &couplings, &raw)?;
+    let points = points::Points::new(&sets, &bodies, &couplings, &raw)?;
     let transforms = transforms::Transforms::new(&sets, &bodies, (&couplings, &points), &raw)?;
     let known = faces::Known {
         model,

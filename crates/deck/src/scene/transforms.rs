@@ -8,9 +8,9 @@ use signorini_fem_mesh::internal::cylindrical;
 use signorini_fem_mesh::vec3::{Vec3, combine, norm, scale, sub, unit};
 
 use super::couplings::Couplings;
-use super::equations::Points;
 use super::mesh::Raw;
 use super::numbers::Sets;
+use super::points::Points;
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Word};
 use crate::model::{Axes, Target, rectangular};

@@ -1,8 +1,9 @@
 //! Linear equations between displacements: what supports leave of them, and which of them say something new.
 //!
 //! Equations are eliminated one after another, behind what holds places and the rows of ties that they touch, by sparse
-//! rows with a pivot in the column that the fewest of the others have. One of which nothing is left says what others say,
-//! or contradicts them. So are contact rows behind all equations: where nothing is left of one, its force is not determined.
+//! rows with a pivot in the column that the fewest of the others have. One of which nothing is left says what others
+//! say, or contradicts them. So are contact rows behind all equations: where nothing is left of one, its force is not
+//! determined.
 
 use super::contact::{AllRows, PointRows};
 use super::rigid::RigidSupport;
