@@ -305,7 +305,7 @@ fn what_is_not_there_costs_nothing() {
 /// Products are those of supports and of ties.
 #[test]
 fn products_are_those_of_other_rows() {
-    let products = |scene: Scene| solve(scene, Settings::default()).report.counters.products;
+    let products = |scene: Scene| solve(scene, at(1e-8)).report.counters.products;
     let load = Load::body([0.0, 3e8, -2e8]);
     for (cells, boxes) in [(8, [2; 3]), (12, [4; 3])] {
         let mesh = block([1.0; 3], [cells; 3]);
