@@ -155,7 +155,7 @@ impl Plan {
             normal_rows: points.len(),
             tangential_rows: points.iter().filter(rough).map(|p| free(p) - 1).sum(),
             // each copy of a node but one is glued
-            interface_rows: primal - 3 * nodes,
+            interface_rows: 3 * (decomposition.torn_nodes().flatten().count() - nodes),
             dirichlet_rows: fixed.values().map(Vec::len).sum::<usize>()
                 + discrete.springs.nodal.len()
                 + discrete.couplings.supports.len(),

@@ -141,8 +141,12 @@ fn equations_of_single_nodes_are_supports() {
         let way = [3e-5, 0.0, -4e-5];
         let support = Support::partial(end.clone(), Directions::Vectors(vec![normal])).with_motion(way, ramp());
         let expected = solved(scene.clone().with_support(support), tight(), "support");
-        let on_plane = |node| Equation::new([(node, normal.map(|c| 1e3 * c))]).with_value(1e3 * 5e-5, ramp());
-        let equations = end.into_iter().map(on_plane);
+        // however large the coefficients are
+        let on_plane = |(k, node): (usize, u32)| {
+            let size = [1e-150, 1e3, 1e160][k % 3];
+            Equation::new([(node, normal.map(|c| size * c))]).with_value(size * 5e-5, ramp())
+        };
+        let equations = end.into_iter().enumerate().map(on_plane);
         let found = solved(equations.fold(scene, Scene::with_equation), tight(), "equations");
         assert_close(
             &found.one.displacement,

@@ -220,6 +220,7 @@ fn what_is_refused_says_why() {
         ),
         (held().with_equation(on([0.0; 3])), "no coefficient that is not zero"),
         (held().with_equation(on([f64::NAN, 0.0, 0.0])), "must be finite"),
+        (held().with_equation(on([f64::INFINITY, 0.0, 0.0])), "must be finite"),
         (
             held().with_equation(Equation::new([(999, AXES[0])])),
             "equation 0, node 999: the mesh has no such node",

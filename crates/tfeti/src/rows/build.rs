@@ -249,8 +249,11 @@ impl Builder<'_> {
             for &(case, value) in &own.values {
                 self.gluing.prescribed[case as usize].push((row as u32, scale * value));
             }
-            let equation = own.equation;
-            self.gluing.equations.push(EquationRow { equation, row, scale });
+            self.gluing.equations.push(EquationRow {
+                equation: own.equation,
+                row,
+                scale: scale * own.factor,
+            });
         }
     }
 

@@ -33,7 +33,7 @@ pub struct NodalEquation {
     pub values: Vec<(u32, f64)>,
 }
 
-/// What supports leave of an equation.
+/// What supports leave of an equation times a factor, with which its largest coefficient is one.
 #[derive(Debug)]
 pub(super) struct FreeEquation {
     /// Its position in the list.
@@ -41,16 +41,17 @@ pub(super) struct FreeEquation {
     pub(super) terms: Vec<(u32, [f64; 3])>,
     pub(super) places: Vec<(u32, [f64; 3])>,
     pub(super) values: Vec<(u32, f64)>,
+    pub(super) factor: f64,
     /// What the values are made of.
     size: f64,
 }
 
-/// The sum of what is given for each key.
-fn sums(terms: &[(u32, [f64; 3])]) -> BTreeMap<u32, [f64; 3]> {
+/// The sum of what is given for each key, over the largest.
+fn sums(terms: &[(u32, [f64; 3])], largest: f64) -> BTreeMap<u32, [f64; 3]> {
     let mut out: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
     for (key, vector) in terms {
         let sum = out.entry(*key).or_default();
-        (0..3).for_each(|c| sum[c] += vector[c]);
+        (0..3).for_each(|c| sum[c] += vector[c] / largest);
     }
     out
 }
@@ -63,8 +64,13 @@ impl FreeEquation {
     ) -> Result<Self, TfetiError> {
         let refuse = |reason| Err(refused(equation, None, reason));
         let all = || given.terms.iter().chain(&given.places);
-        if !(all().all(|(_, vector)| is_finite(*vector)) && given.values.iter().all(|v| v.1.is_finite())) {
-            return refuse("its coefficients and its value must be finite");
+        let largest = all().flat_map(|t| t.1).fold(0.0_f64, |most, v| most.max(v.abs()));
+        let largest = if largest > 0.0 { largest } else { 1.0 };
+        let values = given.values.iter().map(|(case, value)| (*case, value / largest));
+        let values: Vec<(u32, f64)> = values.collect();
+        let finite = all().all(|(_, vector)| is_finite(*vector)) && largest.recip().is_finite();
+        if !(finite && values.iter().all(|v| v.1.is_finite())) {
+            return refuse("its coefficients and its value over the largest of them must be finite");
         }
         let subdomains = decomposition.subdomains();
         let is_place = |s: &u32| {
@@ -78,12 +84,16 @@ impl FreeEquation {
         let mut out = Self {
             equation,
             terms: Vec::with_capacity(given.terms.len()),
-            places: sums(&given.places).into_iter().filter(|p| p.1 != [0.0; 3]).collect(),
-            values: given.values.clone(),
+            places: sums(&given.places, largest)
+                .into_iter()
+                .filter(|p| p.1 != [0.0; 3])
+                .collect(),
+            values,
+            factor: largest.recip(),
             size: 0.0,
         };
         let mut said = !out.places.is_empty();
-        for (node, vector) in sums(&given.terms) {
+        for (node, vector) in sums(&given.terms, largest) {
             check_node(node, decomposition.nodes(), || format!("equation {equation}"))?;
             said |= vector != [0.0; 3];
             let mut left = vector;
@@ -361,6 +371,9 @@ impl Elimination {
         while let Some(next) = known.pop_first() {
             let Pivot { column, row, equation } = &self.pivots[next];
             let factor = left.entries.remove(column).unwrap_or(0.0) / row.entries[column];
+            if factor == 0.0 {
+                continue;
+            }
             for (other, value) in row.entries.iter().filter(|e| e.0 != column) {
                 let sum = left.entries.entry(*other).or_insert(0.0);
                 *sum -= factor * value;
