@@ -100,7 +100,7 @@ impl Coupling {
 
     /// A point alone, m, for [equations](crate::Equation): a control node that is moved, loaded or free. It has no
     /// rotations, and stays where neither an equation nor this coupling says how it moves. It costs as much as a
-    /// subdomain, and the set-up grows with the cube of their number: a hundred take a second.
+    /// subdomain, and the set-up grows with the cube of their number: two hundred take a second.
     pub fn point(place: [f64; 3]) -> Self {
         Self::of(Coupled::Point, place)
     }

@@ -3,6 +3,7 @@
 use signorini_contact::Equation;
 
 use super::faces::Known;
+use super::points::Room;
 use super::supports::Rigid;
 use crate::error::{DeckError, Word};
 use crate::model::Term;
@@ -15,7 +16,7 @@ pub(super) fn equations(known: Known, rigid: &[Rigid]) -> Result<Vec<(Equation, 
         .ignored
         .iter()
         .find(|ignored| ignored.word.eq_ignore_ascii_case("UNSORTED"));
-    let mut out = Vec::with_capacity(model.equations.len());
+    let (mut out, mut room) = (Vec::with_capacity(model.equations.len()), Room::default());
     for given in &model.equations {
         let nodes = |term: &Term| {
             let mut nodes = known.sets.nodes.find(&term.target, &term.word)?;
@@ -37,6 +38,7 @@ pub(super) fn equations(known: Known, rigid: &[Rigid]) -> Result<Vec<(Equation, 
                 its nodes",
             ));
         }
+        room.take(count * nodes.len(), &given.word)?;
         for k in 0..count {
             let mut terms = Vec::with_capacity(given.terms.len());
             let mut points = Vec::new();

@@ -242,6 +242,9 @@ fn what_is_refused() {
         step("*CLOAD\n900, 4, 1.\n")
     );
     behind(&moment, "900, 4, 1.", "4", "a component 1, 2 or 3");
+    let many: String = (0..501).map(|n| format!("{}\n", 10_000 + n)).collect();
+    let many = format!("*NODE, NSET=MANY\n{many}*EQUATION\n1\nMANY, 1, 1.\n{HELD}{}", step(""));
+    behind(&many, "MANY, 1, 1.", "MANY", "more than 500 nodes in equations");
     // what the scene refuses names the line
     let twice = format!(
         "*EQUATION\n1\n27, 1, 1.\n2\n27, 1, 1., 26, 1, 1.\n{HELD}{}",
