@@ -9,6 +9,7 @@
 //! | a body on a rigid obstacle | [`Scene`], [`Support`], [`Load`], [`Contact`] with a gap and a [`Friction`] law |
 //! | bodies that touch each other | [`Contact::between`]; [`ContactPair::find`] finds where |
 //! | a part of a body that is rigid; a bolt, a hinge | [`Coupling`], loaded by [`Load::on_coupling`] |
+//! | displacements that depend on one another; periodic cells | [`Equation`], with points by [`Coupling::point`] |
 //! | friction that depends on place or slip rate | [`Coefficient`], [`SlipBound`] |
 //! | time steps | [`Analysis`] with a [`DifferenceFormula`]; for one state [`Analysis::Static`] |
 //! | to know the cost in advance | [`Plan`], [`plan::Estimate`] |
@@ -105,8 +106,8 @@ pub use plan::Plan;
 pub use report::{RunReport, Warning};
 pub use result::{Certificate, ContactState, PointState};
 pub use scene::{
-    Analysis, Coefficient, Contact, ContactPair, Coupling, DifferenceFormula, Friction, Load, Obstacle, Partition,
-    Place, Scene, SlipBound, Spring, Support,
+    Analysis, Coefficient, Contact, ContactPair, Coupling, DifferenceFormula, Equation, Friction, Load, Obstacle,
+    Partition, Place, Scene, SlipBound, Spring, Support,
 };
 pub use settings::{Accuracy, InnerAccuracy, Method, MethodKind, Preconditioner, Settings};
 pub use signorini_tfeti::internal::Rate;

@@ -159,6 +159,12 @@ fn of_coupling(coupling: Option<&FreeCoupling>) -> impl Iterator<Item = Part> + 
 fn of_tfeti(error: &TfetiError) -> Vec<Part> {
     match error {
         TfetiError::Material { element, .. } => vec![Part::Tet(*element)],
+        TfetiError::Equation {
+            equation, node, others, ..
+        } => {
+            let equations = [equation].into_iter().chain(others).map(|k| Part::Equation(*k));
+            equations.chain(node.map(Part::Node)).collect()
+        }
         TfetiError::Spring { node, .. }
         | TfetiError::UnknownNode { node, .. }
         | TfetiError::ContactNodeTwice { node }

@@ -14,6 +14,8 @@ pub enum Part {
     Spring(usize),
     /// A rigid coupling.
     Coupling(usize),
+    /// A linear equation.
+    Equation(usize),
     /// A load.
     Load(usize),
     /// A node of the mesh.
@@ -36,6 +38,7 @@ impl Part {
             "support" => Self::Support(index),
             "spring" => Self::Spring(index),
             "coupling" => Self::Coupling(index),
+            "equation" => Self::Equation(index),
             "load" => Self::Load(index),
             _ => return None,
         })
@@ -49,6 +52,7 @@ impl std::fmt::Display for Part {
             Self::Support(index) => write!(f, "support {index}"),
             Self::Spring(index) => write!(f, "spring {index}"),
             Self::Coupling(index) => write!(f, "coupling {index}"),
+            Self::Equation(index) => write!(f, "equation {index}"),
             Self::Load(index) => write!(f, "load {index}"),
             Self::Node(node) => write!(f, "node {node}"),
             Self::Tet(tet) => write!(f, "tetrahedron {tet}"),

@@ -61,7 +61,7 @@
 //! | `*HEADING` | | a comment |
 //! | `*PART`, `*END PART` | `NAME` | nodes, elements, sets, surfaces and sections of a part |
 //! | `*ASSEMBLY`, `*INSTANCE` and their ends | `NAME`, `PART` | where parts are, see below |
-//! | `*NODE` | `NSET` | any numbers; nodes that no element uses are dropped |
+//! | `*NODE` | `NSET` | any numbers; nodes that no element and no equation uses are dropped |
 //! | `*ELEMENT` | `TYPE=C3D4`, `C3D10`, `ELSET` | linear or quadratic tetrahedra, and as these their variants (`C3D10M`, `C3D4H`); `R3D3` and `R3D4` for rigid surfaces; `CPS3`, `CPS6`, `T3D2`, `T3D3`, which Gmsh writes, have no stiffness, and triangles name the faces on which they lie; other types are refused |
 //! | `*NSET`, `*ELSET` | `NSET` or `ELSET`, `GENERATE`, `INTERNAL`, `INSTANCE` | numbers and sets defined before; cards of one name add up |
 //! | `*SURFACE` | `NAME`, `TYPE=ELEMENT`, `INTERNAL` | faces `S1` to `S4` of elements or sets, on the boundary, or without a number all that are there, or those of triangles; `SPOS`, `SNEG` of rigid facets |
@@ -85,6 +85,7 @@
 //! | `*DISTRIBUTING` | `COUPLING=CONTINUUM`, `WEIGHTING METHOD=UNIFORM` | forces and moments of the node are spread over the surface by areas (of flat faces), growing linearly from its centroid; it stays elastic |
 //! | `*KINEMATIC` | | the surface has the displacement and the small rotation of the node, whose components 1 to 6 are held, moved, loaded or free |
 //! | `*PRE-TENSION SECTION` | `SURFACE`, `NODE` | a bolt is cut at faces between elements, all on one side, and its parts move towards each other along the mean normal, or one given, under the force or the displacement of component 1 of the node; CalculiX is wrong here for tetrahedra |
+//! | `*EQUATION` | | a sum of components 1 to 3 of nodes, or of each node of sets, by ascending numbers, times coefficients is zero; nodes without elements are [points](signorini_contact::Coupling::point), held, moved, loaded or free; nodes of rigid bodies and couplings are refused |
 //! | `*TRANSFORM` | `NSET`, `TYPE=R`, `C` | axes of nodes, along which their supports and forces are |
 //! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT`, `FIXED` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `XASYMM` and so on; rotations held at zero are ignored on solids; `FIXED` of the node of a section only, whose motion then stays |
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |

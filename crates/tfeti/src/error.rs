@@ -14,6 +14,8 @@ signorini_fem_mesh::errors! {
         Collinear { subdomain: usize } =
             "subdomain {subdomain}: its nodes lie on one line, so it has fewer than six rigid motions";
         Material { element: usize, message: String } = "tetrahedron {element}: {message}";
+        Equation { equation: usize, node: Option<u32>, others: Vec<usize>, reason: &'static str } =
+            "equation {equation}{}{}: {reason}", node.map_or(String::new(), |n| format!(", node {n}")), beside(others);
         Spring { node: u32, stiffness: f64 } =
             "spring at node {node}: its stiffness is {stiffness}; it must be positive, and neither so small nor so \
             large that its inverse overflows or vanishes";
@@ -70,6 +72,15 @@ signorini_fem_mesh::errors! {
         DependentRows { node: u32 } =
             "node {node}: its rows depend on one another, no preconditioner can scale them; give each contact once";
         TooLarge { what: &'static str, count: usize } = "{what} = {count} is more than the 32-bit tables can number";
+    }
+}
+
+/// Other equations that an error names.
+fn beside(others: &[usize]) -> String {
+    let numbers: Vec<String> = others.iter().map(usize::to_string).collect();
+    match numbers[..] {
+        [] => String::new(),
+        _ => format!(", beside equations {}", numbers.join(", ")),
     }
 }
 

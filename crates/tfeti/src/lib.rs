@@ -75,7 +75,8 @@ pub use processes::exchange::Traffic;
 pub use projector::active_set::ActiveSetProjector;
 pub use projector::factor::CoarseFactor;
 pub use projector::orthonormal::OrthonormalCoarse;
-pub use rows::gluing::{ContactRows, Gluing, SpringRow, TangentialRows, TiedRows};
+pub use rows::equations::NodalEquation;
+pub use rows::gluing::{ContactRows, EquationRow, Gluing, SpringRow, TangentialRows, TiedRows};
 pub use rows::ranges::RowRanges;
 pub use rows::rigid::RigidSupport;
 pub use rows::side::{ContactConstraint, Side};
@@ -99,6 +100,7 @@ pub mod internal {
     pub use crate::projector::forecast::forecast_levels;
     pub use crate::rows::contact::{PrescribedPoint, prescribed_points, unsaid_directions};
     pub use crate::rows::dependencies::Dependency;
+    pub use crate::rows::equations::independent_equations;
     pub use crate::rows::rigid::forces_at_three;
     pub use crate::rows::supports::{PrescribedDirection, prescribed_directions};
     pub use crate::subdomain::class::{Class, Classes};

@@ -3,11 +3,11 @@
 use super::points::ContactPoint;
 use super::supports::Supports;
 use crate::error::ContactError;
-use crate::scene::{Coupled, Coupling, CouplingLoad, Place, Scene};
-use crate::tolerances::{ALONG, FAR};
+use crate::scene::{Coupled, Coupling, CouplingLoad, Equation, LoadKind, Place, Scene};
+use crate::tolerances::{ALIKE, ALONG, FAR};
 use signorini_fem_mesh::decomposition::Rigid;
 use signorini_fem_mesh::internal::distinct;
-use signorini_fem_mesh::vec3::{Vec3, cross, dot, is_finite, norm, sub};
+use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, is_finite, norm, scale, sub, unit};
 use signorini_fem_mesh::{Decomposition, History, SurfaceFrame};
 use signorini_tfeti::internal::{PrescribedDirection, forces_at_three, unsaid_directions};
 use signorini_tfeti::{ContactConstraint, RigidSupport, Side};
@@ -25,7 +25,12 @@ pub(crate) struct Couplings {
     /// Of tied contacts whose sides move relative to each other the coupling that says how.
     relative: BTreeMap<usize, usize>,
     /// Of each coupling, along and about which it is told what is held.
-    axes: Vec<[Vec3; 3]>,
+    pub(crate) axes: Vec<[Vec3; 3]>,
+    /// The point of each whose displacement is told: its reference point, or of a point alone the mean of its places,
+    /// any of which has the displacement.
+    pub(crate) about: Vec<Vec3>,
+    /// What its places move per displacement of a point, so that both are of one size; one of other couplings.
+    pub(crate) unit: Vec<f64>,
 }
 
 impl Couplings {
@@ -41,6 +46,8 @@ impl Couplings {
             of_node: BTreeMap::new(),
             relative: BTreeMap::new(),
             axes: Vec::with_capacity(scene.couplings.len()),
+            about: Vec::with_capacity(scene.couplings.len()),
+            unit: Vec::with_capacity(scene.couplings.len()),
         };
         if scene.couplings.is_empty() {
             return Ok((decomposition, out));
@@ -48,8 +55,12 @@ impl Couplings {
         let mut rigid = Vec::with_capacity(scene.couplings.len());
         for (index, coupling) in scene.couplings.iter().enumerate() {
             let nodes = out.nodes_of(scene, index)?;
-            let point = coupling.reference;
             let places: Vec<_> = nodes.iter().map(|&n| scene.mesh.points()[n as usize]).collect();
+            let point = match coupling.is_point() {
+                false => coupling.reference,
+                // not far from them, wherever it is said to be
+                true => scale(1.0 / places.len() as f64, places.iter().copied().fold([0.0; 3], add)),
+            };
             let refuse = |node, reason| {
                 let coupling = index;
                 Err(ContactError::Coupling { coupling, node, reason })
@@ -61,8 +72,11 @@ impl Couplings {
                     "its axis has no direction; give it one of finite length, not zero",
                 );
             };
-            if !is_finite(point) || motions().any(|(way, _)| !way.is_finite()) {
+            if !is_finite(coupling.reference) || motions().any(|(way, _)| !way.is_finite()) {
                 return refuse(None, "its reference point and its motions must be finite");
+            }
+            if coupling.is_point() {
+                check_point(scene, index)?;
             }
             if motions().any(|(way, held)| *way != 0.0 && !held) {
                 return refuse(
@@ -89,7 +103,7 @@ impl Couplings {
                     rounding is all that its motions tell; give it a nearer one";
                 return refuse(None, why);
             }
-            let relative = matches!(coupling.coupled, Coupled::Tied(_));
+            let relative = !matches!(coupling.coupled, Coupled::Nodes(_));
             for &node in nodes.iter().filter(|_| !relative) {
                 if out.of_node.insert(node, index).is_some() {
                     let why = "it is in another coupling, too; give it to one of them, or make one coupling of both";
@@ -113,6 +127,7 @@ impl Couplings {
                 return refuse(nodes.first().copied(), why);
             }
             let subdomain = (out.first + index) as u32;
+            let unit = size(scene, index);
             let cases: Vec<u32> = coupling.motions.iter().map(|(_, h)| supports.case(h)).collect();
             let holds = coupling.holds();
             let locked = coupling.locked.iter().any(Option::is_some);
@@ -123,6 +138,7 @@ impl Couplings {
                 let values = cases.iter().zip(&coupling.motions);
                 let values = values.map(|(&case, (motion, _))| (case, motion[component]));
                 let values = values.chain(still.zip(coupling.locked[component]));
+                let values = values.map(|(case, value)| (case, unit * value));
                 out.supports.push(RigidSupport {
                     subdomain,
                     point,
@@ -130,11 +146,24 @@ impl Couplings {
                     values: values.filter(|v| v.1 != 0.0).collect(),
                 });
             }
+            let idle = if coupling.is_point() {
+                idle(scene, index, &axes)?
+            } else {
+                Vec::new()
+            };
+            out.supports.extend(idle.into_iter().map(|along| RigidSupport {
+                subdomain,
+                point,
+                direction: [along, [0.0; 3]],
+                values: Vec::new(),
+            }));
             rigid.push(match relative {
                 true => Rigid::Places(nodes),
                 false => Rigid::Nodes(nodes),
             });
             out.axes.push(axes);
+            out.about.push(point);
+            out.unit.push(unit);
         }
         Ok((decomposition.with_rigid(rigid)?, out))
     }
@@ -146,7 +175,7 @@ impl Couplings {
             .map(|coupling| (self.first + coupling) as u32)
     }
 
-    /// Nodes of a coupling, ascending; of a relative one those of both sides.
+    /// Nodes of a coupling, ascending; of a relative one those of both sides, of a point any that are not on a line.
     fn nodes_of(&mut self, scene: &Scene, coupling: usize) -> Result<Vec<u32>, ContactError> {
         let count = scene.mesh.points().len();
         let refuse = |node, reason| ContactError::Coupling { coupling, node, reason };
@@ -162,6 +191,11 @@ impl Couplings {
                     "the mesh has no such node; they are numbered from 0",
                 )),
             },
+            Coupled::Point => {
+                let places = scene.mesh.points();
+                let chosen = forces_at_three(places, places[0], [0.0; 3], [0.0; 3]);
+                Ok(distinct(chosen.into_iter().flatten().map(|(node, _)| node as u32)))
+            }
             Coupled::Tied(contact) => {
                 let tied = scene.contacts.get(*contact).filter(|c| c.tied);
                 let tied = tied.ok_or_else(|| {
@@ -301,7 +335,7 @@ impl Couplings {
         let subdomains = decomposition.subdomains();
         let mut out: Vec<Vec<f64>> = subdomains.iter().map(|s| vec![0.0; s.dofs()]).collect();
         let rigid = out.iter_mut().zip(subdomains).skip(self.first);
-        let Some((own, (target, nodes))) = scene.couplings.iter().zip(rigid).nth(coupling) else {
+        let Some((target, nodes)) = rigid.take(scene.couplings.len()).nth(coupling) else {
             let couplings = scene.couplings.len();
             return Err(ContactError::UnknownCoupling {
                 load: index,
@@ -310,14 +344,84 @@ impl Couplings {
             });
         };
         let places = nodes.points(&scene.mesh);
+        let (about, unit) = (self.about[coupling], self.unit[coupling]);
         // nodes are not on a line: that is checked
-        for (node, force) in forces_at_three(&places, own.reference, force, moment)
-            .into_iter()
-            .flatten()
-        {
-            target[3 * node..3 * node + 3].copy_from_slice(&force);
+        for (node, force) in forces_at_three(&places, about, force, moment).into_iter().flatten() {
+            target[3 * node..3 * node + 3].copy_from_slice(&force.map(|f| f / unit));
         }
         Ok(out)
+    }
+}
+
+/// Refuses what a point alone does not have: moments and rotations.
+fn check_point(scene: &Scene, index: usize) -> Result<(), ContactError> {
+    let turned = scene.couplings[index]
+        .motions
+        .iter()
+        .any(|(way, _)| way[3..] != [0.0; 3]);
+    let moments = scene.loads.iter().any(|load| match &load.kind {
+        LoadKind::Coupling(own) => own.coupling == index && own.moment != [0.0; 3],
+        LoadKind::Density(_) | LoadKind::Eigenstrain(_) => false,
+    });
+    match turned || moments {
+        false => Ok(()),
+        true => Err(ContactError::Coupling {
+            coupling: index,
+            node: None,
+            reason: "a point has no rotations, and takes no moments; give it displacements and forces",
+        }),
+    }
+}
+
+/// How much nodes move per displacement of a point, by the equation in which it counts most: a power of two.
+fn size(scene: &Scene, index: usize) -> f64 {
+    let ratio = |equation: &Equation| {
+        let sum = |vectors: &mut dyn Iterator<Item = Vec3>| vectors.map(|v| dot(v, v)).sum::<f64>().sqrt();
+        let own = sum(&mut equation.points.iter().filter(|p| p.0 == index).map(|p| p.1));
+        own / sum(&mut equation.terms.iter().map(|t| t.1))
+    };
+    let ratios = scene.equations.iter().map(ratio).filter(|r| r.is_finite());
+    let most = ratios.fold(0.0, f64::max);
+    match most > 0.0 && !(1.0 / ALIKE..=ALIKE).contains(&most) {
+        true => most.log2().round().exp2(),
+        false => 1.0,
+    }
+}
+
+/// The directions of a point of which neither an equation nor the coupling itself says anything: it stays there.
+fn idle(scene: &Scene, index: usize, axes: &[Vec3; 3]) -> Result<Vec<Vec3>, ContactError> {
+    let holds = scene.couplings[index].holds();
+    let mut known: Vec<Vec3> = (0..3).filter(|&c| holds[c]).map(|c| axes[c]).collect();
+    let rest = |known: &[Vec3], vector: Vec3| {
+        let all = [known, known].concat();
+        let rest = all.iter().fold(vector, |rest, d| sub(rest, scale(dot(rest, *d), *d)));
+        let is_left = norm(rest) > ALONG * norm(vector);
+        is_left.then(|| unit(rest))
+    };
+    let terms = scene.equations.iter().flat_map(|e| &e.points);
+    for (_, vector) in terms.filter(|term| term.0 == index && is_finite(term.1)) {
+        known.extend(rest(&known, *vector));
+    }
+    let told = known.len();
+    for axis in axes {
+        known.extend(rest(&known, *axis));
+    }
+    let idle = known.split_off(told);
+    let pushed = scene.loads.iter().any(|load| match &load.kind {
+        LoadKind::Coupling(own) => {
+            let along = |d: &Vec3| dot(own.force, *d).abs() > ALONG * norm(own.force);
+            own.coupling == index && idle.iter().any(along)
+        }
+        LoadKind::Density(_) | LoadKind::Eigenstrain(_) => false,
+    });
+    match pushed {
+        false => Ok(idle),
+        true => Err(ContactError::Coupling {
+            coupling: index,
+            node: None,
+            reason: "a load pushes the point in a direction of which no equation says anything, so that it acts on \
+                nothing; give it an equation, or leave the load out",
+        }),
     }
 }
 

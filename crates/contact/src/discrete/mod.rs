@@ -5,12 +5,13 @@
 //! order 2 it is a mean around the node (`means`). Scenes that make no sense are refused here, before any stiffness is
 //! assembled (`scene`, `overflow`, `penetration`, `turn`). `side` has the nodes and weights of a contact point.
 //!
-//! Rigid couplings are subdomains of their own (`couplings`).
+//! Rigid couplings are subdomains of their own (`couplings`); `equations` may have some that are points.
 //!
 //! Uses: `scene`, `mortar`. In: a scene. Out: a [`DiscreteScene`], borrowed by plan, model and reactions.
 
 mod couplings;
 mod creases;
+mod equations;
 mod extents;
 mod means;
 mod normals;
@@ -24,6 +25,7 @@ mod springs;
 mod supports;
 mod turn;
 
+pub(crate) use couplings::Couplings;
 pub(crate) use creases::area_vector;
 pub(crate) use extents::Extents;
 pub(crate) use points::ContactPoint;

@@ -82,6 +82,23 @@ pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactErr
             expect(size * spring, FORCE, part, place)?;
         }
     }
+    for (index, equation) in scene.equations.iter().enumerate() {
+        let all = equation
+            .terms
+            .iter()
+            .map(|t| t.1)
+            .chain(equation.points.iter().map(|p| p.1));
+        let most = all.map(|v| vector::max_abs(&v)).fold(0.0, f64::max);
+        if let Some((value, history)) = equation.value.as_ref().filter(|_| most > 0.0) {
+            let (factor, time) = scene.analysis.largest_factor(history);
+            let size = factor * value.abs() / most;
+            let part = Part::Equation(index);
+            let place = || format!(" at time {time} s: its value over its largest coefficient");
+            expect(size, LENGTH, part, place)?;
+            let place = || format!(" at time {time} s: its value over its largest coefficient, times the stiffness");
+            expect(size * spring, FORCE, part, place)?;
+        }
+    }
     for (index, contact) in scene.contacts.iter().enumerate() {
         let part = Part::Contact(index);
         if let Some((value, history)) = &contact.motion {

@@ -1,6 +1,7 @@
 //! The discrete scene: a scene at the nodes of its mesh, made and checked once.
 
 use super::couplings::Couplings;
+use super::equations::equations;
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
 use super::partners::Paired;
 use super::penetration::check_penetration;
@@ -12,8 +13,8 @@ use crate::error::ContactError;
 use crate::scene::{Pose, Scene, check_laws};
 use crate::tolerances::ROUNDING;
 use signorini_fem_mesh::{Decomposition, FacetTag, Surface};
-use signorini_tfeti::ContactConstraint;
-use signorini_tfeti::internal::prescribed_points;
+use signorini_tfeti::internal::{independent_equations, prescribed_points};
+use signorini_tfeti::{ContactConstraint, NodalEquation};
 use std::collections::HashSet;
 use std::time::{Duration, Instant};
 
@@ -25,6 +26,9 @@ pub(crate) struct DiscreteScene {
     pub(crate) supports: Supports,
     pub(crate) springs: Springs,
     pub(crate) couplings: Couplings,
+    pub(crate) equations: Vec<NodalEquation>,
+    /// How many of them have rows.
+    pub(crate) equation_rows: usize,
     /// The sides that have the contact points, in the order of the contacts, fixed nodes included.
     pub(crate) surfaces: Vec<Surface>,
     /// What the contacts say: each of their nodes with each of its normals.
@@ -56,6 +60,7 @@ impl DiscreteScene {
         let decomposition = scene.decompose()?;
         let mut supports = Supports::new(scene)?;
         let (decomposition, couplings) = Couplings::new(scene, decomposition, &mut supports)?;
+        let equations = equations(scene, &couplings, &mut supports)?;
         let springs = Springs::new(scene, &supports)?;
         let largest = |m: f64, v: &f64| m.max(v.abs());
         let rounding = ROUNDING * scene.mesh.points().iter().flatten().fold(0.0, largest);
@@ -95,6 +100,8 @@ impl DiscreteScene {
         check_compliance(&points)?;
         let constraints = constraints(scene, &points, &ties, &couplings);
         couplings.check_ties(scene, (&points, rounding), &constraints, &supports)?;
+        let held = (&supports.nodes[..], &couplings.supports[..]);
+        let equation_rows = independent_equations(&equations, &decomposition, held, &constraints)?.len();
         let nodes = scene.mesh.points().len();
         let prescribed = prescribed_points(&constraints, &supports.nodes, nodes)?;
         check_penetration(scene, &points, &prescribed, (&supports.motions, &poses), rounding)?;
@@ -112,6 +119,8 @@ impl DiscreteScene {
             supports,
             springs,
             couplings,
+            equations,
+            equation_rows,
             surfaces,
             conditions,
             points,

@@ -122,6 +122,7 @@ impl Solved<'_> {
                 .collect(),
             Some(shared) => {
                 self.support(weights, offset, &mut v);
+                shared.with_points(&model.discrete.couplings, &motions, &mut v);
                 let planned = |(state, node): (&PointState, &AdmissibleNode)| {
                     let at = |node: u32| 3 * node as usize..3 * node as usize + 3;
                     let before: Vec<(u32, [f64; 3])> =
@@ -315,12 +316,13 @@ impl Solved<'_> {
     /// What a motion of the subdomain of a coupling does to a row.
     fn acts(&self, row: usize, subdomain: usize, motion: [Vec3; 2]) -> f64 {
         let (scene, discrete) = (&self.model.scene, &self.model.discrete);
-        let point = scene.couplings[subdomain - discrete.couplings.first].reference();
+        let coupling = subdomain - discrete.couplings.first;
+        let (point, unit) = (discrete.couplings.about[coupling], discrete.couplings.unit[coupling]);
         let nodes = &discrete.decomposition.subdomains()[subdomain].nodes;
         let own = self.model.tfeti.gluing().row(row).into_iter();
         let own = own.filter(|entry| entry.0 == subdomain).map(|(_, dof, coefficient)| {
             let arm = sub(scene.mesh.points()[nodes[dof / 3] as usize], point);
-            coefficient * moved(motion, arm)[dof % 3]
+            unit * coefficient * moved(motion, arm)[dof % 3]
         });
         own.sum()
     }
@@ -369,10 +371,10 @@ impl Solved<'_> {
     fn couple(&self, motions: &[[Vec3; 2]], v: &mut [f64]) {
         let model = self.model;
         let subdomains = &model.discrete.decomposition.subdomains()[model.discrete.couplings.first..];
-        let own = motions.iter().zip(&model.scene.couplings).zip(subdomains);
-        for ((motion, coupling), rigid) in own.filter(|(_, rigid)| !rigid.is_relative) {
+        let own = motions.iter().zip(&model.discrete.couplings.about).zip(subdomains);
+        for ((motion, about), rigid) in own.filter(|(_, rigid)| !rigid.is_relative) {
             for &node in &rigid.nodes {
-                let arm = sub(model.scene.mesh.points()[node as usize], coupling.reference());
+                let arm = sub(model.scene.mesh.points()[node as usize], *about);
                 v[3 * node as usize..][..3].copy_from_slice(&moved(*motion, arm));
             }
         }

@@ -6,10 +6,11 @@
 
 use super::admissible::AdmissibleNode;
 use super::sprung::SprungNodes;
-use crate::discrete::ContactPoint;
+use crate::discrete::{ContactPoint, Couplings};
 use crate::model::{ConstrainedPoint, Model};
 use crate::tolerances::{FREEDOM_TAKEN, SETTLE_STOP, SHARED_MOVES, SHARED_ROUNDS, SHARED_STOP};
 use crate::vec3::dot;
+use signorini_fem_mesh::vec3::Vec3;
 use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::problem::Diagonal;
 use signorini_qp::{
@@ -33,9 +34,10 @@ pub(crate) enum Target {
 #[derive(Debug)]
 pub(crate) struct SharedNodes {
     /// Coefficients of each row on the displacement of the nodes, in metres: the normal row of each point and those
-    /// along the surface, point by point, then fixed rows.
+    /// along the surface, point by point, then fixed rows. Displacements of couplings that are points stand behind those of
+    /// nodes, along the axes of the coupling.
     pub(super) rows: Vec<Row>,
-    /// The numbers of the rows of tied contacts, and of supports along which rows of points move their nodes.
+    /// The numbers of the rows of ties and equations, and of supports along which rows of points move their nodes.
     pub(super) fixed: Vec<usize>,
     /// Rows of each point.
     pub(super) counts: Vec<usize>,
@@ -48,7 +50,7 @@ pub(crate) struct SharedNodes {
 }
 
 impl SharedNodes {
-    /// `None` where each point has a node of its own that can move.
+    /// `None` where each point has a node of its own that can move, and there are no equations.
     pub(crate) fn new(
         model: &Model,
         nodes: &[AdmissibleNode],
@@ -56,7 +58,9 @@ impl SharedNodes {
         stiffness: impl Fn() -> Vec<f64>,
     ) -> Option<Self> {
         let (gluing, discrete) = (model.tfeti.gluing(), &model.discrete);
-        let is_coupled = |node: u32| discrete.couplings.has(node);
+        let equations = gluing.ranges().equations.clone();
+        let (couplings, count) = (&discrete.couplings, discrete.decomposition.nodes());
+        let is_coupled = |node: u32| couplings.has(node);
         let several = |point: &ContactPoint| point.sides.own.nodes().len() > 1;
         // of a single partner the node moves in the place of one that is coupled, but not where both are tied
         let stays = |point: &ContactPoint, others: usize| {
@@ -68,7 +72,7 @@ impl SharedNodes {
             || ties_meet_points(model)
             || nodes.iter().any(AdmissibleNode::shares)
             || discrete.ties.iter().any(|tie| stays(tie, 0));
-        if !is_scarce && !points().chain(&discrete.ties).any(several) {
+        if !is_scarce && equations.is_empty() && !points().chain(&discrete.ties).any(several) {
             return None;
         }
         let row = |row: usize, scale: f64| -> Row {
@@ -76,13 +80,22 @@ impl SharedNodes {
             for (node, c, coefficient) in model.row(row) {
                 *sums.entry(3 * node as usize + c).or_insert(0.0) += coefficient / scale;
             }
+            for (k, axes) in couplings.axes.iter().enumerate().filter(|_| equations.contains(&row)) {
+                let own = gluing.row(row).into_iter().filter(|e| e.0 == couplings.first + k);
+                for (_, dof, coefficient) in own.filter(|_| model.scene.couplings[k].is_point()) {
+                    for (c, axis) in axes.iter().enumerate() {
+                        *sums.entry(3 * (count + k) + c).or_insert(0.0) +=
+                            couplings.unit[k] * coefficient * axis[dof % 3];
+                    }
+                }
+            }
             sums.into_iter().collect()
         };
         let of_point = |p: &ConstrainedPoint| p.directions().take(1).chain(p.isotropic()).collect::<Vec<_>>();
         let counts = model.points.iter().map(|p| of_point(p).len()).collect();
         let of_points = model.points.iter().flat_map(of_point);
         let mut rows: Vec<_> = of_points.map(|(_, number, scale)| row(number, scale)).collect();
-        let mut fixed: Vec<usize> = gluing.ranges().tied.clone().collect();
+        let mut fixed: Vec<usize> = (gluing.ranges().tied.start..equations.end).collect();
         let dragging = dragging(model, &rows);
         is_scarce |= !dragging.is_empty();
         fixed.extend(dragging);
@@ -91,7 +104,14 @@ impl SharedNodes {
         sprung.stiffness().for_each(|(node, k)| stiffness[node as usize] += k);
         // couplings stay as they are
         let own = |(node, s): (u32, &f64)| if is_coupled(node) { 0.0 } else { 1.0 / s };
-        let compliance: Vec<f64> = (0..).zip(&stiffness).flat_map(|node| [own(node); 3]).collect();
+        let mut compliance: Vec<f64> = (0..).zip(&stiffness).flat_map(|node| [own(node); 3]).collect();
+        if !equations.is_empty() {
+            let stiffest = stiffness.iter().fold(0.0, |most: f64, s| most.max(*s));
+            for (coupling, unit) in model.scene.couplings.iter().zip(&couplings.unit) {
+                let (holds, own) = (coupling.holds(), 1.0 / (stiffest * unit * unit));
+                compliance.extend((0..3).map(|c| if holds[c] { 0.0 } else { own }));
+            }
+        }
         let square = |row: &Row| row.iter().map(|&(at, v)| v * v * compliance[at]).sum::<f64>();
         let inverse = Diagonal::new(rows.iter().map(square).map(f64::recip).collect()).ok()?;
         Some(Self {
@@ -102,6 +122,17 @@ impl SharedNodes {
             inverse,
             is_scarce,
         })
+    }
+
+    /// The displacements of couplings behind those of the nodes, as far as rows know of them.
+    pub(crate) fn with_points(&self, couplings: &Couplings, motions: &[[Vec3; 2]], v: &mut Vec<f64>) {
+        if self.compliance.len() > v.len() {
+            let along = motions
+                .iter()
+                .enumerate()
+                .map(|(k, motion)| couplings.along(k, *motion));
+            v.extend(along.flat_map(|along| [along[0], along[1], along[2]]));
+        }
     }
 
     pub(crate) fn is_scarce(&self) -> bool {

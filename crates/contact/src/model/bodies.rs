@@ -1,8 +1,8 @@
 //! Which bodies can touch each other, and to which of them rows and subdomains belong.
 //!
-//! Bodies that may touch each other count as one here, and so do parts that hinges join. An obstacle is rigid, so the
-//! others know nothing of each other: a scene with several is several problems in one, and norms over all of them
-//! would let the heaviest alone decide when the others are done.
+//! Bodies that may touch each other count as one here, and so do parts that hinges or equations join. An obstacle is
+//! rigid, so the others know nothing of each other: a scene with several is several problems in one, and norms over all
+//! of them would let the heaviest alone decide when the others are done.
 
 use crate::discrete::DiscreteScene;
 use signorini_fem_mesh::internal::DisjointSets;
@@ -82,7 +82,7 @@ impl Bodies {
     }
 }
 
-/// A number for each body of the coarse space: the same for those that may touch each other.
+/// A number for each body of the coarse space: the same for those that know of each other.
 fn joined(tfeti: &Tfeti, discrete: &DiscreteScene) -> Vec<u32> {
     let coarse = tfeti.coarse();
     let mut sets = DisjointSets::new(coarse.bodies());
@@ -95,6 +95,13 @@ fn joined(tfeti: &Tfeti, discrete: &DiscreteScene) -> Vec<u32> {
         let relative = discrete.couplings.relative(point.surface);
         let relative = relative.map(|subdomain| coarse.body_of()[subdomain as usize] as usize);
         let mut bodies = point.sides.nodes().map(body).chain(relative);
+        if let Some(first) = bodies.next() {
+            bodies.for_each(|other| sets.join(first, other));
+        }
+    }
+    for equation in &discrete.equations {
+        let places = equation.places.iter().map(|p| coarse.body_of()[p.0 as usize] as usize);
+        let mut bodies = equation.terms.iter().map(|t| body((t.0, 0.0))).chain(places);
         if let Some(first) = bodies.next() {
             bodies.for_each(|other| sets.join(first, other));
         }

@@ -328,12 +328,10 @@ fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, 
     let subdomains = model.discrete.decomposition.subdomains();
     let mut parts: Vec<Part> = Vec::new();
     for (motion, factor) in motions.iter().zip(factors) {
-        // what moves relative to another is one of the bodies
-        for part in motion
-            .bodies
-            .iter()
-            .filter(|part| !subdomains[part.subdomain].is_relative)
-        {
+        // what moves relative to another is one of the bodies, or a point that moves with them
+        let is_body = |part: &BodyMotion| !subdomains[part.subdomain].is_relative;
+        let alone = !motion.bodies.iter().any(is_body);
+        for part in motion.bodies.iter().filter(|part| alone || is_body(part)) {
             let at = match parts.iter().position(|p| p.subdomain == part.subdomain) {
                 Some(at) => at,
                 None => {

@@ -39,7 +39,7 @@ pub(crate) struct Model {
     pub(crate) standing: Vec<Option<usize>>,
     /// Set with zero radii.
     pub(crate) set: ProductSet,
-    /// Stiffness of the rows of supports, ties and couplings that move.
+    /// Stiffness of the rows of supports, ties, equations and couplings that move.
     moved_stiffness: OnceLock<Vec<f64>>,
     /// Stiffness of the copies of each node, made with the first certificate.
     copies: OnceLock<CopyStiffness>,
@@ -60,7 +60,8 @@ impl Model {
             .iter()
             .all(|held| held.values.is_empty());
         let couplings = couplings.then(|| ranges.rigid.clone());
-        let moved = [supports, ties, couplings.clone()].into_iter().flatten();
+        let equations = Some(ranges.equations.clone()).filter(|rows| supports.is_some() && !rows.is_empty());
+        let moved = [supports, ties, equations, couplings.clone()].into_iter().flatten();
         if moved.clone().next().is_none() && self.strained.iter().all(Vec::is_empty) {
             return Vec::new();
         }
@@ -132,9 +133,13 @@ impl Model {
     /// The motions of couplings in a torn displacement: of the reference point, m, and the rotation.
     pub(crate) fn coupling_motions(&self, torn: &[f64]) -> Vec<[[f64; 3]; 2]> {
         let subdomains = self.discrete.couplings.first..;
-        let own = subdomains.zip(&self.scene.couplings);
-        own.map(|(subdomain, coupling)| self.tfeti.rigid_motion(subdomain, torn, coupling.reference()))
-            .collect()
+        let couplings = &self.discrete.couplings;
+        let own = subdomains.zip(&couplings.about).zip(&couplings.unit);
+        own.map(|((subdomain, about), unit)| {
+            let [displacement, rotation] = self.tfeti.rigid_motion(subdomain, torn, *about);
+            [displacement.map(|u| u / unit), rotation]
+        })
+        .collect()
     }
 
     /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales
@@ -149,6 +154,7 @@ impl Model {
         let tfeti = TfetiBuilder::of_forecast(&forecast)
             .with_supports(&discrete.supports.nodes)
             .with_rigid_supports(&discrete.couplings.supports)
+            .with_equations(&discrete.equations)
             .with_springs(&discrete.springs.nodal)
             .with_contact(&discrete.constraints)
             .with_communicator(&settings.communicator)

@@ -43,7 +43,9 @@ pub struct Effects {
     pub springs: bool,
     /// Rigid couplings.
     pub couplings: bool,
-    /// Supports or couplings that move.
+    /// Linear equations.
+    pub equations: bool,
+    /// Supports, couplings or equations that move.
     pub motion: bool,
     /// Obstacles that move.
     pub moving_obstacle: bool,
@@ -90,6 +92,7 @@ impl Effects {
             supports: !scene.supports.is_empty(),
             springs: !scene.springs.is_empty(),
             couplings: !scene.couplings.is_empty(),
+            equations: !scene.equations.is_empty(),
             motion: !discrete.supports.motions.is_empty(),
             moving_obstacle: contacts.iter().any(|c| !c.tied && c.moves()),
             moving_ties: contacts.iter().any(|c| c.tied && c.moves()),

@@ -44,6 +44,8 @@ pub struct Plan {
     pub dirichlet_rows: usize,
     /// Rows of tied contacts.
     pub tied_rows: usize,
+    /// Rows of linear equations: those that say something new.
+    pub equation_rows: usize,
     /// Number of this process among those that solve the scene together, from 0; see
     /// [`Settings::with_communicator`].
     pub rank: usize,
@@ -92,7 +94,12 @@ impl Plan {
 
     /// All rows that are solved for: n_d of full rank, but for nodes with several normals or that supports hold in part.
     pub fn dual(&self) -> usize {
-        self.normal_rows + self.tangential_rows + self.interface_rows + self.tied_rows + self.dirichlet_rows
+        self.normal_rows
+            + self.tangential_rows
+            + self.interface_rows
+            + self.tied_rows
+            + self.equation_rows
+            + self.dirichlet_rows
     }
 
     /// The plan of a discrete scene, and the forecast that it is made from.
@@ -119,6 +126,7 @@ impl Plan {
         let touching = points.iter().copied().chain(&discrete.ties);
         let mut touching: BTreeSet<u32> = touching.flat_map(|p| nodes_of(&p)).collect();
         touching.extend(discrete.springs.nodal.iter().map(|s| s.node));
+        touching.extend(discrete.equations.iter().flat_map(|e| &e.terms).map(|t| t.0));
         let find = || {
             Forecast::new(
                 &scene.mesh,
@@ -147,10 +155,11 @@ impl Plan {
             normal_rows: points.len(),
             tangential_rows: points.iter().filter(rough).map(|p| free(p) - 1).sum(),
             // each copy of a node but one is glued
-            interface_rows: primal - 3 * nodes,
+            interface_rows: 3 * (decomposition.torn_nodes().flatten().count() - nodes),
             dirichlet_rows: fixed.values().map(Vec::len).sum::<usize>()
                 + discrete.springs.nodal.len()
                 + discrete.couplings.supports.len(),
+            equation_rows: discrete.equation_rows,
             tied_rows: discrete.ties.iter().map(free).sum(),
             rank: settings.communicator.rank(),
             ranks: settings.communicator.size(),

@@ -49,6 +49,9 @@ impl fmt::Display for Plan {
             let moving = if self.effects.moving_ties { ", moving" } else { "" };
             line("ties", format!("{} rows{moving}", self.tied_rows))?;
         }
+        if self.effects.equations {
+            line("equations", format!("{} rows", self.equation_rows))?;
+        }
         line("contact", self.contact_text())?;
         for (contact, second) in &self.apart {
             let side = if *second { "second" } else { "first" };

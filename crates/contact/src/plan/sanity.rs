@@ -2,7 +2,7 @@
 
 use crate::discrete::{ContactPoint, DiscreteScene, Extents};
 use crate::report::Warning;
-use crate::scene::{Contact, Coupling, Friction, Gap, Load, Scene, Support};
+use crate::scene::{Contact, Coupling, Equation, Friction, Gap, Load, Scene, Support};
 use crate::tolerances::{FACETED, LARGE_COEFFICIENT, LARGE_GAP, LOCKING};
 use signorini_fem_mesh::vec3::{add, cross, dot, norm, scale, sub};
 use signorini_fem_mesh::{History, Surface, TetMesh};
@@ -37,13 +37,19 @@ fn idle(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
         let moves = |(way, history): &([f64; 6], History)| ever(history) && way.iter().any(|w| *w != 0.0);
         coupling.motions().iter().any(moves)
     };
+    let parts = |equation: &Equation| {
+        let value = equation.value.as_ref();
+        value.is_some_and(|(value, history)| *value != 0.0 && ever(history))
+    };
     let presses = |p: &ContactPoint| p.gap < -discrete.rounding || scene.contacts[p.surface].changes_gap();
     let acts = scene.loads.iter().zip(&discrete.loads).any(pushes)
         || scene.supports.iter().any(pulled)
         || scene.couplings.iter().any(guided)
+        || scene.equations.iter().any(parts)
         || scene.contacts.iter().any(Contact::moves)
         || discrete.points.iter().any(presses);
     let held = !scene.supports.is_empty() || !scene.springs.is_empty() || !scene.couplings.is_empty();
+    let held = held || !scene.equations.is_empty();
     (!acts).then_some(Warning::NothingActs { held })
 }
 

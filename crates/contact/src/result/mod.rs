@@ -22,7 +22,7 @@ pub(crate) use certificate::contact_violation;
 pub use certificate::{Certificate, Violation};
 pub use coupling_motion::CouplingMotion;
 pub use points::{ContactState, PointState};
-pub use reactions::{NodalForce, Reactions, Resultant, SupportReaction};
+pub use reactions::{EquationForce, NodalForce, Reactions, Resultant, SupportReaction};
 pub(crate) use reactions::{nodal_reactions, reactions_about, tied_forces};
 pub(crate) use recovered::Recovered;
 pub(crate) use sanity::{Lengths, coarse_mesh, is_strained, warnings};

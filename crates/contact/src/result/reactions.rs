@@ -7,11 +7,12 @@
 use super::recovered::Recovered;
 use crate::discrete::{ContactPoint, Supports};
 use crate::model::{ConstrainedPoint, Model};
+use crate::scene::LoadKind;
 use crate::step::StepProblem;
 use crate::tolerances::{NO_SPRING, ROUNDING};
 use crate::vec3::dot;
 use nalgebra::{Matrix3, Vector3};
-use signorini_fem_mesh::vec3::cross;
+use signorini_fem_mesh::vec3::{Vec3, cross, scale, sub};
 use signorini_tfeti::internal::PrescribedDirection;
 use signorini_tfeti::{NodeSupport, TiedRows};
 use std::collections::BTreeMap;
@@ -69,6 +70,17 @@ impl SupportReaction {
     }
 }
 
+/// The force of a linear equation.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[non_exhaustive]
+pub struct EquationForce {
+    /// Each node, and point, is pushed by this, N, times its coefficients in the equation. Zero of equations that say
+    /// what others, or supports, say already.
+    pub multiplier: f64,
+    /// All of these forces together.
+    pub resultant: Resultant,
+}
+
 /// Forces on the body at the end of a step, and their moments about a point.
 ///
 /// Each force is counted once: if several supports fix a direction at a node, its reaction belongs to the first, and
@@ -86,6 +98,8 @@ pub struct Reactions {
     /// Reactions of what holds the [couplings](crate::Coupling), in the order of the scene; zero of relative ones, whose
     /// forces are those of their contacts.
     pub couplings: Vec<Resultant>,
+    /// Forces of the [linear equations](crate::Equation), in the order of the scene, on nodes and points.
+    pub equations: Vec<EquationForce>,
     /// Contact pressure and friction of obstacles. Forces between bodies cancel; so do their moments, except that of
     /// friction across an initial gap between matching or plane sides, because moments use the undeformed state.
     pub contact: Resultant,
@@ -105,11 +119,12 @@ impl Reactions {
         sum
     }
 
-    /// Supports, springs, couplings, contact and loads together; zero in equilibrium.
+    /// Supports, springs, couplings, equations, contact and loads together; zero in equilibrium.
     pub fn imbalance(&self) -> Resultant {
         let mut sum = self.of_supports();
         self.springs.iter().for_each(|s| sum += s.resultant);
         self.couplings.iter().for_each(|c| sum += *c);
+        self.equations.iter().for_each(|e| sum += e.resultant);
         sum += self.contact;
         sum += self.loads;
         sum
@@ -118,8 +133,8 @@ impl Reactions {
 
 /// Forces of all supports by node, from the multipliers of the support rows.
 ///
-/// Contact rows leave out what supports fix, so that multipliers of supports have the part of contact forces along it;
-/// it is taken out here.
+/// Rows of contact and of equations leave out what supports fix, so that multipliers of supports have the part of their
+/// forces along it; it is taken out here.
 pub(crate) fn nodal_reactions(
     model: &Model,
     recovered: &Recovered,
@@ -151,18 +166,30 @@ pub(crate) fn nodal_reactions(
             }
         }
     }
-    for (tie, whole) in ties {
-        for (node, weight) in tie.sides.nodes() {
-            if let Some(force) = forces.get_mut(&node) {
-                let held = model.discrete.supports.directions.get(&node);
-                for PrescribedDirection { direction, .. } in held.into_iter().flatten() {
-                    let along = weight * dot(whole, direction);
-                    (0..3).for_each(|c| force[c] -= along * direction[c]);
-                }
+    let mut take = |node: u32, factor: f64, whole: &[f64; 3]| {
+        if let Some(force) = forces.get_mut(&node) {
+            let held = model.discrete.supports.directions.get(&node);
+            for PrescribedDirection { direction, .. } in held.into_iter().flatten() {
+                let along = factor * dot(whole, direction);
+                (0..3).for_each(|c| force[c] -= along * direction[c]);
             }
         }
+    };
+    for (tie, whole) in ties {
+        tie.sides.nodes().for_each(|(node, weight)| take(node, weight, whole));
+    }
+    for (equation, multiplier) in equation_multipliers(model, recovered) {
+        let terms = model.discrete.equations[equation].terms.iter();
+        terms.for_each(|(node, vector)| take(*node, multiplier, vector));
     }
     forces
+}
+
+/// The equations that have rows, with their multipliers, N.
+fn equation_multipliers<'a>(model: &'a Model, recovered: &'a Recovered) -> impl Iterator<Item = (usize, f64)> {
+    let rows = model.tfeti.gluing().equations().iter();
+    let rows = rows.zip(&recovered.equation_multipliers);
+    rows.map(|(own, lambda)| (own.equation, own.scale * lambda))
 }
 
 /// The force on each point of tied contacts, N, along the directions that its rows have.
@@ -221,17 +248,23 @@ pub(crate) fn reactions_about(
         point: about,
         supports: by_support(&model.discrete.supports, &forces, arm),
         springs: by_spring(model, recovered, arm),
-        couplings: by_coupling(model, recovered, arm),
+        couplings: by_coupling(model, recovered, (arm, about)),
+        equations: by_equation(model, recovered, (arm, about)),
         contact,
         contacts,
-        loads: loads(model, problem, arm),
+        loads: loads(model, problem, (arm, about)),
     }
 }
 
 /// What the loads do.
-fn loads(model: &Model, problem: &StepProblem, arm: impl Fn(u32) -> [f64; 3]) -> Resultant {
+fn loads(model: &Model, problem: &StepProblem, (arm, about): (impl Fn(u32) -> Vec3, Vec3)) -> Resultant {
     let mut sum = Resultant::default();
-    for (factor, load) in problem.factors.iter().zip(&model.loads) {
+    for ((factor, load), given) in problem.factors.iter().zip(&model.loads).zip(&model.scene.loads) {
+        if let LoadKind::Coupling(given) = &given.kind
+            && let Some(arm) = point_arm(model, given.coupling, about)
+        {
+            sum.add(arm, given.force.map(|f| factor * f));
+        }
         let nodes = model.discrete.decomposition.torn_nodes();
         for (node, force) in nodes.zip(load.force.as_chunks::<3>().0) {
             // most loads act on a surface; those between two sides have no resultant
@@ -243,16 +276,43 @@ fn loads(model: &Model, problem: &StepProblem, arm: impl Fn(u32) -> [f64; 3]) ->
     sum
 }
 
+/// The arm of a coupling that is a point.
+fn point_arm(model: &Model, coupling: usize, about: Vec3) -> Option<Vec3> {
+    let coupling = model.scene.couplings.get(coupling).filter(|c| c.is_point());
+    coupling.map(|point| sub(point.reference(), about))
+}
+
+/// What equations do to nodes and points.
+fn by_equation(model: &Model, recovered: &Recovered, (arm, about): (impl Fn(u32) -> Vec3, Vec3)) -> Vec<EquationForce> {
+    let mut out = vec![EquationForce::default(); model.scene.equations.len()];
+    for (equation, multiplier) in equation_multipliers(model, recovered) {
+        let (own, given) = (&mut out[equation], &model.scene.equations[equation]);
+        own.multiplier = multiplier;
+        let nodes = given.terms.iter().map(|(node, vector)| (arm(*node), vector));
+        let points = given.points.iter();
+        let points = points.filter_map(|(k, vector)| Some((point_arm(model, *k, about)?, vector)));
+        nodes
+            .chain(points)
+            .for_each(|(arm, v)| own.resultant.add(arm, scale(multiplier, *v)));
+    }
+    out
+}
+
 /// What holds the couplings, from the multipliers of their rows.
-fn by_coupling(model: &Model, recovered: &Recovered, arm: impl Fn(u32) -> [f64; 3]) -> Vec<Resultant> {
+fn by_coupling(model: &Model, recovered: &Recovered, (arm, about): (impl Fn(u32) -> Vec3, Vec3)) -> Vec<Resultant> {
     let mut out = vec![Resultant::default(); model.scene.couplings.len()];
     let couplings = &model.discrete.couplings;
     let rows = model.tfeti.gluing().ranges().rigid.clone();
     for ((row, lambda), held) in rows.zip(&recovered.rigid_multipliers).zip(&couplings.supports) {
+        let coupling = held.subdomain as usize - couplings.first;
+        if let Some(arm) = point_arm(model, coupling, about) {
+            let whole = model.tfeti.gluing().direction(row);
+            out[coupling].add(arm, scale(lambda * couplings.unit[coupling], whole));
+        }
         for (node, c, coefficient) in model.row(row) {
             let mut force = [0.0; 3];
             force[c] = lambda * coefficient;
-            out[held.subdomain as usize - couplings.first].add(arm(node), force);
+            out[coupling].add(arm(node), force);
         }
     }
     out

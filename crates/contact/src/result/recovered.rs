@@ -31,6 +31,8 @@ pub(crate) struct Recovered {
     pub(crate) rigid_multipliers: Vec<f64>,
     /// Multipliers of the rows of tied contacts.
     pub(crate) tied_multipliers: Vec<f64>,
+    /// Multipliers of the rows of equations.
+    pub(crate) equation_multipliers: Vec<f64>,
 }
 
 impl Recovered {
@@ -68,6 +70,7 @@ impl Recovered {
             support_multipliers: lambda[tfeti.gluing().ranges().dirichlet.clone()].to_vec(),
             rigid_multipliers: lambda[tfeti.gluing().ranges().rigid.clone()].to_vec(),
             tied_multipliers: lambda[tfeti.gluing().ranges().tied.clone()].to_vec(),
+            equation_multipliers: lambda[tfeti.gluing().ranges().equations.clone()].to_vec(),
             sizes,
             torn,
             rows,

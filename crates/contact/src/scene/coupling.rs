@@ -54,6 +54,8 @@ pub(crate) enum Coupled {
     Nodes(Place),
     /// The first side of a tied contact relative to the other.
     Tied(usize),
+    /// Nothing but its reference point.
+    Point,
 }
 
 impl Coupling {
@@ -94,6 +96,13 @@ impl Coupling {
     /// ```
     pub fn relative(contact: usize, reference: [f64; 3]) -> Self {
         Self::of(Coupled::Tied(contact), reference)
+    }
+
+    /// A point alone, m, for [equations](crate::Equation): a control node that is moved, loaded or free. It has no
+    /// rotations, and stays where neither an equation nor this coupling says how it moves. It costs as much as a
+    /// subdomain, and the set-up grows with the cube of their number: two hundred take a second.
+    pub fn point(place: [f64; 3]) -> Self {
+        Self::of(Coupled::Point, place)
     }
 
     fn of(coupled: Coupled, reference: [f64; 3]) -> Self {
@@ -148,7 +157,7 @@ impl Coupling {
 
     /// What is held now.
     pub(crate) fn holds(&self) -> [bool; 6] {
-        [0, 1, 2, 3, 4, 5].map(|c| self.held[c] || self.locked[c].is_some())
+        [0, 1, 2, 3, 4, 5].map(|c| self.held[c] || self.locked[c].is_some() || c > 2 && self.is_point())
     }
 
     /// Motions that are to be locked yet, and when, s.
@@ -163,15 +172,20 @@ impl Coupling {
     pub fn tied(&self) -> Option<usize> {
         match self.coupled {
             Coupled::Tied(contact) => Some(contact),
-            Coupled::Nodes(_) => None,
+            Coupled::Nodes(_) | Coupled::Point => None,
         }
     }
 
-    /// Its nodes; `None` of a relative one.
+    /// Whether it is a [point](Self::point) alone.
+    pub(crate) fn is_point(&self) -> bool {
+        matches!(self.coupled, Coupled::Point)
+    }
+
+    /// Its nodes; `None` of a relative one and of a point.
     pub fn place(&self) -> Option<&Place> {
         match &self.coupled {
             Coupled::Nodes(place) => Some(place),
-            Coupled::Tied(_) => None,
+            Coupled::Tied(_) | Coupled::Point => None,
         }
     }
 

@@ -10,6 +10,7 @@
 
 mod contact;
 mod coupling;
+mod equation;
 mod facets;
 mod friction;
 mod gap;
@@ -28,6 +29,7 @@ pub use contact::Contact;
 pub(crate) use contact::ContactNormal;
 pub(crate) use coupling::Coupled;
 pub use coupling::Coupling;
+pub use equation::Equation;
 pub(crate) use friction::check_laws;
 pub use friction::{Coefficient, Friction, SlipBound};
 pub(crate) use gap::Gap;

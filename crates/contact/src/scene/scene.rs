@@ -2,6 +2,7 @@
 
 use super::contact::Contact;
 use super::coupling::Coupling;
+use super::equation::Equation;
 use super::load::Load;
 use super::partition::Partition;
 use super::spring::Spring;
@@ -24,6 +25,7 @@ pub struct Scene {
     pub(crate) loads: Vec<Load>,
     pub(crate) contacts: Vec<Contact>,
     pub(crate) couplings: Vec<Coupling>,
+    pub(crate) equations: Vec<Equation>,
     pub(crate) partition: Partition,
     pub(crate) analysis: Analysis,
     pub(crate) names: Names,
@@ -43,6 +45,7 @@ impl Scene {
             loads,
             contacts: Vec::new(),
             couplings: Vec::new(),
+            equations: Vec::new(),
             partition: Partition::Automatic,
             analysis: Analysis::statics(),
             names: Names::default(),
@@ -81,6 +84,12 @@ impl Scene {
     /// Adds a rigid coupling.
     pub fn with_coupling(mut self, coupling: Coupling) -> Self {
         self.couplings.push(coupling);
+        self
+    }
+
+    /// Adds a linear equation between displacements.
+    pub fn with_equation(mut self, equation: Equation) -> Self {
+        self.equations.push(equation);
         self
     }
 
@@ -166,6 +175,11 @@ impl Scene {
     /// The rigid couplings, in the order in which they were added.
     pub fn couplings(&self) -> &[Coupling] {
         &self.couplings
+    }
+
+    /// The linear equations, in the order in which they were added.
+    pub fn equations(&self) -> &[Equation] {
+        &self.equations
     }
 
     /// The loads, those of the materials' eigenstrains first, then in the order in which they were added.

@@ -84,6 +84,7 @@ impl Scene {
         let contacts = self.contacts.iter().enumerate();
         let couplings = self.couplings.iter().enumerate();
         let couplings = couplings.flat_map(|(k, c)| c.motions.iter().map(move |(_, h)| ("coupling", k, h)));
+        let equations = self.equations.iter().enumerate();
         (loads.map(|(k, l)| ("load", k, &l.history)))
             .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
             .chain(contacts.flat_map(|(k, c)| {
@@ -92,6 +93,7 @@ impl Scene {
                 (motion.into_iter().chain(turn).chain(&c.gap_history)).map(move |h| ("contact", k, h))
             }))
             .chain(couplings)
+            .chain(equations.filter_map(|(k, e)| Some(("equation", k, &e.value.as_ref()?.1))))
     }
 
     fn check(&self, index: usize, contact: &Contact) -> Result<(), ContactError> {

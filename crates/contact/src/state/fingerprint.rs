@@ -67,7 +67,7 @@ impl Fingerprint {
                 (f.points, "coordinates of the mesh"),
                 (f.tets, "tetrahedra"),
                 (f.parts, "subdomains"),
-                (f.supports, "nodes or directions of supports"),
+                (f.supports, "nodes or directions of supports, or equations"),
                 (f.contact, "contact points (nodes, normals or areas)"),
                 (f.formula, "weights of the difference formula"),
                 (f.times, "times of the steps solved so far"),
@@ -189,7 +189,13 @@ fn supports(model: &Model) -> u64 {
         let axis = c.axis().unwrap_or_default();
         axis.into_iter().chain(c.reference()).map(number)
     });
-    hash(nodes.chain(couplings).chain(frames))
+    let terms = model
+        .discrete
+        .equations
+        .iter()
+        .flat_map(|e| e.terms.iter().chain(&e.places));
+    let equations = terms.flat_map(|(at, vector)| std::iter::once(u64::from(*at)).chain(vector.map(number)));
+    hash(nodes.chain(couplings).chain(frames).chain(equations))
 }
 
 #[cfg(test)]

@@ -114,3 +114,22 @@ fn the_plan_counts_what_is_built() {
     let ratio = plan.estimate.coarse_bytes as f64 / (8 * (always + space.factor().stored())) as f64;
     assert!((0.7..1.4).contains(&ratio), "{ratio}");
 }
+
+/// Beside equations: the end of the brick moves as a point.
+#[test]
+fn equations_across_many_subdomains() {
+    let loaded = || {
+        let scene = scene(Friction::coulomb(0.4)).with_coupling(Coupling::point([9.0; 3]));
+        let end = scene.mesh().nodes_on(brick::X_MAX).into_iter();
+        let end: Vec<u32> = end.filter(|n| scene.mesh().points()[*n as usize][2] > 1e-9).collect();
+        let along = [1.0, 0.0, 0.0];
+        let moved = |node: u32| Equation::new([(node, along)]).with_point(0, [-1.0, 0.0, 0.0]);
+        let scene = scene.with_load(Load::on_coupling(0, along.map(|c| 1e7 * c), [0.0; 3]));
+        end.into_iter().map(moved).fold(scene, Scene::with_equation)
+    };
+    let few = solve(loaded().with_subdomains(12), tight());
+    let (simulation, results) = run(many(loaded()), tight());
+    assert!(has_levels(&simulation));
+    let off = distance(&results[0].displacement, &few.displacement);
+    assert!(off <= 1e-5, "{off:e}");
+}

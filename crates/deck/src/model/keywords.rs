@@ -4,14 +4,14 @@ use std::borrow::Cow;
 
 use super::assembly::Assembly;
 use super::step::{self, SOLVER, Step};
-use super::{Ignored, Model, coupling, elastic, mesh, orientation, property, temperature, transform};
+use super::{Ignored, Model, coupling, elastic, equation, mesh, orientation, property, temperature, transform};
 use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
 
 /// What is read, as an error lists it.
 const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, *EXPANSION, \
 *INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *ORIENTATION, *TRANSFORM, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, \
-*CLEARANCE, *TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *PRE-TENSION SECTION, *PART, *ASSEMBLY, *INSTANCE, \
+*CLEARANCE, *TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *PRE-TENSION SECTION, *EQUATION, *PART, *ASSEMBLY, *INSTANCE, \
 *SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
 which are ignored and reported";
 
@@ -48,7 +48,7 @@ const IDLE_PARAMETERS: [(&str, &str, &str); 14] = [
 
 /// Keywords of these programs that have no counterpart here, and what to do.
 const REFUSED: [(&str, &str); 7] = [
-    ("EQUATION MPC", "equations between nodes are not here"),
+    ("MPC", "equations between nodes are read as *EQUATION"),
     (
         "DISTRIBUTINGCOUPLING KINEMATICCOUPLING",
         "couplings are read of surfaces; give *COUPLING and behind it *DISTRIBUTING or *KINEMATIC",
@@ -73,8 +73,14 @@ const REFUSED: [(&str, &str); 7] = [
 ];
 
 /// Parameters of keywords that are read, likewise.
-const PARAMETERS: [(&str, &str, &str); 3] = [
+const PARAMETERS: [(&str, &str, &str); 5] = [
     ("COUPLING", "ORIENTATION", "components are along x, y, z; remove it"),
+    ("EQUATION", "REMOVE", "equations hold for all steps; remove their lines"),
+    (
+        "EQUATION",
+        "INPUT",
+        "data of equations stand in the deck; put them there, or *INCLUDE the file",
+    ),
     (
         "FRICTION",
         "ROUGH",
@@ -154,6 +160,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         "DISTRIBUTING" => Some(|model, card| coupling::law(model, card, false)),
         "KINEMATIC" => Some(|model, card| coupling::law(model, card, true)),
         "PRE-TENSIONSECTION" => Some(coupling::pretension),
+        "EQUATION" => Some(equation::equation),
         "TRANSFORM" => Some(transform::transform),
         // they come here only after a step has begun
         "PART" | "ENDPART" | "ASSEMBLY" | "ENDASSEMBLY" | "INSTANCE" | "ENDINSTANCE" => {

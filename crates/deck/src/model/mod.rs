@@ -8,6 +8,7 @@
 mod assembly;
 mod coupling;
 mod elastic;
+mod equation;
 mod keywords;
 mod mesh;
 mod names;
@@ -23,6 +24,7 @@ use signorini_fem_mesh::{History, Hooke};
 use std::borrow::Cow;
 
 pub(crate) use coupling::{Coupling, CouplingLaw};
+pub(crate) use equation::{Equation, Term};
 pub(crate) use keywords::read;
 pub(crate) use names::Names;
 pub(crate) use orientation::Orientation;
@@ -264,6 +266,7 @@ pub(crate) struct Model {
     pub(crate) clearances: Vec<Clearance>,
     pub(crate) rigid: Vec<RigidBody>,
     pub(crate) couplings: Vec<Coupling>,
+    pub(crate) equations: Vec<Equation>,
     pub(crate) transforms: Vec<Transform>,
     /// Supports that hold before the first step.
     pub(crate) supports: Vec<Condition<Components>>,

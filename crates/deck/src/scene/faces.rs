@@ -13,6 +13,7 @@ use super::boundary::Boundary;
 use super::couplings::Couplings;
 use super::mesh::{Raw, key};
 use super::numbers::Sets;
+use super::points::Points;
 use super::pretension::Sections;
 use super::rigid::{RigidBodies, RigidFace};
 use super::timeline::Timeline;
@@ -51,6 +52,7 @@ pub(super) struct Known<'a> {
     pub(super) raw: &'a Raw,
     pub(super) timeline: &'a Timeline<'a>,
     pub(super) couplings: &'a Couplings,
+    pub(super) points: &'a Points,
     pub(super) transforms: &'a Transforms,
     pub(super) sections: &'a Sections,
 }

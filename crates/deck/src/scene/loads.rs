@@ -255,6 +255,11 @@ impl Known<'_> {
             }
             (None, _) => {}
         }
+        match rotation {
+            Some(word) if self.points.has(node) => return Err(word.expected(FORCE)),
+            None if self.points.has(node) => return Ok((Place::Rigid(node), 0)),
+            _ => {}
+        }
         let inside = self.raw.in_mesh(node).ok_or_else(|| {
             let label = self.model.nodes[node as usize].label;
             line.word.cannot(format!(

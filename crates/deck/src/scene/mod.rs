@@ -7,6 +7,7 @@
 mod boundary;
 mod contacts;
 mod couplings;
+mod equations;
 mod faces;
 mod history;
 mod loads;
@@ -14,6 +15,7 @@ mod materials;
 mod mesh;
 mod numbers;
 mod parts;
+mod points;
 mod pretension;
 mod rigid;
 mod spread;
@@ -68,7 +70,8 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         let copied = sections.cut(whole, 0, &raw)?.1;
         raw.copy(&copied);
     }
-    let transforms = transforms::Transforms::new(&sets, &bodies, &couplings, &raw)?;
+    let points = points::Points::new(&sets, &bodies, &couplings, &raw)?;
+    let transforms = transforms::Transforms::new(&sets, &bodies, (&couplings, &points), &raw)?;
     let known = faces::Known {
         model,
         sets: &sets,
@@ -76,6 +79,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         raw: &raw,
         timeline: &timeline,
         couplings: &couplings,
+        points: &points,
         transforms: &transforms,
         sections: &sections,
     };
@@ -97,6 +101,8 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     let mut contacts = contacts::contacts(known, &faces, &surfaces, &supports.leads, &mut supports.ignored)?;
     contacts.extend((next..).step_by(2).take(sections.0.len()).map(pretension::tie));
     let warm = temperatures::temperatures(known, &mut supports.ignored)?;
+    let (equations, words): (Vec<_>, Vec<_>) = equations::equations(known, &supports.rigid)?.into_iter().unzip();
+    parts.equations = words.iter().map(Word::told).collect();
     let loads = loads
         .lower(&faces, &tags, (&supports.rigid, &sections))
         .into_iter()
@@ -114,6 +120,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         let scene = supports.list.into_iter().fold(scene, Scene::with_support);
         let couplings = supports.rigid.into_iter().map(|r| r.coupling);
         let scene = couplings.fold(scene, Scene::with_coupling);
+        let scene = equations.into_iter().fold(scene, Scene::with_equation);
         let scene = loads.into_iter().fold(scene, Scene::with_load);
         let scene = contacts.into_iter().fold(scene, Scene::with_contact);
         scene.with_names(move |part| parts.name(part))

@@ -13,6 +13,7 @@ pub(super) struct Parts {
     contacts: Vec<String>,
     pub(super) supports: Vec<String>,
     pub(super) couplings: Vec<String>,
+    pub(super) equations: Vec<String>,
     pub(super) loads: Vec<String>,
     sections: Vec<String>,
     /// Increments up to the end of each step of the deck.
@@ -72,6 +73,7 @@ impl Parts {
             Part::Contact(index) => self.contacts.get(index).cloned(),
             Part::Support(index) => self.supports.get(index).cloned(),
             Part::Coupling(index) => self.couplings.get(index).cloned(),
+            Part::Equation(index) => self.equations.get(index).cloned(),
             Part::Load(index) => self.loads.get(index).cloned(),
             Part::Step(step) => {
                 let at = self.steps.partition_point(|s| s.0 <= step);

@@ -40,7 +40,7 @@ struct Table {
     ignored: Vec<Ignored>,
 }
 
-/// What is rigid and not held in all components, or loaded.
+/// What is rigid and not held in all components, or loaded, and points of equations.
 pub(super) struct Rigid {
     /// Its reference node, by position in the deck.
     pub(super) reference: u32,
@@ -181,8 +181,10 @@ impl Table {
                 found = true;
                 continue;
             }
-            let (map, key, components) = match known.raw.in_mesh(node) {
+            let inside = known.raw.in_mesh(node);
+            let (map, key, components) = match inside {
                 _ if known.bodies.has(node) || known.couplings.moves(node) => (&mut self.rigid, node, 6),
+                _ if known.points.has(node) => (&mut self.rigid, node, 3),
                 Some(inside) => (&mut self.held, inside, 3),
                 None if known.couplings.of(node).is_some() => {
                     let why =
@@ -208,7 +210,7 @@ impl Table {
                         the first one on"
                     )));
                 }
-                let copies = (components == 3).then(|| known.raw.with_copies(key).skip(1));
+                let copies = inside.map(|inside| known.raw.with_copies(inside).skip(1));
                 for key in std::iter::once(key).chain(copies.into_iter().flatten()) {
                     let next = map.len();
                     let held = map.entry((key, component)).or_insert_with(|| Held {
@@ -222,7 +224,7 @@ impl Table {
             }
         }
         if let Some(word) = turned {
-            let why = "nodes of solid elements have no rotations to be held";
+            let why = "nodes of solid elements, and of equations, have no rotations to be held";
             self.ignored.push(Ignored::new(word, why));
         }
         if !found {
@@ -289,6 +291,13 @@ impl Table {
                      *KINEMATIC keeps rigid",
                 ));
             }
+        }
+        for (node, word) in &known.points.0 {
+            let held = rigid_components(&self.rigid, (*node, None));
+            let point = Coupling::point(known.model.nodes[*node as usize].point);
+            let point = point.with_held(held.each_ref().map(Option::is_some));
+            out.push(moved(known, (*node, point), &held, word)?);
+            (0..3).for_each(|c| drop(self.rigid.remove(&(*node, c))));
         }
         Ok(out)
     }

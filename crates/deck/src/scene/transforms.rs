@@ -10,6 +10,7 @@ use signorini_fem_mesh::vec3::{Vec3, combine, norm, scale, sub, unit};
 use super::couplings::Couplings;
 use super::mesh::Raw;
 use super::numbers::Sets;
+use super::points::Points;
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Word};
 use crate::model::{Axes, Target, rectangular};
@@ -22,7 +23,12 @@ pub(super) struct Transforms {
 }
 
 impl Transforms {
-    pub(super) fn new(sets: &Sets, bodies: &RigidBodies, couplings: &Couplings, raw: &Raw) -> Result<Self, DeckError> {
+    pub(super) fn new(
+        sets: &Sets,
+        bodies: &RigidBodies,
+        (couplings, points): (&Couplings, &Points),
+        raw: &Raw,
+    ) -> Result<Self, DeckError> {
         let model = sets.model;
         let mut out = Self::default();
         for (index, transform) in model.transforms.iter().enumerate() {
@@ -30,8 +36,9 @@ impl Transforms {
             let target = Target::Name(transform.nset.name.clone());
             for node in sets.nodes.find(&target, word)? {
                 let label = model.nodes[node as usize].label;
-                if bodies.has(node) || couplings.of(node).is_some() {
-                    let why = format!("node {label} stands for a rigid body or a surface, along x, y, z here");
+                if bodies.has(node) || couplings.of(node).is_some() || points.has(node) {
+                    let why =
+                        format!("node {label} stands for a rigid body or a surface, or alone, along x, y, z here");
                     return Err(word.cannot(why));
                 }
                 let Some(inside) = raw.in_mesh(node) else { continue };

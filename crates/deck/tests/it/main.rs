@@ -3,6 +3,7 @@
 mod assembly;
 mod broken;
 mod couplings;
+mod equation;
 mod gaps;
 mod meaning;
 mod names;

@@ -1,11 +1,12 @@
 //! Building the rows: contact rows, interface blocks glob by glob, support rows.
 
 use super::gluing::{
-    BlockEntry, ContactRows, CopyEntry, Glob, Gluing, NodeGroups, SpringRow, TangentialRows, TiedRows,
+    BlockEntry, ContactRows, CopyEntry, EquationRow, Glob, Gluing, NodeGroups, SpringRow, TangentialRows, TiedRows,
 };
 use crate::error::TfetiError;
 use crate::rows::contact::{AllRows, ContactRow, PointRows, contact_rows};
 use crate::rows::dependencies::{are_independent, not_alone};
+use crate::rows::equations::{FreeEquation, NodalEquation};
 use crate::rows::rigid::RigidRow;
 use crate::rows::side::ContactConstraint;
 use crate::rows::supports::{MergedSupports, NodalSpring, NodeSupport, check_node};
@@ -17,16 +18,16 @@ use signorini_fem_mesh::vec3::{combine, dot};
 
 impl Gluing {
     /// Builds the rows. `stiffness` weighs the copies of a node in contact and support rows. Those that hold rigid
-    /// subdomains come as they stand. The rows of springs to the ground are the last of the support rows; with them comes
-    /// the stiffness of all copies, with which they are compared: the row of a soft one is as much smaller as it is
-    /// softer.
+    /// subdomains come as they stand; equations are independent, with their positions. The rows of springs to the ground
+    /// are the last of the support rows; with them comes the stiffness of all copies, with which they are compared: the
+    /// row of a soft one is as much smaller as it is softer.
     ///
     /// # Errors
     /// [`TfetiError`] for bad supports, contact points or springs.
     pub(crate) fn new(
         decomposition: &Decomposition,
         (supports, rigid): (&[NodeSupport], &[RigidRow]),
-        contact: &[ContactConstraint],
+        (contact, equations): (&[ContactConstraint], &[(usize, &NodalEquation)]),
         stiffness: &CopyStiffness,
         springs: (&[NodalSpring], &CopyStiffness),
     ) -> Result<Self, TfetiError> {
@@ -34,10 +35,15 @@ impl Gluing {
         let merged = MergedSupports::new(supports, nodes)?;
         let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
         let found = contact_rows(contact, &merged, nodes, squares)?;
-        let cases = rigid.iter().flat_map(|row| &row.values).map(|v| v.0 as usize + 1);
+        let equations = equations.iter().map(|e| FreeEquation::new(*e, decomposition, &merged));
+        let equations: Vec<FreeEquation> = equations.collect::<Result<_, _>>()?;
+        let values = rigid.iter().flat_map(|row| &row.values);
+        let cases = values
+            .chain(equations.iter().flat_map(|e| &e.values))
+            .map(|v| v.0 as usize + 1);
         let mut gluing = Self {
             prescribed: vec![Vec::new(); cases.fold(merged.cases, usize::max)],
-            is_aligned: stiffness.is_plain() && rigid.is_empty(),
+            is_aligned: stiffness.is_plain() && rigid.is_empty() && equations.is_empty(),
             ..Self::default()
         };
         let mut builder = Builder {
@@ -48,10 +54,11 @@ impl Gluing {
             gluing: &mut gluing,
         };
         builder.contact(contact, &found.rows);
-        builder.dependent(contact, &found, &merged);
+        builder.dependent(contact, &found, (&merged, &equations));
         builder.interface(nodes);
         builder.tied(contact, &found.tied)?;
         let tied = builder.gluing.nodal_rows() - builder.gluing.ranges.contact().len();
+        builder.equations(&equations);
         builder.rigid(rigid);
         builder.dirichlet(&merged);
         builder.springs(springs)?;
@@ -60,12 +67,14 @@ impl Gluing {
         let supports = interface + 3 * gluing.blocks();
         gluing.ranges.interface.end = supports;
         gluing.ranges.tied = supports..supports + tied;
-        gluing.ranges.rigid = supports + tied..supports + tied + rigid.len();
+        gluing.ranges.equations = supports + tied..supports + tied + equations.len();
+        gluing.ranges.rigid = gluing.ranges.equations.end..gluing.ranges.equations.end + rigid.len();
         gluing.ranges.dirichlet = gluing.ranges.rigid.end..supports + behind;
         for tied in &mut gluing.tied {
             tied.rows.start += supports - interface;
             tied.rows.end += supports - interface;
         }
+        gluing.equations.iter_mut().for_each(|e| e.row += supports - interface);
         for case in &mut gluing.prescribed {
             let later = case.iter_mut().filter(|v| v.0 as usize >= interface);
             later.for_each(|v| v.0 += (supports - interface) as u32);
@@ -212,6 +221,42 @@ impl Builder<'_> {
         Ok(())
     }
 
+    /// Rows of length one, but for places, whose displacement is the mean of their nodes.
+    fn equations(&mut self, equations: &[FreeEquation]) {
+        for own in equations {
+            let copies = |node: u32| self.decomposition.copies(node as usize);
+            let square = |node: u32| self.stiffness.squares(copies(node));
+            let terms = own.terms.iter().map(|(node, v)| dot(*v, *v) * square(*node));
+            let places = own.places.iter().map(|(_, v)| dot(*v, *v));
+            let scale = terms.chain(places).sum::<f64>().sqrt().recip();
+            for &(node, vector) in &own.terms {
+                let factor = scale * square(node).sqrt();
+                self.spread(node, vector.map(|v| factor * v));
+            }
+            let mut first = own.terms.first().map(|t| t.0);
+            for &(subdomain, vector) in &own.places {
+                let nodes = &self.decomposition.subdomains()[subdomain as usize].nodes;
+                let vector = vector.map(|v| scale * v / nodes.len() as f64);
+                let entry = |local: u32| CopyEntry {
+                    subdomain,
+                    local,
+                    vector,
+                };
+                self.entries.extend((0..nodes.len() as u32).map(entry));
+                first = first.or(nodes.first().copied());
+            }
+            let row = self.close(first.unwrap_or(0));
+            for &(case, value) in &own.values {
+                self.gluing.prescribed[case as usize].push((row as u32, scale * value));
+            }
+            self.gluing.equations.push(EquationRow {
+                equation: own.equation,
+                row,
+                scale: scale * own.factor,
+            });
+        }
+    }
+
     /// What a tied row does to the motion that its side has beside that of the partner.
     fn relative(&mut self, point: usize, tied: &ContactConstraint, row: &ContactRow) -> Result<(), TfetiError> {
         let Some((subdomain, factor)) = tied.relative else {
@@ -237,12 +282,18 @@ impl Builder<'_> {
     }
 
     /// Notes which nodes belong together, and those whose rows may depend on one another.
-    fn dependent(&mut self, contact: &[ContactConstraint], found: &AllRows, supports: &MergedSupports) {
+    fn dependent(
+        &mut self,
+        contact: &[ContactConstraint],
+        found: &AllRows,
+        (supports, equations): (&MergedSupports, &[FreeEquation]),
+    ) {
         let points: Vec<&PointRows> = found.rows.iter().chain(&found.tied).collect();
         let of = |k: &usize| &contact[points[*k].point];
-        self.gluing.groups = NodeGroups::new(points.iter().map(|p| &contact[p.point]));
+        let joined = equations.iter().map(|e| e.terms.iter().map(|t| t.0).collect());
+        self.gluing.groups = NodeGroups::new(points.iter().map(|p| &contact[p.point]), joined);
         let left = not_alone(contact, &points, supports);
-        let groups = NodeGroups::new(left.iter().map(of));
+        let groups = NodeGroups::new(left.iter().map(of), std::iter::empty());
         let group = |k: &usize| groups.of(of(k).side.first());
         let mut order = left;
         order.sort_by_key(group);

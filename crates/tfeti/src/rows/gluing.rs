@@ -69,6 +69,17 @@ pub struct TiedRows {
     pub directions: Vec<([f64; 3], f64)>,
 }
 
+/// The row of a linear equation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct EquationRow {
+    /// Position in the list of equations given.
+    pub equation: usize,
+    /// Its row.
+    pub row: usize,
+    /// The row is `scale` times the equation, without what supports prescribe.
+    pub scale: f64,
+}
+
 /// An entry of a row that is no interface row: a copy and the vector that multiplies its displacement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct CopyEntry {
@@ -115,12 +126,13 @@ pub struct Gluing {
     pub(super) row_nodes: Vec<u32>,
     pub(super) contact: Vec<ContactRows>,
     pub(super) tied: Vec<TiedRows>,
+    pub(super) equations: Vec<EquationRow>,
     pub(super) prescribed: Vec<Vec<(u32, f64)>>,
     /// The rows of springs, which are the last ones.
     pub(super) springs: Vec<SpringRow>,
     /// Of each contact row, in row units, m/N; empty where none gives way.
     pub(super) contact_compliance: Vec<f64>,
-    /// Mesh nodes that contact points join.
+    /// Mesh nodes that contact points and equations join.
     pub(crate) groups: NodeGroups,
     pub(super) paper_rows: usize,
     /// Whether `B B^T` is the identity, but for rows of dependent nodes.
@@ -146,6 +158,11 @@ impl Gluing {
     /// The tied constraints that have rows, in the order given.
     pub fn tied(&self) -> &[TiedRows] {
         &self.tied
+    }
+
+    /// The equations that have rows, in the order given: others say what these and the supports say, too.
+    pub fn equations(&self) -> &[EquationRow] {
+        &self.equations
     }
 
     /// Nodes whose rows may depend on one another, ascending: those with several contact points, and those that a
@@ -292,19 +309,24 @@ impl Gluing {
     }
 }
 
-/// For each mesh node the first of those that contact points join with it.
+/// For each mesh node the first of those that contact points and equations join with it.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct NodeGroups(Vec<u32>);
 
 impl NodeGroups {
-    pub(super) fn new<'a>(points: impl Iterator<Item = &'a ContactConstraint>) -> Self {
-        let joined: Vec<_> = points.filter(|p| !p.is_single()).collect();
-        let nodes = joined.iter().flat_map(|p| p.nodes()).map(|n| n.0);
-        let count = nodes.max().map_or(0, |most| most + 1);
+    /// Of points, and of equations with these nodes.
+    pub(super) fn new<'a>(
+        points: impl Iterator<Item = &'a ContactConstraint>,
+        equations: impl Iterator<Item = Vec<u32>>,
+    ) -> Self {
+        let points = points
+            .filter(|p| !p.is_single())
+            .map(|p| p.nodes().map(|n| n.0).collect());
+        let joined: Vec<Vec<u32>> = points.chain(equations).collect();
+        let count = joined.iter().flatten().max().map_or(0, |most| most + 1);
         let mut sets = DisjointSets::new(count as usize);
-        for point in joined {
-            let first = point.side.first() as usize;
-            point.nodes().for_each(|n| sets.join(first, n.0 as usize));
+        for nodes in joined {
+            nodes.iter().for_each(|n| sets.join(nodes[0] as usize, *n as usize));
         }
         Self((0..count).map(|n| sets.first(n as usize) as u32).collect())
     }

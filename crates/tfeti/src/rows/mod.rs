@@ -6,11 +6,12 @@
 //!
 //! `supports` merges what is prescribed at a node, `contact` reduces each constraint to the directions that are left,
 //! `build` spreads all over the copies, `dependencies` finds rows whose forces may replace one another,
-//! `rigid` holds motions of rigid subdomains, `part` takes some of the rows.
+//! `rigid` holds motions of rigid subdomains, `equations` judges linear equations, `part` takes some of the rows.
 
 pub(crate) mod build;
 pub(crate) mod contact;
 pub(crate) mod dependencies;
+pub(crate) mod equations;
 pub(crate) mod gluing;
 pub(crate) mod part;
 pub(crate) mod ranges;

@@ -23,11 +23,14 @@ impl Gluing {
         let kept = |rows: std::ops::Range<usize>| nodal[rows].iter().filter(|kept| **kept).count();
         let tied = end..end + kept(contact..contact + own.tied.len());
         let behind = contact + own.tied.len();
-        let rigid = tied.end..tied.end + kept(behind..behind + own.rigid.len());
+        let equations = tied.end..tied.end + kept(behind..behind + own.equations.len());
+        let behind = behind + own.equations.len();
+        let rigid = equations.end..equations.end + kept(behind..behind + own.rigid.len());
         out.ranges = RowRanges {
             interface: contact..end,
             dirichlet: rigid.end..end + out.nodal_rows() - contact,
             tied,
+            equations,
             rigid,
             ..own.clone()
         };

@@ -15,6 +15,8 @@ pub struct RowRanges {
     pub interface: Range<usize>,
     /// Rows of tied constraints.
     pub tied: Range<usize>,
+    /// Rows of linear equations.
+    pub equations: Range<usize>,
     /// Rows that hold rigid subdomains.
     pub rigid: Range<usize>,
     /// Support rows.

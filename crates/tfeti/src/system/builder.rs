@@ -8,6 +8,7 @@ use crate::error::TfetiError;
 use crate::processes::communicator::Communicator;
 use crate::processes::exchange::Exchange;
 use crate::projector::levels::has_two_levels;
+use crate::rows::equations::{NodalEquation, independent_equations};
 use crate::rows::gluing::Gluing;
 use crate::rows::rigid::{RigidRow, RigidSupport};
 use crate::rows::side::ContactConstraint;
@@ -34,6 +35,7 @@ pub struct TfetiBuilder<'a> {
     supports: &'a [NodeSupport],
     rigid: &'a [RigidSupport],
     contact: &'a [ContactConstraint],
+    equations: &'a [NodalEquation],
     springs: &'a [NodalSpring],
     share_translates: bool,
     inverse: InverseSettings,
@@ -51,6 +53,7 @@ impl<'a> TfetiBuilder<'a> {
             supports: &[],
             rigid: &[],
             contact: &[],
+            equations: &[],
             springs: &[],
             share_translates: true,
             inverse: InverseSettings::default(),
@@ -89,6 +92,13 @@ impl<'a> TfetiBuilder<'a> {
     #[must_use]
     pub fn with_contact(mut self, contact: &'a [ContactConstraint]) -> Self {
         self.contact = contact;
+        self
+    }
+
+    /// Sets the linear equations. Those that say nothing new get no row.
+    #[must_use]
+    pub fn with_equations(mut self, equations: &'a [NodalEquation]) -> Self {
+        self.equations = equations;
         self
     }
 
@@ -199,8 +209,11 @@ impl<'a> TfetiBuilder<'a> {
             .iter()
             .map(|support| support.row(self.mesh, self.decomposition));
         let rigid: Vec<RigidRow> = rigid.collect::<Result<_, _>>()?;
-        let supports = (self.supports, &rigid[..]);
-        let gluing = Gluing::new(self.decomposition, supports, self.contact, &stiffness, springs)?;
+        let held = (self.supports, self.rigid);
+        let needed = independent_equations(self.equations, self.decomposition, held, self.contact)?;
+        let needed: Vec<_> = needed.into_iter().map(|k| (k, &self.equations[k])).collect();
+        let (supports, contact) = ((self.supports, &rigid[..]), (self.contact, &needed[..]));
+        let gluing = Gluing::new(self.decomposition, supports, contact, &stiffness, springs)?;
         Ok((Arc::new(gluing), stiffness))
     }
 }

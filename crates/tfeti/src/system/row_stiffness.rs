@@ -156,6 +156,11 @@ impl Tfeti {
             return Some(soft.chain(std::iter::repeat_n(1.0, rest)).collect());
         }
         let mut weights: Vec<f64> = (0..self.dual_dim()).map(weight).collect();
+        // equations of little but places would hide all others
+        let equations = ranges.equations.clone();
+        let others = weights[..equations.start].iter().chain(&weights[equations.end..]);
+        let most = others.fold(0.0_f64, |most, w| most.max(*w));
+        weights[equations].iter_mut().for_each(|w| *w = w.min(most));
         for (row, compliance) in self.gluing().compliance() {
             weights[row] /= 1.0 + compliance * weights[row];
         }

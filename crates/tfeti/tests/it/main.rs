@@ -4,6 +4,7 @@ mod active_set;
 mod classes;
 mod coarse;
 mod common;
+mod equations;
 mod forecast;
 mod kernel;
 mod levels;

@@ -1,0 +1,65 @@
+//! `*EQUATION`: linear equations between displacements.
+
+use super::Model;
+use super::mesh::target;
+use super::step::Target;
+use crate::error::{DeckError, Word};
+use crate::lexer::Card;
+
+/// A linear equation, its terms summing to zero.
+#[derive(Debug, Clone)]
+pub(crate) struct Equation {
+    /// The keyword, where the equation begins.
+    pub(crate) word: Word,
+    pub(crate) terms: Vec<Term>,
+}
+
+/// A component of the displacement of a node, or of each node of a set, times a coefficient.
+#[derive(Debug, Clone)]
+pub(crate) struct Term {
+    pub(crate) target: Target,
+    /// The word that names it.
+    pub(crate) word: Word,
+    /// From 0.
+    pub(crate) component: usize,
+    pub(crate) coefficient: f64,
+}
+
+/// `*EQUATION`: the number of terms, then these, some a line, and so on.
+pub(super) fn equation(model: &mut Model, card: &Card) -> Result<(), DeckError> {
+    card.allow(&[])?;
+    let wanted = "the number of terms of an equation, alone in its line";
+    let term = "a term: a node or a set, its component 1, 2 or 3, and a coefficient";
+    let mut lines = card.lines.iter();
+    while let Some(line) = lines.next() {
+        let fields = line.at_most(1, wanted)?;
+        let count = line.label(&fields, 0, wanted)? as usize;
+        let word = Word::new(&line.location, &card.word.text);
+        let mut terms = Vec::new();
+        while terms.len() < count {
+            let missing = || line.cannot("the equation has fewer terms than it says; correct the number");
+            let line = lines.next().ok_or_else(missing)?;
+            let fields = line.fields();
+            for own in fields.chunks(3) {
+                let component = line.label(own, 1, term)? as usize;
+                if component > 3 {
+                    return Err(line.part(own[1]).expected(term));
+                }
+                terms.push(Term {
+                    target: target(line, own[0])?,
+                    word: line.part(own[0]),
+                    component: component - 1,
+                    coefficient: line.real(own, 2, term)?,
+                });
+            }
+        }
+        if terms.len() > count {
+            return Err(line.cannot("the equation has more terms than it says; correct the number"));
+        }
+        model.equations.push(Equation { word, terms });
+    }
+    match card.lines.is_empty() {
+        true => Err(card.word.expected(wanted)),
+        false => Ok(()),
+    }
+}

@@ -1,0 +1,79 @@
+//! Equations between nodes.
+
+use signorini_contact::Equation;
+
+use super::faces::Known;
+use super::points::Room;
+use super::supports::Rigid;
+use crate::error::{DeckError, Word};
+use crate::model::Term;
+
+/// The equations of the scene, each with its place; of sets one for each of their nodes, by ascending numbers. `rigid`
+/// are the couplings of the scene.
+pub(super) fn equations(known: Known, rigid: &[Rigid]) -> Result<Vec<(Equation, Word)>, DeckError> {
+    let model = known.model;
+    let unsorted = model
+        .ignored
+        .iter()
+        .find(|ignored| ignored.word.eq_ignore_ascii_case("UNSORTED"));
+    let (mut out, mut room) = (Vec::with_capacity(model.equations.len()), Room::default());
+    for given in &model.equations {
+        let nodes = |term: &Term| {
+            let mut nodes = known.sets.nodes.find(&term.target, &term.word)?;
+            nodes.sort_unstable_by_key(|n| model.nodes[*n as usize].label);
+            if let (Some(unsorted), [_, _, ..]) = (unsorted, &nodes[..]) {
+                return Err(term.word.cannot(format!(
+                    "nodes of a set count by ascending numbers here, and a set of the deck is UNSORTED ({}); name the nodes \
+                    by their numbers",
+                    unsorted.location
+                )));
+            }
+            Ok(nodes)
+        };
+        let nodes: Vec<Vec<u32>> = given.terms.iter().map(nodes).collect::<Result<_, _>>()?;
+        let count = nodes.first().map_or(0, Vec::len);
+        if let Some((term, _)) = (given.terms.iter().zip(&nodes)).find(|(_, n)| n.len() != 1 && n.len() != count) {
+            return Err(term.word.cannot(
+                "the set has another number of nodes than that of the first term; give one node, or a node for each of \
+                its nodes",
+            ));
+        }
+        room.take(count * nodes.len(), &given.word)?;
+        for k in 0..count {
+            let mut terms = Vec::with_capacity(given.terms.len());
+            let mut points = Vec::new();
+            for (term, nodes) in given.terms.iter().zip(&nodes) {
+                let node = nodes[if nodes.len() == 1 { 0 } else { k }];
+                match known.raw.in_mesh(node) {
+                    None => {
+                        let unit = [0, 1, 2].map(|c| if c == term.component { term.coefficient } else { 0.0 });
+                        points.extend(
+                            rigid
+                                .iter()
+                                .position(|r| r.reference == node)
+                                .map(|point| (point, unit)),
+                        );
+                    }
+                    Some(inside) => terms.push((inside, vector(known, term, inside)?)),
+                }
+            }
+            let equation = points
+                .into_iter()
+                .fold(Equation::new(terms), |e, (k, v)| e.with_point(k, v));
+            out.push((equation, given.word.clone()));
+        }
+    }
+    Ok(out)
+}
+
+/// What multiplies the displacement of a node of the mesh in a term.
+fn vector(known: Known, term: &Term, node: u32) -> Result<[f64; 3], DeckError> {
+    if known.raw.with_copies(node).nth(1).is_some() {
+        let label = known.raw.node_labels[node as usize];
+        return Err(term.word.cannot(format!(
+            "node {label} lies where a *PRE-TENSION SECTION cuts the body, and has two displacements; name another one"
+        )));
+    }
+    let at = (node, known.raw.points[node as usize]);
+    known.transforms.force(at, term.component, term.coefficient, &term.word)
+}
