@@ -92,7 +92,7 @@
 //! | `*STATIC` | `DIRECT`, `SOLVER` | first increment, period, least and largest increment |
 //! | `*CLOAD` | `OP`, `AMPLITUDE` | forces at nodes; moments, 4 to 6, at the node of a `*DISTRIBUTING` |
 //! | `*DLOAD` | `OP`, `AMPLITUDE` | `P1` to `P4` on faces; `GRAV`, `CENTRIF` (with the square of the angular velocity; integrated exactly, in linear elements CalculiX takes the value at the centroid: 0.9 % on a coarse disc), `BX`, `BY`, `BZ` in elements, without a set in all |
-//! | `*DSLOAD` | `OP`, `AMPLITUDE` | `P` on a surface |
+//! | `*DSLOAD` | `OP`, `AMPLITUDE` | `P` on a surface; `TRVEC`, a traction in a direction, on flat facets |
 //! | `*TEMPERATURE` | `OP`, `AMPLITUDE` | at nodes; linear between the corners of a tetrahedron; an amplitude multiplies the temperature, and its rise above the initial one counts |
 //! | `*END STEP`, `*INCLUDE` | `INPUT` | paths are relative to the file that includes; loops are refused |
 //!

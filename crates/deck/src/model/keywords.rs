@@ -47,7 +47,7 @@ const IDLE_PARAMETERS: [(&str, &str, &str); 14] = [
 ];
 
 /// Keywords of these programs that have no counterpart here, and what to do.
-const REFUSED: [(&str, &str); 7] = [
+const REFUSED: [(&str, &str); 8] = [
     ("MPC", "equations between nodes are read as *EQUATION"),
     (
         "DISTRIBUTINGCOUPLING KINEMATICCOUPLING",
@@ -61,6 +61,10 @@ const REFUSED: [(&str, &str); 7] = [
     (
         "MODELCHANGE CHANGEFRICTION",
         "bodies, contacts and coefficients of friction hold for all steps",
+    ),
+    (
+        "CONTACTINTERFERENCE",
+        "overlaps press from the first step on; give that of a pair by *CLEARANCE, negative",
     ),
     (
         "CONTACT",

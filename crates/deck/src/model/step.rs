@@ -67,6 +67,8 @@ pub(crate) enum DistributedKind {
     Face(u8),
     /// Pressure on a surface.
     Surface,
+    /// Traction on a surface in a direction (not of unit length).
+    Traction([f64; 3]),
     Volume(VolumeLaw),
 }
 
@@ -387,7 +389,7 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
     step.distributed.card(card)?;
     for line in &card.lines {
         let wanted = if on_surface {
-            "a surface, P, and a pressure"
+            "a surface, P, and a pressure, or TRVEC, a traction, and its direction"
         } else {
             "an element or element set, one of P1 to P4, GRAV, CENTRIF, BX, BY, BZ, a value, with GRAV a direction, \
             and with CENTRIF, whose value is the square of the angular velocity, a point and the direction of the axis"
@@ -396,6 +398,7 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
         let label = name(fields.get(1).unwrap_or(&""));
         let (kind, count) = match (on_surface, label.as_str()) {
             (true, "P") => (DistributedKind::Surface, 3),
+            (true, "TRVEC") => (DistributedKind::Traction(vector(line, &fields, 3)?), 6),
             (false, "P1") => (DistributedKind::Face(1), 3),
             (false, "P2") => (DistributedKind::Face(2), 3),
             (false, "P3") => (DistributedKind::Face(3), 3),

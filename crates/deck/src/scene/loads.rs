@@ -5,7 +5,7 @@ use std::collections::btree_map::Entry;
 
 use signorini_contact::Load;
 use signorini_fem_mesh::internal::distinct;
-use signorini_fem_mesh::vec3::Vec3;
+use signorini_fem_mesh::vec3::{Vec3, norm, unit};
 use signorini_fem_mesh::{FacetTag, LoadDensity};
 
 use super::faces::{FaceTable, Known};
@@ -15,7 +15,7 @@ use super::spread::Spread;
 use super::supports::Rigid;
 use super::volume::Volume;
 use crate::error::{DeckError, Word};
-use crate::model::{Components, Condition, Conditions, CouplingLaw, DistributedKind, FORCE, Target};
+use crate::model::{Components, Condition, Conditions, CouplingLaw, DistributedKind, FORCE, Given, Target};
 
 /// Most different pressures that get tags of their own. More become forces at nodes, which are the same for
 /// linear elements.
@@ -54,19 +54,20 @@ impl Loads {
     /// The loads of all steps; `surfaces` are the faces of each surface.
     pub(super) fn new(known: Known, surfaces: &[Vec<u32>], faces: &mut FaceTable) -> Result<Self, DeckError> {
         let mut forces = Tracks::default();
-        let mut pressures = Tracks::default();
+        let (mut pressures, mut tractions) = (Tracks::default(), Tracks::default());
         let mut bodies = Volume::new(&known.raw.points);
         let mut loads = Self::default();
         for (step, given) in known.model.steps.iter().enumerate() {
             known.forces(&mut forces, step, &given.forces, &mut loads.words)?;
             if given.distributed.removes() {
                 pressures.remove(step);
+                tractions.remove(step);
                 bodies.remove(step);
             }
             for line in &given.distributed.lines {
                 let order = loads.words.len();
                 loads.words.push(line.word.clone());
-                let to = (&mut pressures, &mut bodies);
+                let to = (&mut pressures, &mut tractions, &mut bodies);
                 known.distributed(to, (step, order), line, surfaces, faces)?;
             }
         }
@@ -99,6 +100,17 @@ impl Loads {
             }
         }
         loads.pressures(known, &pressures, faces)?;
+        for (&(face, component), track) in &tractions.0 {
+            let Some((value, history)) = loads.histories.add(known.timeline, track)? else {
+                continue;
+            };
+            let face = &faces.list[face as usize];
+            let mut force = [0.0; 3];
+            force[component] = value * norm(face.area_vector(known.raw)) / 3.0;
+            for node in face.loaded(known.raw) {
+                loads.force(history, track.order, node, force);
+            }
+        }
         let Self { histories, forces, .. } = &mut loads;
         loads.bodies = bodies.lower(known, histories, |history, order, node, force| {
             add_force(forces, (history, order), node, force);
@@ -274,7 +286,7 @@ impl Known<'_> {
 
     fn distributed(
         self,
-        (pressures, bodies): (&mut Tracks<u32>, &mut Volume),
+        (pressures, tractions, bodies): (&mut Tracks<u32>, &mut Tracks<(u32, usize)>, &mut Volume),
         (step, order): (usize, usize),
         line: &Condition<DistributedKind>,
         surfaces: &[Vec<u32>],
@@ -288,14 +300,14 @@ impl Known<'_> {
                 let target = (&line.target, *number);
                 table.of_target(self, target, word)?
             }
-            DistributedKind::Surface => {
+            DistributedKind::Surface | DistributedKind::Traction(_) => {
                 let Target::Name(name) = &line.target else {
                     return Ok(());
                 };
                 let found = self.model.surfaces.find("surface", name, word)?;
                 self.sections.check_outside(found, word)?;
                 if surfaces[found].is_empty() {
-                    return Err(word.cannot("a pressure on a rigid surface acts on nothing; load an elastic one"));
+                    return Err(word.cannot("a load on a rigid surface acts on nothing; load an elastic one"));
                 }
                 surfaces[found].clone()
             }
@@ -306,7 +318,14 @@ impl Known<'_> {
             }
         };
         for face in faces {
-            pressures.set(face, when, given, word)?;
+            let DistributedKind::Traction(direction) = &line.kind else {
+                pressures.set(face, when, given, word)?;
+                continue;
+            };
+            for (component, along) in unit(*direction).into_iter().enumerate() {
+                let value = given.value * along;
+                tractions.set((face, component), when, Given { value, ..given }, word)?;
+            }
         }
         Ok(())
     }

@@ -1,6 +1,6 @@
 //! What steps, amplitudes and loads mean.
 
-use signorini_contact::{Analysis, Load, Place, Scene};
+use signorini_contact::{Analysis, Load, Place, Scene, Settings, Simulation};
 use signorini_fem_mesh::LoadDensity;
 
 use crate::write::{cube, face, read};
@@ -164,6 +164,33 @@ fn pressures() {
     };
     assert_eq!(one(&by_faces), one(&by_surface));
     assert!(one(&by_surface).contains("Pressure(FacetTag(6), 2.0)"));
+}
+
+/// A traction in a direction of any length, beside a pressure; the next step gives another direction.
+#[test]
+fn tractions() {
+    for order in [1, 2] {
+        let mut mesh = signorini_fem_mesh::Brick::new([1.0; 3], [2, 2, 2])
+            .build()
+            .expect("brick");
+        if order == 2 {
+            mesh = mesh.raise_order().expect("order 2");
+        }
+        let deck = crate::write::mesh(&mesh)
+            + crate::write::STEEL
+            + "*BOUNDARY\nN5, 1, 3\n"
+            + &step("*DSLOAD\nS6, TRVEC, 10., 0., 3., 4.\nS6, P, 1.\n")
+            + &step("*DSLOAD\nS6, TRVEC, 5., 2., 0., 0.\n");
+        let scene = read(&deck).expect("deck").scene().expect("scene");
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        // two increments a step
+        for expected in [[0.0, 6.0, 7.0], [5.0, 0.0, -1.0]] {
+            simulation.step().expect("half");
+            let reactions = simulation.step().expect("a step").reactions();
+            let found = reactions.loads.force;
+            assert!((0..3).all(|c| (found[c] - expected[c]).abs() < 1e-12), "{found:?}");
+        }
+    }
 }
 
 /// Many different pressures become forces at nodes with the same resultant.

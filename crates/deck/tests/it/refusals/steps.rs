@@ -69,9 +69,9 @@ fn loads() {
     let nowhere = "ALL, GRAV, 9.8, 0., 0., 0.";
     inside(&format!("*DLOAD\n{nowhere}\n"), nowhere, nowhere, "not zero");
     inside(
-        "*DSLOAD\nS6, TRVEC, 1.\n",
-        "S6, TRVEC, 1.",
-        "TRVEC",
+        "*DSLOAD\nS6, TRSHR, 1.\n",
+        "S6, TRSHR, 1.",
+        "TRSHR",
         "P, and a pressure",
     );
     inside("*DSLOAD\nTOP, P, 1.\n", "TOP, P, 1.", "TOP", "there are: S1");
