@@ -58,9 +58,9 @@ pub mod prelude {
     pub use signorini_contact::result::ContactSummary;
     pub use signorini_contact::{
         Accuracy, Analysis, Certificate, Coefficient, Communicator, Contact, ContactError, ContactPair, ContactState,
-        Coupling, DifferenceFormula, Directions, Flow, Friction, Load, Method, Observer, Obstacle, Partition, Place,
-        Plan, PointState, Preconditioner, Progress, RunReport, Scene, Settings, Silent, Simulation, SlipBound, Spring,
-        State, StepResult, StepStatus, Support, Warning,
+        Coupling, DifferenceFormula, Directions, Equation, Flow, Friction, Load, Method, Observer, Obstacle, Partition,
+        Place, Plan, PointState, Preconditioner, Progress, RunReport, Scene, Settings, Silent, Simulation, SlipBound,
+        Spring, State, StepResult, StepStatus, Support, Warning,
     };
     #[cfg(feature = "vtu")]
     pub use signorini_contact::{ResultField, ResultWriter};

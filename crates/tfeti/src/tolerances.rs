@@ -22,10 +22,12 @@ pub(crate) const AGREEING: f64 = 1e-7;
 /// Nodes of a rigid subdomain: largest distance from a line, relative to its length, on which they lie. At 3e-6 loads about
 /// the line took all products allowed, from 1e-5 on they were solved.
 pub(crate) const ON_A_LINE: f64 = 1e-5;
+/// Largest coefficient of an equation: beyond, forces over coefficients leave the range of numbers.
+pub(crate) const COEFFICIENTS: [f64; 2] = [1e-200, 1e200];
 /// Linear equations: part of the coefficients of one that others leave which is too little to be meant, where it is more
 /// than rounding: decks have six or seven digits.
 pub(crate) const ALMOST: f64 = 1e-6;
-/// Entry of such an equation over its largest up to which others may be taken out by it.
+/// Entry of an equation over its largest up to which others may be taken out by it.
 pub(crate) const PIVOTAL: f64 = 0.1;
 /// Sine of an angle that counts as none: a direction in a plane, nodes on a line.
 pub(crate) const ANGLE: f64 = 1e-6;

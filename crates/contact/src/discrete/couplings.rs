@@ -1,14 +1,15 @@
 //! Rigid couplings: subdomains without elements behind the others.
 
+use super::free_points::{check_point, idle, sizes};
 use super::points::ContactPoint;
 use super::supports::Supports;
 use crate::error::ContactError;
-use crate::scene::{Coupled, Coupling, CouplingLoad, Equation, LoadKind, Place, Scene};
-use crate::tolerances::{ALIKE, ALONG, FAR};
+use crate::scene::{Coupled, Coupling, CouplingLoad, Place, Scene};
+use crate::tolerances::{ALONG, FAR};
 use signorini_fem_mesh::decomposition::Rigid;
 use signorini_fem_mesh::internal::distinct;
-use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, is_finite, norm, scale, sub, unit};
-use signorini_fem_mesh::{Decomposition, History, SurfaceFrame};
+use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, is_finite, norm, scale, sub};
+use signorini_fem_mesh::{Decomposition, History, LoadError, SurfaceFrame};
 use signorini_tfeti::internal::{PrescribedDirection, forces_at_three, unsaid_directions};
 use signorini_tfeti::{ContactConstraint, RigidSupport, Side};
 use std::collections::{BTreeMap, BTreeSet};
@@ -52,6 +53,7 @@ impl Couplings {
         if scene.couplings.is_empty() {
             return Ok((decomposition, out));
         }
+        let units = sizes(scene);
         let mut rigid = Vec::with_capacity(scene.couplings.len());
         for (index, coupling) in scene.couplings.iter().enumerate() {
             let nodes = out.nodes_of(scene, index)?;
@@ -127,7 +129,7 @@ impl Couplings {
                 return refuse(nodes.first().copied(), why);
             }
             let subdomain = (out.first + index) as u32;
-            let unit = size(scene, index);
+            let unit = units[index];
             let cases: Vec<u32> = coupling.motions.iter().map(|(_, h)| supports.case(h)).collect();
             let holds = coupling.holds();
             let locked = coupling.locked.iter().any(Option::is_some);
@@ -343,6 +345,11 @@ impl Couplings {
                 couplings,
             });
         };
+        let place = scene.couplings[coupling].reference;
+        if let Some(value) = [force, moment].into_iter().find(|v| !is_finite(*v)) {
+            let source = LoadError::NotFinite { place, value };
+            return Err(ContactError::Load { index, source });
+        }
         let places = nodes.points(&scene.mesh);
         let (about, unit) = (self.about[coupling], self.unit[coupling]);
         // nodes are not on a line: that is checked
@@ -350,78 +357,6 @@ impl Couplings {
             target[3 * node..3 * node + 3].copy_from_slice(&force.map(|f| f / unit));
         }
         Ok(out)
-    }
-}
-
-/// Refuses what a point alone does not have: moments and rotations.
-fn check_point(scene: &Scene, index: usize) -> Result<(), ContactError> {
-    let turned = scene.couplings[index]
-        .motions
-        .iter()
-        .any(|(way, _)| way[3..] != [0.0; 3]);
-    let moments = scene.loads.iter().any(|load| match &load.kind {
-        LoadKind::Coupling(own) => own.coupling == index && own.moment != [0.0; 3],
-        LoadKind::Density(_) | LoadKind::Eigenstrain(_) => false,
-    });
-    match turned || moments {
-        false => Ok(()),
-        true => Err(ContactError::Coupling {
-            coupling: index,
-            node: None,
-            reason: "a point has no rotations, and takes no moments; give it displacements and forces",
-        }),
-    }
-}
-
-/// How much nodes move per displacement of a point, by the equation in which it counts most: a power of two.
-fn size(scene: &Scene, index: usize) -> f64 {
-    let ratio = |equation: &Equation| {
-        let sum = |vectors: &mut dyn Iterator<Item = Vec3>| vectors.map(|v| dot(v, v)).sum::<f64>().sqrt();
-        let own = sum(&mut equation.points.iter().filter(|p| p.0 == index).map(|p| p.1));
-        own / sum(&mut equation.terms.iter().map(|t| t.1))
-    };
-    let ratios = scene.equations.iter().map(ratio).filter(|r| r.is_finite());
-    let most = ratios.fold(0.0, f64::max);
-    match most > 0.0 && !(1.0 / ALIKE..=ALIKE).contains(&most) {
-        true => most.log2().round().exp2(),
-        false => 1.0,
-    }
-}
-
-/// The directions of a point of which neither an equation nor the coupling itself says anything: it stays there.
-fn idle(scene: &Scene, index: usize, axes: &[Vec3; 3]) -> Result<Vec<Vec3>, ContactError> {
-    let holds = scene.couplings[index].holds();
-    let mut known: Vec<Vec3> = (0..3).filter(|&c| holds[c]).map(|c| axes[c]).collect();
-    let rest = |known: &[Vec3], vector: Vec3| {
-        let all = [known, known].concat();
-        let rest = all.iter().fold(vector, |rest, d| sub(rest, scale(dot(rest, *d), *d)));
-        let is_left = norm(rest) > ALONG * norm(vector);
-        is_left.then(|| unit(rest))
-    };
-    let terms = scene.equations.iter().flat_map(|e| &e.points);
-    for (_, vector) in terms.filter(|term| term.0 == index && is_finite(term.1)) {
-        known.extend(rest(&known, *vector));
-    }
-    let told = known.len();
-    for axis in axes {
-        known.extend(rest(&known, *axis));
-    }
-    let idle = known.split_off(told);
-    let pushed = scene.loads.iter().any(|load| match &load.kind {
-        LoadKind::Coupling(own) => {
-            let along = |d: &Vec3| dot(own.force, *d).abs() > ALONG * norm(own.force);
-            own.coupling == index && idle.iter().any(along)
-        }
-        LoadKind::Density(_) | LoadKind::Eigenstrain(_) => false,
-    });
-    match pushed {
-        false => Ok(idle),
-        true => Err(ContactError::Coupling {
-            coupling: index,
-            node: None,
-            reason: "a load pushes the point in a direction of which no equation says anything, so that it acts on \
-                nothing; give it an equation, or leave the load out",
-        }),
     }
 }
 

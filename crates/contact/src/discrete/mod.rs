@@ -13,6 +13,7 @@ mod couplings;
 mod creases;
 mod equations;
 mod extents;
+mod free_points;
 mod means;
 mod normals;
 mod overflow;

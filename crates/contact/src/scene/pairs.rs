@@ -124,9 +124,10 @@ impl ContactPair {
 
     /// A contact of the two sides.
     pub fn contact(&self) -> Contact {
-        let mut contact = Contact::between(self.tags[0][0], self.tags[1][0]);
-        contact.tags.clone_from(&self.tags[0]);
-        contact.partner.clone_from(&self.tags[1]);
+        let [own, partner] = &self.tags;
+        let mut contact = Contact::between(FacetTag::default(), FacetTag::default());
+        contact.tags.clone_from(own);
+        contact.partner.clone_from(partner);
         contact
     }
 }

@@ -189,12 +189,11 @@ fn supports(model: &Model) -> u64 {
         let axis = c.axis().unwrap_or_default();
         axis.into_iter().chain(c.reference()).map(number)
     });
-    let terms = model
-        .discrete
-        .equations
-        .iter()
-        .flat_map(|e| e.terms.iter().chain(&e.places));
-    let equations = terms.flat_map(|(at, vector)| std::iter::once(u64::from(*at)).chain(vector.map(number)));
+    let equations = model.discrete.equations.iter().flat_map(|e| {
+        let terms = e.terms.iter().chain(&e.places);
+        let terms = terms.flat_map(|(at, vector)| std::iter::once(u64::from(*at)).chain(vector.map(number)));
+        [e.terms.len() as u64, e.places.len() as u64].into_iter().chain(terms)
+    });
     hash(nodes.chain(couplings).chain(frames).chain(equations))
 }
 

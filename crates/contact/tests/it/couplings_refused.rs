@@ -151,7 +151,7 @@ fn faults_are_refused() {
     refuse(with(end()).with_load(far), &["does not exist"]);
     refuse(
         with(end()).with_load(Load::on_coupling(0, [f64::NAN; 3], [0.0; 3])),
-        &["is not finite"],
+        &["must be finite"],
     );
     refuse(
         with(end()).with_contact(Contact::rigid(brick::X_MAX)),

@@ -264,6 +264,47 @@ fn points_may_have_units_of_their_own() {
     }
 }
 
+/// A bar whose end follows a point, which follows another one, loaded or moved, in whatever units; a third one is in no
+/// equation, and stays.
+#[test]
+fn points_that_follow_points_may_have_units_of_their_own() {
+    let mesh = block([4.0, 1.0, 1.0], [4, 2, 2]);
+    let [x, _, _] = AXES;
+    let (young, force) = (2e11, 1e4);
+    for c in [1e-10, 1e-4, 1.0, 1e4, 1e10] {
+        for moved in [false, true] {
+            let first = Coupling::point([5.0, 0.0, 0.0]);
+            let second = Coupling::point([6.0, 0.0, 0.0]);
+            let second = match moved {
+                true => second
+                    .with_held([true, false, false, false, false, false])
+                    .with_motion([2e-7 / c, 0.0, 0.0, 0.0, 0.0, 0.0], ramp()),
+                false => second,
+            };
+            let end = mesh.nodes_on(brick::X_MAX);
+            let alike = end.into_iter().map(|n| Equation::new([(n, x)]).with_point(0, minus(x)));
+            let link = Equation::new([]).with_point(0, x).with_point(1, [-c, 0.0, 0.0]);
+            let scene = Scene::new(mesh.clone(), uniform(young, 0.0))
+                .with_support(Support::fixed(brick::X_MIN))
+                .with_coupling(first)
+                .with_coupling(second)
+                .with_coupling(Coupling::point([9.0; 3]));
+            let scene = alike.chain([link]).fold(scene, Scene::with_equation);
+            let scene = match moved {
+                true => scene,
+                false => scene.with_load(Load::on_coupling(1, [force * c, 0.0, 0.0], [0.0; 3])),
+            };
+            let found = solved(scene, Settings::default(), &format!("unit {c:e}, moved {moved}"));
+            let displacement = found.points[0][0];
+            assert!(
+                (displacement / 2e-7 - 1.0).abs() < 1e-7,
+                "{c:e}, {moved}: {displacement:e}"
+            );
+            assert_eq!(found.points[2], [0.0; 3]);
+        }
+    }
+}
+
 /// A cell with a stiff core off its middle, displaced nodes and shear, on any number of subdomains.
 #[test]
 fn a_cell_with_a_core_knows_nothing_of_subdomains() {

@@ -214,11 +214,8 @@ fn what_is_refused_says_why() {
     let rigid = || held().with_coupling(Coupling::rigid(brick::X_MAX, [2.0, 0.0, 0.0]));
     let floor = || held().with_contact(Contact::rigid(brick::X_MAX).with_friction(Friction::coulomb(0.2)));
     for (scene, why) in [
-        (
-            held().with_equation(Equation::new([])),
-            "no coefficient that is not zero",
-        ),
-        (held().with_equation(on([0.0; 3])), "no coefficient that is not zero"),
+        (held().with_equation(Equation::new([])), "so that it says nothing"),
+        (held().with_equation(on([0.0; 3])), "so that it says nothing"),
         (held().with_equation(on([f64::NAN, 0.0, 0.0])), "must be finite"),
         (held().with_equation(on([f64::INFINITY, 0.0, 0.0])), "must be finite"),
         (
@@ -323,4 +320,24 @@ fn products_are_those_of_other_rows() {
         let [joined, tied] = [joined, tied].map(products);
         assert!(joined <= tied + 1, "{joined} products, tied {tied}");
     }
+}
+
+/// A state belongs to its equations, not to a list of all their terms.
+#[test]
+fn states_know_where_an_equation_ends() {
+    let mesh = block([2.0, 1.0, 1.0], [4, 2, 2]);
+    let [a, b, c] = [0, 1, 2].map(|k| (mesh.nodes_on(brick::X_MAX)[k], AXES[0]));
+    let simulation = |equations: [Vec<(u32, [f64; 3])>; 2]| {
+        let scene = Scene::new(mesh.clone(), uniform(YOUNG, 0.3))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::body([0.0, 0.0, -1e3]))
+            .with_analysis(Analysis::quasistatic(1.0, 2));
+        let equations = equations.into_iter().map(Equation::new);
+        Simulation::new(equations.fold(scene, Scene::with_equation), Settings::default()).expect("set-up")
+    };
+    let mut first = simulation([vec![a, b], vec![c]]);
+    step(&mut first);
+    let state = first.state().clone();
+    assert!(simulation([vec![a, b], vec![c]]).resume(state.clone()).is_ok());
+    assert!(simulation([vec![a], vec![b, c]]).resume(state).is_err());
 }

@@ -12,7 +12,7 @@ use super::supports::{MergedSupports, NodeSupport, check_node};
 use crate::error::TfetiError;
 use crate::linalg::entry;
 use crate::rows::contact::contact_rows;
-use crate::tolerances::{AGREEING, ALMOST, FIXED, PIVOTAL};
+use crate::tolerances::{AGREEING, ALMOST, COEFFICIENTS, FIXED, PIVOTAL};
 use signorini_fem_mesh::Decomposition;
 use signorini_fem_mesh::internal::DisjointSets;
 use signorini_fem_mesh::vec3::{dot, is_finite, norm, scale, sub};
@@ -65,10 +65,13 @@ impl FreeEquation {
         let refuse = |reason| Err(refused(equation, None, reason));
         let all = || given.terms.iter().chain(&given.places);
         let largest = all().flat_map(|t| t.1).fold(0.0_f64, |most, v| most.max(v.abs()));
+        if largest > 0.0 && !(COEFFICIENTS[0]..=COEFFICIENTS[1]).contains(&largest) {
+            return refuse("its largest coefficient must be finite, from 1e-200 to 1e200; multiply all by a factor");
+        }
         let largest = if largest > 0.0 { largest } else { 1.0 };
         let values = given.values.iter().map(|(case, value)| (*case, value / largest));
         let values: Vec<(u32, f64)> = values.collect();
-        let finite = all().all(|(_, vector)| is_finite(*vector)) && largest.recip().is_finite();
+        let finite = all().all(|(_, vector)| is_finite(*vector));
         if !(finite && values.iter().all(|v| v.1.is_finite())) {
             return refuse("its coefficients and its value over the largest of them must be finite");
         }
@@ -113,7 +116,9 @@ impl FreeEquation {
         if said {
             Ok(out)
         } else {
-            refuse("it has no coefficient that is not zero")
+            refuse(
+                "its coefficients are zero, or add up to zero, so that it says nothing; correct them, or leave it out",
+            )
         }
     }
 
@@ -317,7 +322,8 @@ impl Left {
             true => Ok(()),
             false => Err(self.refused(
                 equation,
-                "it contradicts what supports and other equations say of its nodes; correct its value, or leave it out",
+                "it contradicts what supports and other equations say of its nodes; correct its value or the history of \
+                that, or leave it out",
             )),
         }
     }

@@ -210,7 +210,9 @@ impl Tfeti {
             }
         }
         for row in rigid {
-            weights[row] = of(row).map(|s| largest[&s]).fold(0.0, f64::max);
+            // a place that nothing else reaches
+            let most = of(row).map(|s| largest[&s]).fold(0.0, f64::max);
+            weights[row] = if most > 0.0 { most } else { 1.0 };
         }
     }
 }
