@@ -146,3 +146,22 @@ fn a_reach_is_a_length() {
         assert!(matches!(error, ContactError::Setting { name: "reach", .. }));
     }
 }
+
+/// A bulge on a plate of other cells touches it and is nowhere inside; weights of means, in part negative, make it 0.013.
+#[test]
+fn an_overlap_is_no_deeper_than_its_facets() {
+    let plate = body([3.0, 1.2, 0.3], [6, 3, 1], [-1.5, -0.1, -0.3]);
+    let plate = tagged(plate, |normal| (normal[2] < -0.5).then_some(1));
+    let bulge = body([2.0, 1.0, 0.5], [6, 3, 1], [-1.0, 0.0, 0.0]);
+    let bulge = bulge.map_points(|[x, y, z]| [x, y, z + 0.3 * x * x]).expect("bulge");
+    let (mesh, pairs) = ContactPair::find(joined(&[plate, bulge]), 0.5).expect("reach");
+    assert_eq!(pairs.len(), 1);
+    assert!(pairs[0].gaps[0] >= 0.0, "{:?}", pairs[0].gaps);
+    let scene = Scene::new(mesh, uniform(1e9, 0.3))
+        .with_support(Support::fixed(FacetTag(1)))
+        .with_load(Load::body([0.0, 0.0, -1e3]))
+        .with_contact(pairs[0].contact().with_friction(Friction::coulomb(0.5)));
+    let plan = Plan::new(&scene, &Settings::default()).expect("plan");
+    let inside = |w: &Warning| matches!(w, Warning::FacetedOverlap { .. });
+    assert!(!plan.warnings().iter().any(inside), "{:?}", plan.warnings());
+}
