@@ -116,5 +116,5 @@ pub mod internal {
     pub use crate::loads::interpolate;
     pub use crate::mesh::{EDGES, cylindrical, facet_normals, facet_shape, tag_list};
     pub use crate::quadrature::triangle;
-    pub use crate::tables::{DisjointSets, Lists, distinct};
+    pub use crate::tables::{DisjointSets, Lists, ascending, distinct};
 }

@@ -80,6 +80,12 @@ impl<T> Lists<T> {
     }
 }
 
+/// The corners of a face, by which it is known however they are listed.
+pub fn ascending(mut nodes: [u32; 3]) -> [u32; 3] {
+    nodes.sort_unstable();
+    nodes
+}
+
 /// The different ones among some things, ascending.
 pub fn distinct<T: Ord>(things: impl IntoIterator<Item = T>) -> Vec<T> {
     let mut out: Vec<T> = things.into_iter().collect();

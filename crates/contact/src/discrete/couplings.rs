@@ -218,11 +218,6 @@ impl Couplings {
         }
     }
 
-    /// The axes of a coupling.
-    pub(crate) fn axes(&self, coupling: usize) -> [Vec3; 3] {
-        self.axes[coupling]
-    }
-
     /// The components along its axes of the motion of a coupling: displacement and rotation.
     pub(crate) fn along(&self, coupling: usize, motion: [Vec3; 2]) -> [f64; 6] {
         let axes = &self.axes[coupling];

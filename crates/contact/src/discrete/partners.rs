@@ -13,7 +13,8 @@ use crate::tolerances::{BESIDE, COARSER, FACING, HARDER, LOCKING, MOST_TILT, OVE
 use rayon::prelude::*;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
-use signorini_fem_mesh::{Materials, Surface, SurfaceFrame, TetMesh};
+use signorini_fem_mesh::internal::ascending;
+use signorini_fem_mesh::{Hooke, Materials, Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
 use std::collections::HashMap;
 
@@ -141,18 +142,24 @@ fn reaches_beyond(surface: &Surface, seen: &[Option<MortarNode>]) -> bool {
     seen.any(|(seen, area)| seen.as_ref().is_some_and(|s| s.area < (1.0 - OVERLAP) * area))
 }
 
+/// The materials behind the facets of a side.
+fn behind<'a>(mesh: &TetMesh, materials: &'a Materials, surface: &Surface) -> impl Iterator<Item = &'a Hooke> {
+    let region = |facet: &u32| mesh.regions()[mesh.facet_owner(*facet as usize)];
+    surface
+        .facets()
+        .iter()
+        .filter_map(move |f| materials.get(region(f)).ok())
+}
+
 /// The largest shear modulus behind a side, Pa.
 fn hardness(mesh: &TetMesh, materials: &Materials, surface: &Surface) -> f64 {
-    let region = |facet: &u32| mesh.regions()[mesh.facet_owner(*facet as usize)];
-    let shear = |region: u32| materials.get(region).map_or(0.0, |hooke| hooke.voigt()[3][3]);
-    surface.facets().iter().map(|f| shear(region(f))).fold(0.0, f64::max)
+    let shear = behind(mesh, materials, surface).map(|hooke| hooke.voigt()[3][3]);
+    shear.fold(0.0, f64::max)
 }
 
 /// Whether a body behind a side is nearly incompressible.
 fn keeps_volume(mesh: &TetMesh, materials: &Materials, surface: &Surface) -> bool {
-    let region = |facet: &u32| mesh.regions()[mesh.facet_owner(*facet as usize)];
-    let poisson = |region: u32| materials.get(region).ok()?.poisson();
-    surface.facets().iter().any(|f| poisson(region(f)) > Some(LOCKING))
+    behind(mesh, materials, surface).any(|hooke| hooke.poisson() > Some(LOCKING))
 }
 
 /// The partner of each node; `None` where meshes do not match.
@@ -233,10 +240,6 @@ fn match_facets(mesh: &TetMesh, surface: &Surface, mut found: Vec<Partner>, othe
     let mut first = |node: u32| {
         let place = mesh.points()[node as usize].map(f64::to_bits);
         *first_in.entry(place).or_insert(node)
-    };
-    let ascending = |mut nodes: [u32; 3]| {
-        nodes.sort_unstable();
-        nodes
     };
     let firsts: Vec<u32> = other.nodes().iter().map(|node| first(*node)).collect();
     let facets = other.triangles().iter();

@@ -315,7 +315,7 @@ pub(crate) fn freed(
                 coupling: k as u32,
                 tied: coupling.tied().map(|contact| contact as u32),
                 free: sizes.map(|size| size >= LEFT_FREE * largest),
-                axes: couplings.axes(k),
+                axes: couplings.axes[k],
             };
             found = Some((largest, free));
         }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
-use signorini_fem_mesh::internal::DisjointSets;
+use signorini_fem_mesh::internal::{DisjointSets, ascending};
 use signorini_fem_mesh::vec3::{Vec3, add, area_vector, combine, cross, dot, scale, sub, unit};
 use signorini_fem_mesh::{FacetTag, TetMesh};
 
@@ -140,11 +140,6 @@ struct Boundary {
     bodies: Vec<u32>,
     tags: Vec<Option<FacetTag>>,
     tree: RTree<GeomWithData<Rectangle<Vec3>, u32>>,
-}
-
-fn ascending(mut nodes: [u32; 3]) -> [u32; 3] {
-    nodes.sort_unstable();
-    nodes
 }
 
 impl Boundary {

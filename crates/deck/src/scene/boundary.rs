@@ -1,8 +1,9 @@
 //! Faces on the boundary, for surfaces that are given by elements or by nodes only.
 
+use signorini_fem_mesh::internal::ascending;
 use std::collections::BTreeMap;
 
-use super::mesh::{Raw, key};
+use super::mesh::Raw;
 use crate::model::FACES;
 
 /// Tetrahedra and numbers of the faces that no two of them share.
@@ -18,7 +19,7 @@ impl Boundary {
         let mut of_corners: BTreeMap<[u32; 3], Option<(u32, u8)>> = BTreeMap::new();
         for (tet, corners) in (0..).zip(&raw.tets) {
             for (number, face) in (1..).zip(FACES) {
-                let corners = key(face.map(|i| corners[i]));
+                let corners = ascending(face.map(|i| corners[i]));
                 let first = of_corners.entry(corners).and_modify(|face| *face = None);
                 first.or_insert(Some((tet, number)));
             }
@@ -32,7 +33,7 @@ impl Boundary {
 
     /// That with some corners.
     pub(super) fn of_corners(&self, corners: [u32; 3]) -> Option<(u32, u8)> {
-        self.of_corners.get(&key(corners)).copied()
+        self.of_corners.get(&ascending(corners)).copied()
     }
 
     /// Those of some tetrahedra, ascending as these.

@@ -6,12 +6,12 @@
 
 use std::collections::HashMap;
 
-use signorini_fem_mesh::internal::distinct;
+use signorini_fem_mesh::internal::{ascending, distinct};
 use signorini_fem_mesh::{Facet, FacetTag};
 
 use super::boundary::Boundary;
 use super::couplings::Couplings;
-use super::mesh::{Raw, key};
+use super::mesh::Raw;
 use super::numbers::Sets;
 use super::points::Points;
 use super::pretension::Sections;
@@ -62,7 +62,7 @@ impl FaceTable {
     fn face(&mut self, raw: &Raw, tet: u32, number: u8, word: &Word) -> u32 {
         let nodes = raw.face(tet, number);
         let next = self.list.len() as u32;
-        let position = *self.places.entry(key(nodes)).or_insert(next);
+        let position = *self.places.entry(ascending(nodes)).or_insert(next);
         if position == next {
             self.list.push(Face {
                 nodes,
@@ -171,7 +171,7 @@ impl FaceTable {
         let mut owners = vec![0_u8; self.list.len()];
         for tet in &raw.tets {
             for face in FACES {
-                if let Some(&at) = self.places.get(&key(face.map(|i| tet[i]))) {
+                if let Some(&at) = self.places.get(&ascending(face.map(|i| tet[i]))) {
                     owners[at as usize] = owners[at as usize].saturating_add(1);
                 }
             }

@@ -32,12 +32,6 @@ pub(super) struct Raw {
     pub(super) element_labels: Vec<u32>,
 }
 
-/// The same for a face, however its corners are listed.
-pub(super) fn key(mut nodes: [u32; 3]) -> [u32; 3] {
-    nodes.sort_unstable();
-    nodes
-}
-
 impl Raw {
     pub(super) fn new(path: &Path, sets: &Sets, bodies: &RigidBodies) -> Result<Self, DeckError> {
         let model = sets.model;

@@ -4,11 +4,12 @@
 use std::collections::BTreeMap;
 
 use signorini_contact::{Contact, Coupling};
+use signorini_fem_mesh::internal::ascending;
 use signorini_fem_mesh::vec3::{Vec3, add, centroid, dot, norm, scale};
 use signorini_fem_mesh::{FacetTag, MeshError, SurfaceFrame, TetMesh};
 
 use super::couplings::Coupling as Node;
-use super::mesh::{Raw, key};
+use super::mesh::Raw;
 use super::numbers::Sets;
 use crate::error::{DeckError, Word};
 use crate::model::{CouplingLaw, FACES, Side};
@@ -58,7 +59,7 @@ impl Faces {
                 area += norm(out);
                 let middle = centroid(&nodes.map(|n| raw.points[n as usize]));
                 centre = add(centre, scale(norm(out), middle));
-                own.insert(key(nodes), tet);
+                own.insert(ascending(nodes), tet);
             }
         }
         Ok(Self {
@@ -74,7 +75,7 @@ impl Faces {
         let mut sides: BTreeMap<u32, bool> = self.own.values().map(|tet| (*tet, true)).collect();
         let mut found = 0;
         for (tet, corners) in (0..).zip(&raw.tets) {
-            let keys = FACES.map(|face| key(face.map(|i| corners[i])));
+            let keys = FACES.map(|face| ascending(face.map(|i| corners[i])));
             let own = keys.iter().filter_map(|face| self.own.get(face));
             for _ in own.filter(|own| **own != tet) {
                 found += 1;

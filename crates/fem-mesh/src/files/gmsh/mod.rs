@@ -19,7 +19,7 @@ pub use names::GroupNames;
 pub use sizes::write_sizes;
 
 use crate::mesh::{Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets};
-use crate::tables::distinct;
+use crate::tables::{ascending, distinct};
 
 errors! {
     /// A Gmsh file that cannot be read or written.
@@ -163,14 +163,10 @@ fn mesh<const N: usize>(
 }
 
 fn on_boundary(bare: &TetMesh, facets: Vec<Facet>) -> Vec<Facet> {
-    let sorted = |mut nodes: [u32; 3]| {
-        nodes.sort_unstable();
-        nodes
-    };
-    let boundary: HashSet<_> = bare.boundary_facets().iter().map(|f| sorted(f.nodes)).collect();
+    let boundary: HashSet<_> = bare.boundary_facets().iter().map(|f| ascending(f.nodes)).collect();
     facets
         .into_iter()
-        .filter(|f| boundary.contains(&sorted(f.nodes)))
+        .filter(|f| boundary.contains(&ascending(f.nodes)))
         .collect()
 }
 
