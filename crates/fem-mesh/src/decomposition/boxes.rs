@@ -26,10 +26,12 @@ impl Decomposition {
             }
         }
         let (low, high) = mesh.extent();
-        // Indices z, y, x of the box: their order is that of the boxes, and no product overflows.
+        // most boxes first; their order is that of the boxes, and no product overflows
+        let mut axes = [2, 1, 0];
+        axes.sort_by_key(|&d: &usize| std::cmp::Reverse(boxes[d]));
         let box_of = |tet: usize| {
             let centre = vec3::centroid(&mesh.tet_points(tet));
-            [2, 1, 0].map(|d| {
+            axes.map(|d| {
                 let place = (centre[d] - low[d]) / (high[d] - low[d]) * boxes[d] as f64;
                 (place as usize).min(boxes[d] - 1)
             })

@@ -314,10 +314,11 @@ impl Builder<'_> {
         let decomposition = self.decomposition;
         let copies = |node: u32| decomposition.copies(node as usize);
         let sharers = |node: u32| copies(node).iter().map(|c| c.subdomain);
-        // number of copies and the first two subdomains, which tell most globs apart
+        // by the first subdomain, so that ranks share few rows; with the number of copies and the second one most globs
+        // are told apart
         let mut shared: Vec<([u32; 3], u32)> = (0..nodes as u32)
             .filter_map(|node| match copies(node) {
-                all @ [a, b, ..] => Some(([all.len() as u32, a.subdomain, b.subdomain], node)),
+                all @ [a, b, ..] => Some(([a.subdomain, all.len() as u32, b.subdomain], node)),
                 _ => None,
             })
             .collect();
