@@ -10,7 +10,8 @@ impl Decomposition {
     /// Cuts the bounding box of the mesh into a grid of equal boxes; each tetrahedron goes where
     /// its centroid lies.
     ///
-    /// Subdomains are numbered as their boxes, with x fastest, then y, then z. A box without
+    /// Subdomains are numbered as their boxes, slowest along the axis with most boxes (of equal ones
+    /// z before y before x), so that consecutive ones meet others in small faces. A box without
     /// tetrahedra is dropped. A box whose tetrahedra are not connected through faces becomes
     /// several subdomains, one after the other in the order of their first tetrahedra. There may
     /// thus be fewer or more subdomains than boxes: ask [`Decomposition::subdomains`]. Boxes
@@ -26,7 +27,7 @@ impl Decomposition {
             }
         }
         let (low, high) = mesh.extent();
-        // most boxes first; their order is that of the boxes, and no product overflows
+        // Indices of the box, slowest first: their order is that of the boxes, and no product overflows.
         let mut axes = [2, 1, 0];
         axes.sort_by_key(|&d: &usize| std::cmp::Reverse(boxes[d]));
         let box_of = |tet: usize| {
