@@ -20,7 +20,7 @@ impl fmt::Display for Plan {
             line(
                 "",
                 format!(
-                    "error of strains about {percent} %, within a factor of 2 to 3; discretisation_error() measures it"
+                    "error of strains about {percent} %, mostly within a factor of 3; discretisation_error() measures it"
                 ),
             )?;
         }
