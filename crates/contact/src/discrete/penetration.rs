@@ -10,7 +10,7 @@ use crate::tolerances::DEPTH;
 use signorini_fem_mesh::History;
 use signorini_tfeti::internal::PrescribedPoint;
 
-/// Refuses supports that hold contact nodes inside the obstacle, wherever it has moved, at some step.
+/// Refuses supports that hold contact nodes inside the obstacle, wherever it has moved, at some step of the stage.
 pub(super) fn check_penetration(
     scene: &Scene,
     points: &[ContactPoint],
@@ -22,7 +22,15 @@ pub(super) fn check_penetration(
         return Ok(());
     }
     let rest = Pose::default();
-    for (step, &time) in scene.analysis.times().iter().enumerate() {
+    let steps = scene.stage_steps();
+    for (step, &time) in scene
+        .analysis
+        .times()
+        .iter()
+        .enumerate()
+        .skip(steps.start)
+        .take(steps.len())
+    {
         let factors: Vec<f64> = motions.iter().map(|h| h.value(time)).collect();
         let mut deepest: Option<(f64, u32, f64, f64)> = None;
         for fixed in prescribed {

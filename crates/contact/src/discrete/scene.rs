@@ -76,7 +76,7 @@ impl DiscreteScene {
         let ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
         if !ties.is_empty() {
             // a bonded node does not move against the other body; nodes behind its side do
-            let tied = scene.contacts.iter().filter(|c| c.tied);
+            let tied = scene.contacts.iter().filter(|c| c.tied && scene.acts(c.span));
             let tags: HashSet<FacetTag> = tied.flat_map(|c| c.tags.iter().chain(&c.partner)).copied().collect();
             let sides = scene.mesh.facets().iter().filter(|f| tags.contains(&f.tag));
             let sides: HashSet<u32> = sides.flat_map(|f| f.nodes).collect();

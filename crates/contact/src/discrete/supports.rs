@@ -27,6 +27,10 @@ impl Supports {
         let mut nodes = Vec::with_capacity(scene.supports.len());
         for (index, support) in scene.supports.iter().enumerate() {
             let own = scene.support_nodes(index)?;
+            if !scene.acts(support.span) {
+                nodes.push(NodeSupport::partial(own, Directions::Nothing));
+                continue;
+            }
             let (directions, values) = match support.axis {
                 None => (support.directions.clone(), None),
                 Some(axis) => about_axis(scene, index, axis, &own)?,

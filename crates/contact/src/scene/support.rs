@@ -1,5 +1,6 @@
 //! Supports: where displacements are prescribed.
 
+use super::span::Span;
 use signorini_fem_mesh::{FacetTag, History};
 use signorini_tfeti::Directions;
 
@@ -46,6 +47,7 @@ pub struct Support {
     pub(crate) motion: Option<(Vec<[f64; 3]>, History)>,
     /// A point of the axis and its direction, of any length.
     pub(crate) axis: Option<([f64; 3], [f64; 3])>,
+    pub(crate) span: Span,
 }
 
 impl Support {
@@ -87,6 +89,7 @@ impl Support {
             directions,
             motion: None,
             axis: None,
+            span: Span::default(),
         }
     }
 
@@ -132,6 +135,39 @@ impl Support {
     pub fn with_axis(mut self, point: [f64; 3], axis: [f64; 3]) -> Self {
         self.axis = Some((point, axis));
         self
+    }
+
+    /// It holds at steps until a time, s, and from then on its nodes are free: a clamp is released. The reaction is gone
+    /// at once, at the first step that ends later, however short that is. Between the two steps the scene is set up anew.
+    /// That what is left holds the loads is checked beforehand.
+    ///
+    /// ```
+    /// use signorini_contact::{Analysis, Scene, Settings, Simulation, Support};
+    /// use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
+    ///
+    /// // a bar is stretched between two clamps, of which one is then released
+    /// let bar = Brick::new([0.2, 0.02, 0.02], [10, 2, 2]).build()?;
+    /// let pull = Support::fixed(brick::X_MAX).with_motion([1e-4, 0.0, 0.0], History::ramp(1.0, 1.0)?);
+    /// let scene = Scene::new(bar, Materials::uniform(Hooke::isotropic(2e11, 0.3)?))
+    ///     .with_support(Support::fixed(brick::X_MIN))
+    ///     .with_support(pull.with_end(1.0))
+    ///     .with_analysis(Analysis::quasistatic(2.0, 2));
+    /// let mut simulation = Simulation::new(scene, Settings::default())?;
+    /// let stretched = simulation.step()?;
+    /// assert!(stretched.reactions().supports[1].resultant.force[0] > 4e4);
+    /// let released = simulation.step()?;
+    /// assert_eq!(released.reactions().supports[1].resultant.force, [0.0; 3]);
+    /// assert!(released.displacement().iter().all(|u| u[0].abs() < 1e-10));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_end(mut self, time: f64) -> Self {
+        self.span.end = Some(time);
+        self
+    }
+
+    /// The time until which it holds, s; `None` for ever.
+    pub fn end(&self) -> Option<f64> {
+        self.span.end
     }
 
     /// Where it acts.

@@ -1,13 +1,14 @@
 //! The simulation: set-up, and what is asked of it between steps.
 
 use super::result::StepResult;
+use super::stages::check_later_stages;
 use crate::error::ContactError;
 use crate::estimate::Caches;
 use crate::model::{ConstrainedPoint, Model, check_equilibrium};
 use crate::plan::Plan;
 use crate::report::Counters;
 use crate::result::Recovered;
-use crate::scene::Scene;
+use crate::scene::{Scene, Stage};
 use crate::settings::Settings;
 use crate::solve::{Iterate, Solver};
 use crate::state::{Controller, Fingerprint, State, operator_hash};
@@ -56,10 +57,18 @@ impl Simulation {
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.
     pub fn new(mut scene: Scene, settings: Settings) -> Result<Self, ContactError> {
-        // a scene of a simulation may have been locked
-        scene.couplings.iter_mut().for_each(|c| c.locked = [None; 6]);
+        // a scene of a simulation may be that of a later stage
+        scene.enter(&Stage::default());
         let names = scene.names.clone();
-        on_pool(|| Self::set_up(scene, settings)).map_err(|error| names.tell(error))
+        let set_up = || {
+            let mut first = Self::set_up(scene, settings)?;
+            let later = check_later_stages(&first.model.scene, &first.settings)?;
+            if let Some(model) = Arc::get_mut(&mut first.model) {
+                model.plan.warn(&later);
+            }
+            Ok(first)
+        };
+        on_pool(set_up).map_err(|error| names.tell(error))
     }
 
     pub(super) fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
@@ -96,7 +105,7 @@ impl Simulation {
         })
     }
 
-    /// The plan.
+    /// The plan; where supports or contacts start or end that of the stage at hand.
     pub fn plan(&self) -> &Plan {
         &self.model.plan
     }

@@ -55,6 +55,7 @@ mod sanity;
 mod shapes;
 mod sheets;
 mod springs;
+mod stages;
 mod step_doubling;
 mod supports;
 mod tables;

@@ -18,6 +18,8 @@ pub enum Directions {
     Vectors(Vec<[f64; 3]>),
     /// The same with a list for each node of the support, in their order, for instance the normals of a curved surface.
     EachNode(Vec<Vec<[f64; 3]>>),
+    /// Nothing: a support that holds no more, or not yet, and keeps its place among the others.
+    Nothing,
 }
 
 impl Directions {
@@ -29,6 +31,7 @@ impl Directions {
             Self::Components(on) => (0..3).filter(|&c| on[c]).map(|c| AXES[c]).collect(),
             Self::Vectors(vectors) => vectors.clone(),
             Self::EachNode(vectors) => vectors.concat(),
+            Self::Nothing => Vec::new(),
         }
     }
 }
@@ -228,7 +231,8 @@ impl MergedSupports {
     pub(super) fn new(supports: &[NodeSupport], nodes: usize) -> Result<Self, TfetiError> {
         let mut fixed: BTreeMap<u32, FixedNode> = BTreeMap::new();
         let mut merged = Self::default();
-        for (s, support) in supports.iter().enumerate() {
+        let holding = |support: &NodeSupport| support.directions != Directions::Nothing;
+        for (s, support) in supports.iter().enumerate().filter(|(_, support)| holding(support)) {
             let of_nodes = unit_directions(s, support)?;
             if let Some(motion) = &support.motion {
                 motion.check(s, support.nodes.len(), supports.len())?;

@@ -1,0 +1,142 @@
+//! A state carried over to another stage of its scene: rows and points that stay keep what they have; new points stick
+//! where they are.
+
+use super::state::{Peak, State};
+use crate::error::ContactError;
+use crate::model::{ConstrainedPoint, Model};
+use crate::vec3::dot;
+use signorini_tfeti::Gluing;
+use std::collections::HashMap;
+
+impl State {
+    /// From the rows and points of one model to those of another.
+    pub(crate) fn carry_over(&mut self, old: &Model, new: &Model) -> Result<(), ContactError> {
+        let rows = same_rows(old.tfeti.gluing(), new.tfeti.gluing());
+        let vectors = self.lambda.iter_mut().chain(&mut self.f_lambda);
+        for vector in vectors.filter(|v| !v.is_empty()) {
+            *vector = carried(&rows, vector, 0.0);
+        }
+        let points = same_points(old, new);
+        if !self.sliding.is_empty() {
+            self.sliding = carried(&points, &self.sliding, false);
+        }
+        if !self.rate.is_empty() {
+            self.rate = carried(&points, &self.rate, 0.0);
+        }
+        if self.step() > 0 && new.plan.effects.history {
+            self.carry_traces(old, new, &points)?;
+        }
+        let mut peaks = vec![Peak::default(); new.bodies.count().max(1)];
+        for subdomain in (0..new.tfeti.subdomains()).filter(|_| !self.peaks.is_empty()) {
+            let before = self.peaks.get(old.bodies.of_subdomain(subdomain));
+            let peak = &mut peaks[new.bodies.of_subdomain(subdomain)];
+            *peak = peak.or(before.copied().unwrap_or_default());
+        }
+        self.peaks = peaks;
+        Ok(())
+    }
+
+    /// Points that stay keep where they stick; new ones stick where they are.
+    fn carry_traces(&mut self, old: &Model, new: &Model, points: &[Option<usize>]) -> Result<(), ContactError> {
+        let starts = [old, new].map(Model::tangential_start);
+        let mut traces = [(); 2].map(|()| vec![0.0; new.tangential_rows()]);
+        for (point, before) in new.points.iter().zip(points) {
+            let before = before.map(|k| &old.points[k]);
+            let mut rows = before
+                .into_iter()
+                .flat_map(ConstrainedPoint::along)
+                .map(|along| along.1);
+            for (direction, row, _) in point.along() {
+                let (last, older) = match rows.next() {
+                    Some(row) => self.traces(row - starts[0]),
+                    None => {
+                        let way = self.way(new, point, direction)?;
+                        (way, way)
+                    }
+                };
+                traces[0][row - starts[1]] = last;
+                traces[1][row - starts[1]] = older;
+            }
+        }
+        self.trace = traces;
+        Ok(())
+    }
+
+    /// Displacement of a point along a direction at the last step, relative to its obstacle or partner, m.
+    fn way(&self, model: &Model, point: &ConstrainedPoint, direction: [f64; 3]) -> Result<f64, ContactError> {
+        let nodes: &[[f64; 3]] = self.displacement.as_chunks().0;
+        if nodes.len() != model.scene.mesh.points().len() {
+            let reason =
+                "it does not say where the nodes are of contacts that start; continue from a state of a scene \
+                with this start or end of contacts and supports"
+                    .to_owned();
+            return Err(ContactError::Checkpoint { reason });
+        }
+        let along = |node: u32, direction: &[f64; 3]| dot(&nodes[node as usize], direction);
+        let poses = &model.discrete.poses[point.surface()];
+        let pose = self.step().checked_sub(1).and_then(|last| poses.get(last));
+        let carried = pose.map_or(0.0, |pose| dot(&pose.drag(&point.contact.centre), &direction));
+        Ok(point.contact.sides.way(&direction, along) - carried)
+    }
+}
+
+/// What is carried over of a list; what is new has this value.
+fn carried<T: Copy>(from: &[Option<usize>], list: &[T], new: T) -> Vec<T> {
+    from.iter()
+        .map(|k| k.and_then(|k| list.get(k)).copied().unwrap_or(new))
+        .collect()
+}
+
+/// For each row of one gluing the row of another that is the same.
+fn same_rows(old: &Gluing, new: &Gluing) -> Vec<Option<usize>> {
+    let keys = |gluing: &Gluing| {
+        let ranges = gluing.ranges();
+        let kinds = [
+            &ranges.normal,
+            &ranges.discs,
+            &ranges.intervals,
+            &ranges.interface,
+            &ranges.tied,
+            &ranges.equations,
+            &ranges.rigid,
+            &ranges.dirichlet,
+        ];
+        let rows = kinds.into_iter().enumerate();
+        let rows = rows.flat_map(|(kind, rows)| rows.clone().map(move |row| (kind, row)));
+        let key = |(kind, row): (usize, usize)| {
+            let entries = gluing.row(row).into_iter();
+            let entries: Vec<_> = entries
+                .map(|(subdomain, dof, c)| (subdomain, dof, c.to_bits()))
+                .collect();
+            (row, (kind, entries))
+        };
+        rows.map(key).collect::<Vec<_>>()
+    };
+    // of equal rows the first stands for the first
+    let mut known: HashMap<_, Vec<usize>> = HashMap::new();
+    for (row, key) in keys(old).into_iter().rev() {
+        known.entry(key).or_default().push(row);
+    }
+    let mut rows = vec![None; new.ranges().total()];
+    for (row, key) in keys(new) {
+        rows[row] = known.get_mut(&key).and_then(Vec::pop);
+    }
+    rows
+}
+
+/// For each point of one model the point of another that has the same contact, sides and directions.
+fn same_points(old: &Model, new: &Model) -> Vec<Option<usize>> {
+    let mut known: HashMap<(usize, u32), Vec<usize>> = HashMap::new();
+    for (k, point) in old.points.iter().enumerate() {
+        known.entry((point.surface(), point.node())).or_default().push(k);
+    }
+    let same = |a: &ConstrainedPoint, b: &ConstrainedPoint| {
+        let directions = |p: &ConstrainedPoint| p.directions().map(|d| d.0).collect::<Vec<_>>();
+        a.contact.sides == b.contact.sides && directions(a) == directions(b)
+    };
+    let find = |point: &ConstrainedPoint| {
+        let mut others = known.get(&(point.surface(), point.node())).into_iter().flatten();
+        others.find(|&&k| same(&old.points[k], point)).copied()
+    };
+    new.points.iter().map(find).collect()
+}
