@@ -104,7 +104,7 @@ impl DiscreteScene {
         let equation_rows = independent_equations(&equations, &decomposition, held, &constraints)?.len();
         let nodes = scene.mesh.points().len();
         let prescribed = prescribed_points(&constraints, &supports.nodes, nodes)?;
-        check_penetration(scene, &points, &prescribed, (&supports.motions, &poses), rounding)?;
+        check_penetration(scene, &points, &prescribed, (&supports, &poses), rounding)?;
         let loads = nodal_loads(scene, (&decomposition, &couplings), softest)?;
         // both in the order of the points
         let mut without = prescribed.iter().map(|p| p.point).peekable();

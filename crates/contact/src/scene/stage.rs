@@ -13,6 +13,8 @@ pub(crate) struct Stage {
     pub(crate) first: usize,
     /// Motions at which couplings are locked; none where none are.
     pub(crate) locked: Vec<[Option<f64>; 6]>,
+    /// Displacements at which supports started, m; none where none did.
+    pub(crate) left: Vec<Vec<[f64; 3]>>,
 }
 
 impl Scene {
@@ -63,15 +65,22 @@ impl Scene {
     pub(crate) fn stage(&self) -> Stage {
         let locked: Vec<[Option<f64>; 6]> = self.couplings.iter().map(|c| c.locked).collect();
         let any = locked.iter().flatten().any(Option::is_some);
+        let left: Vec<Vec<[f64; 3]>> = self.supports.iter().map(|s| s.left.clone()).collect();
+        let started = left.iter().any(|left| !left.is_empty());
         Stage {
             first: self.stage,
             locked: if any { locked } else { Vec::new() },
+            left: if started { left } else { Vec::new() },
         }
     }
 
     /// Sets up for a stage.
     pub(crate) fn enter(&mut self, stage: &Stage) {
         self.stage = stage.first;
+        let acting: Vec<bool> = self.supports.iter().map(|s| self.acts(s.span)).collect();
+        for (k, support) in self.supports.iter_mut().enumerate() {
+            support.left = stage.left.get(k).filter(|_| acting[k]).cloned().unwrap_or_default();
+        }
         for (k, coupling) in self.couplings.iter_mut().enumerate() {
             let own = stage.locked.get(k).copied().unwrap_or_default();
             let held = coupling.held;
@@ -91,7 +100,16 @@ impl Scene {
             Stage {
                 first,
                 locked: locked.collect(),
+                left: Vec::new(),
             }
         })
+    }
+
+    /// Whether a support starts where its nodes are left by earlier steps, in the stage that the scene is set up for or
+    /// before.
+    pub(crate) fn has_started(&self, support: usize) -> bool {
+        let span = self.supports[support].span;
+        let at_rest = |start: f64| self.analysis.time(0).is_none_or(|first| is_past(start, first));
+        self.acts(span) && span.start.is_some_and(|start| !at_rest(start))
     }
 }

@@ -98,7 +98,10 @@ impl Scene {
         let couplings = couplings.flat_map(|(k, c)| c.motions.iter().map(move |(_, h)| ("coupling", k, h)));
         let equations = self.equations.iter().enumerate();
         (loads.map(|(k, l)| ("load", k, &l.history)))
-            .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
+            .chain(supports.flat_map(|(k, s)| {
+                let motion = s.motion.as_ref().map(|(_, history)| history);
+                motion.into_iter().chain(&s.fading).map(move |h| ("support", k, h))
+            }))
             .chain(contacts.flat_map(|(k, c)| {
                 let motion = c.motion.as_ref().map(|(_, history)| history);
                 let turn = c.rotation.as_ref().map(|rotation| &rotation.angle);

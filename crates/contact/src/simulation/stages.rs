@@ -37,8 +37,19 @@ impl Simulation {
                 due = true;
             }
         }
+        if !due {
+            return Ok(());
+        }
         stage.first = stage.first.max(first);
-        if due { self.enter(&stage) } else { Ok(()) }
+        let mut next = scene.clone();
+        next.enter(&stage);
+        for k in (0..next.supports.len()).filter(|&k| next.has_started(k) && next.supports[k].left.is_empty()) {
+            stage.left.resize(next.supports.len(), Vec::new());
+            let nodes = next.support_nodes(k)?;
+            let places = state.places(next.mesh.points().len())?;
+            stage.left[k] = nodes.iter().map(|node| places[*node as usize]).collect();
+        }
+        self.enter(&stage)
     }
 
     /// Sets the scene up anew for a stage, and goes on from the state.

@@ -62,16 +62,22 @@ impl State {
         Ok(())
     }
 
+    /// Displacements of so many nodes at the last step, m.
+    pub(crate) fn places(&self, nodes: usize) -> Result<&[[f64; 3]], ContactError> {
+        let places: &[[f64; 3]] = self.displacement.as_chunks().0;
+        if places.len() == nodes {
+            return Ok(places);
+        }
+        let reason =
+            "it does not say where the nodes were when a support or a contact starts or ends; continue from a \
+            state of a scene in which it does"
+                .to_owned();
+        Err(ContactError::Checkpoint { reason })
+    }
+
     /// Displacement of a point along a direction at the last step, relative to its obstacle or partner, m.
     fn way(&self, model: &Model, point: &ConstrainedPoint, direction: [f64; 3]) -> Result<f64, ContactError> {
-        let nodes: &[[f64; 3]] = self.displacement.as_chunks().0;
-        if nodes.len() != model.scene.mesh.points().len() {
-            let reason =
-                "it does not say where the nodes are of contacts that start; continue from a state of a scene \
-                with this start or end of contacts and supports"
-                    .to_owned();
-            return Err(ContactError::Checkpoint { reason });
-        }
+        let nodes = self.places(model.scene.mesh.points().len())?;
         let along = |node: u32, direction: &[f64; 3]| dot(&nodes[node as usize], direction);
         let poses = &model.discrete.poses[point.surface()];
         let pose = self.step().checked_sub(1).and_then(|last| poses.get(last));

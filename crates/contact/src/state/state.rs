@@ -248,7 +248,8 @@ impl State {
     /// What it says of couplings.
     fn moved(&self) -> impl Iterator<Item = &f64> {
         let locked = self.stage.locked.iter().flatten().flatten();
-        self.motions.iter().flatten().chain(locked)
+        let left = self.stage.left.iter().flatten().flatten();
+        self.motions.iter().flatten().chain(locked).chain(left)
     }
 
     /// All vectors of numbers.
