@@ -6,6 +6,7 @@
 //! `error`.
 
 mod assembly;
+mod change;
 mod coupling;
 mod elastic;
 mod equation;
