@@ -383,8 +383,8 @@ fn says_the_same(
     node: (u32, f64),
     held: &PrescribedDirection,
 ) -> bool {
-    let support = &scene.supports[held.support];
-    support.motion.is_none() && support.left.is_empty() && stays(scene, coupling, node, held.direction)
+    let rests = scene.supports[held.support].motion.is_none() && !scene.has_started(held.support);
+    rests && stays(scene, coupling, node, held.direction)
 }
 
 /// Whether what is held of a coupling keeps a node where it is along a direction.

@@ -335,7 +335,7 @@ impl Contact {
 
     /// It acts at steps that end later than a time, s; before, there is nothing that could be touched. Friction then acts
     /// against displacements from where the sides were at the last step without it. What has moved into each other is
-    /// pressed apart at once.
+    /// pressed apart at once, and [tied](Self::tied) sides are drawn together.
     pub fn with_start(mut self, time: f64) -> Self {
         self.span.start = Some(time);
         self

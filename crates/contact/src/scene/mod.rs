@@ -1,8 +1,8 @@
 //! The scene: plain data on what is to be simulated, not how.
 //!
 //! Mesh, materials, supports, loads, contact surfaces with their gaps and friction, how the mesh is partitioned, and
-//! the times with their difference formula (`time`), what acts in which of them (`stage`). Everything here is what a user writes; nodes, rows and numbers of
-//! the mesh come in `discrete`.
+//! the times with their difference formula (`time`), and what acts in which steps (`stage`). Everything here is what a
+//! user writes; nodes, rows and numbers of the mesh come in `discrete`.
 //!
 //! Uses: errors only (and `fem-mesh` for meshes and histories).
 //! In: calls of builders. Out: a [`Scene`] whose data can be asked one by one.

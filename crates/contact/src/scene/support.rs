@@ -145,7 +145,7 @@ impl Support {
 
     /// It holds at steps until a time, s, and from then on its nodes are free: a clamp is released. The reaction is gone
     /// at once, at the first step that ends later, however short that is. Between the two steps the scene is set up anew.
-    /// That what is left holds the loads is checked beforehand.
+    /// That what is left holds the loads is checked beforehand, which takes one more set-up for each such time.
     ///
     /// ```
     /// use signorini_contact::{Analysis, Scene, Settings, Simulation, Support};

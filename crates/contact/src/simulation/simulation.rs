@@ -61,10 +61,14 @@ impl Simulation {
         scene.enter(&Stage::default());
         let names = scene.names.clone();
         let set_up = || {
+            let start = Instant::now();
             let mut first = Self::set_up(scene, settings)?;
             let later = check_later_stages(&first.model.scene, &first.settings)?;
             if let Some(model) = Arc::get_mut(&mut first.model) {
                 model.plan.warn(&later);
+            }
+            if !later.is_empty() {
+                first.setup = start.elapsed();
             }
             Ok(first)
         };

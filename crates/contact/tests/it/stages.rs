@@ -459,3 +459,74 @@ fn halved_steps_and_the_formula_of_the_paper_pass_a_release() {
         let _ = doubling.step().expect("step");
     }
 }
+
+/// Without friction each step is a static scene of what acts in it: supports, obstacles and ties with random spans.
+#[test]
+fn random_stages_are_scenes_of_their_own() {
+    let mut rng = random(7);
+    for round in 0..24 {
+        let order = rng.random_range(1..3);
+        let own = block([2.0, 1.0, 1.0], [4, 2, 2]);
+        let other = block([2.0, 1.0, 1.0], [[4, 2, 2], [3, 3, 2]][rng.random_range(0..2)]);
+        let both = with_second(&own, &lifted(&other, 1.0));
+        let mesh = if order == 2 {
+            both.raise_order().expect("mid-nodes")
+        } else {
+            both
+        };
+        let mut span = || {
+            let [a, b] = [0, 1].map(|_| f64::from(rng.random_range(0..5)));
+            [a.min(b), a.max(b) + 1.0]
+        };
+        let spans: Vec<[f64; 2]> = (0..6).map(|_| span()).collect();
+        let push = [(); 3].map(|()| 1e7 * rng.random_range(-1.0..1.0));
+        let history = History::table((0..6).map(|k| (f64::from(k), rng.random_range(-1.0..1.0))).collect());
+        let history = history.expect("table");
+        let faces = [brick::X_MAX, brick::Y_MIN, second(brick::Z_MAX), second(brick::X_MAX)];
+        let held: Vec<[bool; 3]> = faces.iter().map(|_| [(); 3].map(|()| rng.random_bool(0.6))).collect();
+        // at one time only what acts then, or all with their spans
+        let scene = |time: Option<f64>| {
+            let acts = |span: &[f64; 2]| time.is_none_or(|t| span[0] < t && t <= span[1]);
+            let mut scene = Scene::new(mesh.clone(), steel())
+                .with_support(Support::fixed(brick::X_MIN))
+                .with_support(Support::fixed(second(brick::X_MIN)))
+                .with_load(Load::traction(brick::Z_MAX, push).with_history(history.clone()))
+                .with_load(Load::traction(second(brick::Z_MAX), push.map(|f| -f)).with_history(history.clone()))
+                .with_analysis(match time {
+                    Some(time) => Analysis::Static { time },
+                    None => Analysis::quasistatic(5.0, 5),
+                });
+            for ((face, held), span) in faces.iter().zip(&held).zip(&spans) {
+                if held.contains(&true) && acts(span) {
+                    let support = Support::components(*face, *held);
+                    // back where they were at rest, at once
+                    let fading = History::constant(0.0);
+                    scene = scene.with_support(match time {
+                        Some(_) => support,
+                        None => support.with_start(span[0]).with_end(span[1]).with_fading(fading),
+                    });
+                }
+            }
+            let between = match round % 3 {
+                0 => Contact::tied(brick::Z_MAX, second(brick::Z_MIN)),
+                _ => Contact::between(brick::Z_MAX, second(brick::Z_MIN)),
+            };
+            let floor = Contact::rigid(brick::Z_MIN).with_gap(1e-6);
+            for (contact, span) in [floor, between].into_iter().zip(&spans[4..]) {
+                if acts(span) {
+                    scene = scene.with_contact(match time {
+                        Some(_) => contact,
+                        None => contact.with_start(span[0]).with_end(span[1]),
+                    });
+                }
+            }
+            scene
+        };
+        let (simulation, steps) = run(scene(None), at(1e-8));
+        for (k, found) in steps.iter().enumerate() {
+            let (_, alone) = run(scene(Some((k + 1) as f64)), at(1e-8));
+            let off = relative_distance(simulation.scene(), &found.displacement, &alone[0].displacement);
+            assert!(off < 1e-5, "round {round}, step {k}: {off:e}");
+        }
+    }
+}
