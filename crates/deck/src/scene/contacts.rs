@@ -13,18 +13,23 @@ use crate::error::{DeckError, Fault};
 use crate::lexer::Named;
 use crate::model::{Clearance, Ignored, Law, Model, Names, Pair, Touch};
 
-/// One contact for each pair: nodes of the dependent surface touch nodes of the other one, or an obstacle. Beside them
-/// those of pairs that come back, with the pair.
+/// One contact for each pair, and those of pairs that come back, with the position of the pair.
+pub(super) struct Contacts {
+    pub(super) first: Vec<Contact>,
+    pub(super) later: Vec<(usize, Contact)>,
+}
+
+/// Nodes of the dependent surface of each pair touch nodes of the other one, or an obstacle.
 pub(super) fn contacts(
     known: Known,
     faces: &FaceTable,
     surfaces: &Names<Vec<FacetTag>>,
     leads: &[Result<Lead, FreeLead>],
     ignored: &mut Vec<Ignored>,
-) -> Result<(Vec<Contact>, Vec<(usize, Contact)>), DeckError> {
+) -> Result<Contacts, DeckError> {
     let (model, clearances) = (known.model, clearances(known.model)?);
     let spans = spans(model, ignored)?;
-    let (mut out, mut later) = (Vec::with_capacity(model.pairs.len()), Vec::new());
+    let (mut first, mut later) = (Vec::with_capacity(model.pairs.len()), Vec::new());
     for (index, (pair, spans)) in model.pairs.iter().zip(spans).enumerate() {
         let law = match &pair.law {
             Law::Contact(Touch { interaction, .. }) => {
@@ -80,10 +85,10 @@ pub(super) fn contacts(
         let mut all = spans.into_iter().map(during);
         // one that is gone all the time comes when all is over
         let over = known.timeline.spans.last().map_or(0.0, |last| last.end);
-        out.push(all.next().unwrap_or_else(|| contact.clone().with_start(over)));
+        first.push(all.next().unwrap_or_else(|| contact.clone().with_start(over)));
         later.extend(all.map(|contact| (index, contact)));
     }
-    Ok((out, later))
+    Ok(Contacts { first, later })
 }
 
 /// The positions of both surfaces of a pair, which have no face in common; the dependent one has faces of elements.

@@ -100,7 +100,10 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
 
     let mut supports = supports::supports(known, &faces, &loads.on_rigid(), model.pairs.len())?;
     supports.ignored.append(&mut notes);
-    let (mut contacts, later) = contacts::contacts(known, &faces, &surfaces, &supports.leads, &mut supports.ignored)?;
+    let contacts::Contacts {
+        first: mut contacts,
+        later,
+    } = contacts::contacts(known, &faces, &surfaces, &supports.leads, &mut supports.ignored)?;
     contacts.extend((next..).step_by(2).take(sections.0.len()).map(pretension::tie));
     parts.come_back(contacts.len(), later.iter().map(|own| own.0));
     contacts.extend(later.into_iter().map(|own| own.1));
