@@ -1,7 +1,6 @@
 //! The simulation: set-up, and what is asked of it between steps.
 
 use super::result::StepResult;
-use super::stages::check_later_stages;
 use crate::error::ContactError;
 use crate::estimate::Caches;
 use crate::model::{ConstrainedPoint, Model, check_equilibrium};
@@ -63,7 +62,7 @@ impl Simulation {
         let set_up = || {
             let start = Instant::now();
             let mut first = Self::set_up(scene, settings)?;
-            let later = check_later_stages(&first.model.scene, &first.settings)?;
+            let later = first.plan_later_stages()?;
             if let Some(model) = Arc::get_mut(&mut first.model) {
                 model.plan.warn(&later);
             }
@@ -73,6 +72,18 @@ impl Simulation {
             Ok(first)
         };
         on_pool(set_up).map_err(|error| names.tell(error))
+    }
+
+    /// Refuses what would be refused in a later stage, and makes the plans of these.
+    fn plan_later_stages(&self) -> Result<Vec<Plan>, ContactError> {
+        let scene = &self.model.scene;
+        let plan = |stage: Stage| {
+            let mut scene = scene.clone();
+            scene.enter(&stage);
+            Ok(Self::set_up(scene, self.settings.clone())?.plan().clone())
+        };
+        // what is locked only holds more
+        scene.later_stages().filter(|_| scene.has_spans()).map(plan).collect()
     }
 
     pub(super) fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {

@@ -2,9 +2,7 @@
 
 use super::simulation::{Simulation, on_pool};
 use crate::error::ContactError;
-use crate::plan::Plan;
-use crate::scene::{Scene, Stage, is_past};
-use crate::settings::Settings;
+use crate::scene::{Stage, is_past};
 use std::sync::Arc;
 
 impl Simulation {
@@ -74,16 +72,4 @@ impl Simulation {
         let (total, setup) = (self.total, self.setup + fresh.setup);
         Ok(Self { total, setup, ..fresh })
     }
-}
-
-/// Refuses what would be refused in a later stage, and makes the plans of these.
-pub(super) fn check_later_stages(scene: &Scene, settings: &Settings) -> Result<Vec<Plan>, ContactError> {
-    let check = |stage: Stage| {
-        let mut scene = scene.clone();
-        scene.enter(&stage);
-        Ok(Simulation::set_up(scene, settings.clone())?.plan().clone())
-    };
-    // what is locked only holds more
-    let stages = scene.later_stages().filter(|_| scene.has_spans());
-    stages.map(check).collect()
 }

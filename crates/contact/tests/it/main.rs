@@ -56,6 +56,7 @@ mod shapes;
 mod sheets;
 mod springs;
 mod stages;
+mod stages_start;
 mod step_doubling;
 mod supports;
 mod tables;

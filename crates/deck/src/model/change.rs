@@ -1,7 +1,6 @@
 //! `*MODEL CHANGE`.
 
 use super::property::surfaces;
-use super::step::Step;
 use crate::error::{DeckError, Fault};
 use crate::lexer::{Card, Named};
 
@@ -15,7 +14,7 @@ pub(crate) struct Change {
 }
 
 /// `*MODEL CHANGE` of contact pairs.
-pub(super) fn change(step: &mut Step, card: &Card) -> Result<(), DeckError> {
+pub(super) fn changes(card: &Card) -> Result<Vec<Change>, DeckError> {
     let of_pairs = card.value("TYPE")?.filter(|named| named.name == "CONTACTPAIR");
     if of_pairs.is_none() {
         let why = "bodies are there at all steps; contact pairs come and go with TYPE=CONTACT PAIR, and supports with \
@@ -27,8 +26,6 @@ pub(super) fn change(step: &mut Step, card: &Card) -> Result<(), DeckError> {
         (add, remove) if add == remove => return Err(card.word.expected("ADD or REMOVE")),
         (add, _) => add,
     };
-    for [slave, master] in surfaces(card)? {
-        step.changes.push(Change { add, slave, master });
-    }
-    Ok(())
+    let change = |[slave, master]: [Named; 2]| Change { add, slave, master };
+    Ok(surfaces(card)?.into_iter().map(change).collect())
 }

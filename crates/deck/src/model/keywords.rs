@@ -194,7 +194,10 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         ("DLOAD", Some(step)) => step::distributed(model, step, card, false),
         ("DSLOAD", Some(step)) => step::distributed(model, step, card, true),
         ("TEMPERATURE", Some(step)) => temperature::temperatures(model, step, card),
-        ("MODELCHANGE", Some(step)) => change::change(step, card),
+        ("MODELCHANGE", Some(step)) => {
+            step.changes.append(&mut change::changes(card)?);
+            Ok(())
+        }
         ("ENDSTEP", Some(step)) => {
             card.allow(&[])?;
             card.lines_at_most(0, "no data")?;

@@ -207,6 +207,13 @@ pub(crate) struct Pair {
     pub(crate) master: Named,
 }
 
+impl Pair {
+    /// The names of both surfaces.
+    pub(crate) fn surfaces(&self) -> [&str; 2] {
+        [&self.slave.name, &self.master.name]
+    }
+}
+
 /// What holds between the surfaces of a pair.
 #[derive(Debug, Clone)]
 pub(crate) enum Law {

@@ -1,6 +1,5 @@
 //! When contact pairs are there.
 
-use super::contacts::surfaces_of;
 use crate::error::DeckError;
 use crate::model::{Ignored, Law, Model};
 
@@ -14,7 +13,7 @@ pub(super) fn spans(model: &Model, ignored: &mut Vec<Ignored>) -> Result<Vec<Vec
         for change in &given.changes {
             let names = [change.slave.name.as_str(), change.master.name.as_str()];
             let pairs = model.pairs.iter().zip(&mut spans);
-            let own = pairs.filter(|(pair, _)| matches!(pair.law, Law::Contact(_)) && surfaces_of(pair) == names);
+            let own = pairs.filter(|(pair, _)| matches!(pair.law, Law::Contact(_)) && pair.surfaces() == names);
             let mut known = false;
             for (_, own) in own {
                 known = true;

@@ -74,7 +74,7 @@ pub(super) fn contacts(
             }
         }
         if let Law::Contact(touch) = &pair.law {
-            let given = clearances.get(&surfaces_of(pair)).copied();
+            let given = clearances.get(&pair.surfaces()).copied();
             contact = with_gap(contact, (given, takes_gap), (touch, master.is_empty()), ignored)?;
         }
         let during = |[from, until]: Span| {
@@ -141,15 +141,10 @@ fn with_gap(
     }
 }
 
-/// The names of both surfaces.
-pub(super) fn surfaces_of(pair: &Pair) -> [&str; 2] {
-    [&pair.slave.name, &pair.master.name]
-}
-
 /// The clearances of contact pairs, by their surfaces. Refuses those of no pair, and second ones of a pair.
 fn clearances(model: &Model) -> Result<BTreeMap<[&str; 2], &Clearance>, DeckError> {
     let contacts = model.pairs.iter().filter(|pair| matches!(pair.law, Law::Contact(_)));
-    let pairs: BTreeSet<[&str; 2]> = contacts.map(surfaces_of).collect();
+    let pairs: BTreeSet<[&str; 2]> = contacts.map(Pair::surfaces).collect();
     let mut known: BTreeMap<[&str; 2], &Clearance> = BTreeMap::new();
     for given in &model.clearances {
         let surfaces = [given.slave.name.as_str(), given.master.name.as_str()];
