@@ -1,6 +1,7 @@
 //! A state carried over to another stage of its scene: rows and points that stay keep what they have; new points stick
 //! where they are.
 
+use super::fingerprint::hash;
 use super::state::{Peak, State};
 use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model};
@@ -93,41 +94,41 @@ fn carried<T: Copy>(from: &[Option<usize>], list: &[T], new: T) -> Vec<T> {
         .collect()
 }
 
-/// For each row of one gluing the row of another that is the same.
+/// For each row of one gluing the row of another that is the same; of equal ones the first stands for the first.
 fn same_rows(old: &Gluing, new: &Gluing) -> Vec<Option<usize>> {
-    let keys = |gluing: &Gluing| {
-        let ranges = gluing.ranges();
-        let kinds = [
-            &ranges.normal,
-            &ranges.discs,
-            &ranges.intervals,
-            &ranges.interface,
-            &ranges.tied,
-            &ranges.equations,
-            &ranges.rigid,
-            &ranges.dirichlet,
-        ];
-        let rows = kinds.into_iter().enumerate();
-        let rows = rows.flat_map(|(kind, rows)| rows.clone().map(move |row| (kind, row)));
-        let key = |(kind, row): (usize, usize)| {
-            let entries = gluing.row(row).into_iter();
-            let entries: Vec<_> = entries
-                .map(|(subdomain, dof, c)| (subdomain, dof, c.to_bits()))
-                .collect();
-            (row, (kind, entries))
-        };
-        rows.map(key).collect::<Vec<_>>()
-    };
-    // of equal rows the first stands for the first
-    let mut known: HashMap<_, Vec<usize>> = HashMap::new();
-    for (row, key) in keys(old).into_iter().rev() {
-        known.entry(key).or_default().push(row);
-    }
     let mut rows = vec![None; new.ranges().total()];
-    for (row, key) in keys(new) {
-        rows[row] = known.get_mut(&key).and_then(Vec::pop);
+    let [old, new] = [old, new].map(hashed_rows);
+    let mut known = old.into_iter().peekable();
+    for (hash, row) in new {
+        while known.next_if(|other| other.0 < hash).is_some() {}
+        rows[row] = known.next_if(|other| other.0 == hash).map(|other| other.1);
     }
     rows
+}
+
+/// What each row says, in a number, with the row; ascending.
+fn hashed_rows(gluing: &Gluing) -> Vec<(u64, usize)> {
+    let ranges = gluing.ranges();
+    let kinds = [
+        &ranges.normal,
+        &ranges.discs,
+        &ranges.intervals,
+        &ranges.interface,
+        &ranges.tied,
+        &ranges.equations,
+        &ranges.rigid,
+        &ranges.dirichlet,
+    ];
+    let hashed = |(kind, row): (u64, usize)| {
+        let entries = gluing.row(row).into_iter();
+        let entries = entries.flat_map(|(subdomain, dof, c)| [subdomain as u64, dof as u64, c.to_bits()]);
+        (hash(std::iter::once(kind).chain(entries)), row)
+    };
+    let rows = (0..).zip(kinds);
+    let rows = rows.flat_map(|(kind, rows)| rows.clone().map(move |row| (kind, row)));
+    let mut hashed: Vec<(u64, usize)> = rows.map(hashed).collect();
+    hashed.sort_unstable();
+    hashed
 }
 
 /// For each point of one model the point of another that has the same contact, sides and directions.

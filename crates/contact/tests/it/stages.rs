@@ -315,6 +315,20 @@ fn the_plan_tells_the_largest_stage() {
     assert_eq!(largest.vector_bytes, held.vector_bytes.max(released.vector_bytes));
 }
 
+/// Steps that are solved to an estimated accuracy reach it in every stage, and the mesh is judged there.
+#[test]
+fn estimates_pass_a_release() {
+    let settings = Settings::default().with_accuracy(Accuracy::Balanced { fraction: 0.1 });
+    let mut simulation = Simulation::new(clamped_on(Friction::coulomb(0.3), Some(2.0)), settings).expect("set-up");
+    while !simulation.is_finished() {
+        let result = simulation.step().expect("step");
+        let accuracy = result.report().accuracy.expect("asked for");
+        assert!(result.report().status.converged() && accuracy.reached && accuracy.certified);
+        let error = result.discretisation_error().expect("an estimate").relative();
+        assert!(error > 0.05 && error < 1.0, "{error}");
+    }
+}
+
 /// Increments that are halved, and the paper's formula, pass a release.
 #[test]
 fn halved_steps_and_the_formula_of_the_paper_pass_a_release() {
