@@ -315,6 +315,24 @@ fn the_plan_tells_the_largest_stage() {
     assert_eq!(largest.vector_bytes, held.vector_bytes.max(released.vector_bytes));
 }
 
+/// The paper's methods carry multipliers of the coarse equality across a release, too.
+#[test]
+fn methods_agree_across_a_release() {
+    let solve = |method: Method| {
+        run(
+            clamped_on(Friction::coulomb(0.4), Some(2.0)),
+            by(method).with_tolerance(1e-8),
+        )
+    };
+    let [(simulation, first), others @ ..] = methods().map(solve);
+    for (k, other) in others.iter().enumerate() {
+        for (step, (a, b)) in first.iter().zip(&other.1).enumerate() {
+            let off = relative_distance(simulation.scene(), &a.displacement, &b.displacement);
+            assert!(off < 1e-5, "method {k}, step {step}: {off:e}");
+        }
+    }
+}
+
 /// Steps that are solved to an estimated accuracy reach it in every stage, and the mesh is judged there.
 #[test]
 fn estimates_pass_a_release() {
