@@ -156,6 +156,9 @@ signorini_fem_mesh::errors! {
             facets around it out of one of the surfaces, or give both the same motion, compliance and gap";
         HistoryValue { what: &'static str, index: usize, time: f64, value: f64 } =
             "{what} {index}: its history gives {value} at time {time} s";
+        Span { what: &'static str, index: usize, start: f64, end: f64 } =
+            "{what} {index}: it is to act from {start} s to {end} s; give finite times, not negative, the end later than \
+            the start";
         TooLarge { part: crate::part::Part, place: String, value: f64, unit: &'static str, most: f64 } =
             "{part}{place}: {value:e} {unit} are too much, squares of what follows from it would overflow (at most {most:e}); check \
             its units and its history";

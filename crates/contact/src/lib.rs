@@ -9,6 +9,7 @@
 //! | a body on a rigid obstacle | [`Scene`], [`Support`], [`Load`], [`Contact`] with a gap and a [`Friction`] law |
 //! | bodies that touch each other | [`Contact::between`]; [`ContactPair::find`] finds where |
 //! | a part of a body that is rigid; a bolt, a hinge | [`Coupling`], loaded by [`Load::on_coupling`] |
+//! | clamps that are released, contacts that come or go | [`Support::with_end`], [`Contact::with_start`] |
 //! | displacements that depend on one another; periodic cells | [`Equation`], with points by [`Coupling::point`] |
 //! | friction that depends on place or slip rate | [`Coefficient`], [`SlipBound`] |
 //! | time steps | [`Analysis`] with a [`DifferenceFormula`]; for one state [`Analysis::Static`] |

@@ -95,9 +95,9 @@ impl ContactError {
             Self::Time { step, .. } | Self::UnequalSteps { step, .. } | Self::UnconvergedHistory { step } => {
                 vec![Part::Step(*step)]
             }
-            Self::UnknownTag { what, index, .. } | Self::HistoryValue { what, index, .. } => {
-                Part::of_scene(what, *index).into_iter().collect()
-            }
+            Self::UnknownTag { what, index, .. }
+            | Self::HistoryValue { what, index, .. }
+            | Self::Span { what, index, .. } => Part::of_scene(what, *index).into_iter().collect(),
             Self::Coupling { coupling, node, .. } => {
                 let coupling = [Part::Coupling(*coupling)].into_iter();
                 coupling.chain(node.map(Part::Node)).collect()

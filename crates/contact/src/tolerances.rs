@@ -117,6 +117,13 @@ pub(crate) const SHORT_LEVER: f64 = 1.0;
 /// Depth of a supported node in an obstacle that counts, over its displacement or gap.
 pub(crate) const DEPTH: f64 = 1e-9;
 
+/// The same of a node that a support holds where an earlier step has left it, over the largest displacement of the
+/// support's nodes there: what solvers with large tolerances leave.
+pub(crate) const LEFT_DEPTH: f64 = 1e-3;
+
+/// What is left of a direction that other supports hold already.
+pub(crate) const HELD_ALREADY: f64 = 1e-8;
+
 // ---- equilibrium of free bodies (model) ----
 
 /// Work on a free motion below this part of the size of the loads is rounding.

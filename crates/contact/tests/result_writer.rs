@@ -430,3 +430,29 @@ fn points_at_nodes_are_those_of_the_surface() {
     assert_eq!(points.iter().filter(touching).count(), result.summary().active);
     assert!(result.points_at_nodes(2).is_none() && result.contact_pressure(2).is_none());
 }
+
+/// Supports and contacts that end leave their columns; the series goes on.
+#[test]
+fn stages_are_one_series() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build().expect("brick");
+    let steel = Hooke::isotropic(211.9e9, 0.277).expect("steel");
+    let floor = || Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3));
+    let scene = Scene::new(mesh, Materials::uniform(steel))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_support(Support::fixed(brick::X_MAX).with_end(0.5))
+        .with_load(Load::pressure(brick::Z_MAX, 1e8))
+        .with_contact(floor().with_end(0.25))
+        .with_contact(floor().with_start(0.75))
+        .with_boxes([3, 1, 1])
+        .with_analysis(Analysis::quasistatic(1.0, STEPS));
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+    let report = simulation.run(&mut writer(folder.path())).expect("run");
+    report.require_converged().expect("converged");
+    assert_eq!(times(&folder.path().join("beam.pvd")), [0.0, 0.25, 0.5, 0.75, 1.0]);
+    let table = read_to_string(folder.path().join("beam.csv")).expect("a table");
+    let rows: Vec<&str> = table.lines().rev().take(STEPS).collect();
+    assert!(rows[STEPS - 1].starts_with("0,0.25,"), "{table}");
+    let counts: Vec<usize> = rows.iter().map(|row| row.split(',').count()).collect();
+    assert!(counts.iter().all(|count| *count == counts[0]), "{table}");
+}

@@ -90,6 +90,7 @@
 //! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT`, `FIXED` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `XASYMM` and so on; rotations held at zero are ignored on solids; `FIXED` of the node of a section only, whose motion then stays |
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |
 //! | `*STATIC` | `DIRECT`, `SOLVER` | first increment, period, least and largest increment |
+//! | `*MODEL CHANGE` | `TYPE=CONTACT PAIR`, `ADD`, `REMOVE` | a pair comes or goes with the step: it [starts](signorini_contact::Contact::with_start) and [ends](signorini_contact::Contact::with_end) |
 //! | `*CLOAD` | `OP`, `AMPLITUDE` | forces at nodes; moments, 4 to 6, at the node of a `*DISTRIBUTING` |
 //! | `*DLOAD` | `OP`, `AMPLITUDE` | `P1` to `P4` on faces; `GRAV`, `CENTRIF` (with the square of the angular velocity; integrated exactly, in linear elements CalculiX takes the value at the centroid: 0.9 % on a coarse disc), `BX`, `BY`, `BZ` in elements, without a set in all |
 //! | `*DSLOAD` | `OP`, `AMPLITUDE` | `P` on a surface; `TRVEC`, a traction in a direction, on flat facets |
@@ -112,7 +113,12 @@
 //! - A value that jumps at the beginning of a step reaches the new value in the first increment.
 //! - `OP` is read from the first card of its kind in a step; `*DLOAD` and `*DSLOAD` are one kind. Forces at one
 //!   node in one step are added; pressures given twice on one face are refused.
-//! - Supports stay the same in all steps: a step that releases or adds one is refused.
+//! - A support that a step leaves out ([`OP=NEW`](signorini_contact::Support::with_end)), and a contact pair that it removes,
+//!   are gone in its first increment, as in CalculiX; in Abaqus the reaction fades during the step. A support that a step
+//!   [adds](signorini_contact::Support::with_start) leads its nodes from where they are along a straight line to their value
+//!   at the end of the step; with an amplitude they jump. A pair that it adds presses overlaps apart in the first increment,
+//!   not during the step. What is held of rigid bodies, couplings and nodes of equations
+//!   stays the same in all steps.
 //!
 //! # Rigid bodies
 //!

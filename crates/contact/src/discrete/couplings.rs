@@ -11,7 +11,7 @@ use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, is_finite, norm, scale, sub};
 use signorini_fem_mesh::{Decomposition, History, LoadError, SurfaceFrame};
 use signorini_tfeti::internal::{PrescribedDirection, forces_at_three, unsaid_directions};
-use signorini_tfeti::{ContactConstraint, RigidSupport, Side};
+use signorini_tfeti::{ContactConstraint, Directions, NodeSupport, RigidSupport, Side};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The couplings of a scene.
@@ -124,7 +124,8 @@ impl Couplings {
             if !relative {
                 supports.release(&nodes);
             }
-            if supports.nodes.iter().any(|s| s.nodes.is_empty()) {
+            let holds = |s: &NodeSupport| s.directions != Directions::Nothing;
+            if supports.nodes.iter().any(|s| s.nodes.is_empty() && holds(s)) {
                 let why = "a support holds nothing but some of its nodes, and says the same; leave the support out";
                 return refuse(nodes.first().copied(), why);
             }
@@ -206,6 +207,13 @@ impl Couplings {
                         "there is no tied contact of its number; they are numbered from 0, with the others",
                     )
                 })?;
+                if tied.start().or(tied.end()).is_some() {
+                    return Err(refuse(
+                        None,
+                        "its contact starts or ends, and without it no motion of one side relative to the other is \
+                        there; let the contact act at all steps",
+                    ));
+                }
                 if self.relative.insert(*contact, coupling).is_some() {
                     return Err(refuse(
                         None,
@@ -375,7 +383,8 @@ fn says_the_same(
     node: (u32, f64),
     held: &PrescribedDirection,
 ) -> bool {
-    scene.supports[held.support].motion.is_none() && stays(scene, coupling, node, held.direction)
+    let rests = scene.supports[held.support].motion.is_none() && !scene.has_started(held.support);
+    rests && stays(scene, coupling, node, held.direction)
 }
 
 /// Whether what is held of a coupling keeps a node where it is along a direction.

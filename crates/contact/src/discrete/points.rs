@@ -15,7 +15,7 @@ use super::partners::{Paired, Partners, check_overlap};
 use super::side::{Sides, mean_place, turned};
 use crate::error::ContactError;
 use crate::mortar::MortarNode;
-use crate::scene::{Pose, Scene};
+use crate::scene::{Contact, Pose, Scene};
 use crate::tolerances::SAME_NORMAL;
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh, vec3};
 use signorini_qp::vector;
@@ -83,7 +83,8 @@ impl ContactPoint {
 /// What the contacts of a scene say: each of their nodes with each of its normals. Contact by contact, nodes ascending.
 pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Result<Vec<ContactPoint>, ContactError> {
     let mut out: Vec<ContactPoint> = Vec::new();
-    for (index, (contact, paired)) in scene.contacts.iter().zip(paired).enumerate() {
+    let acting = |(_, (contact, _)): &(usize, (&Contact, &Paired))| scene.acts(contact.span);
+    for (index, (contact, paired)) in scene.contacts.iter().zip(paired).enumerate().filter(acting) {
         let (surface, fixed, partners) = (&paired.surface, paired.fixed, &paired.partners);
         let means = Means::new(&scene.mesh, (index, contact), surface, partners, rounding);
         let mids = means.as_ref().filter(|_| contact.tied).and_then(Means::matching_mids);

@@ -76,7 +76,7 @@ impl DiscreteScene {
         let ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
         if !ties.is_empty() {
             // a bonded node does not move against the other body; nodes behind its side do
-            let tied = scene.contacts.iter().filter(|c| c.tied);
+            let tied = scene.contacts.iter().filter(|c| c.tied && scene.acts(c.span));
             let tags: HashSet<FacetTag> = tied.flat_map(|c| c.tags.iter().chain(&c.partner)).copied().collect();
             let sides = scene.mesh.facets().iter().filter(|f| tags.contains(&f.tag));
             let sides: HashSet<u32> = sides.flat_map(|f| f.nodes).collect();
@@ -104,7 +104,7 @@ impl DiscreteScene {
         let equation_rows = independent_equations(&equations, &decomposition, held, &constraints)?.len();
         let nodes = scene.mesh.points().len();
         let prescribed = prescribed_points(&constraints, &supports.nodes, nodes)?;
-        check_penetration(scene, &points, &prescribed, (&supports.motions, &poses), rounding)?;
+        check_penetration(scene, &points, &prescribed, (&supports, &poses), rounding)?;
         let loads = nodal_loads(scene, (&decomposition, &couplings), softest)?;
         // both in the order of the points
         let mut without = prescribed.iter().map(|p| p.point).peekable();

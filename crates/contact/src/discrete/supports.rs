@@ -2,9 +2,10 @@
 
 use crate::error::ContactError;
 use crate::scene::Scene;
+use crate::tolerances::HELD_ALREADY;
 use signorini_fem_mesh::History;
 use signorini_fem_mesh::internal::cylindrical;
-use signorini_fem_mesh::vec3::{combine, is_finite, norm, sub, unit};
+use signorini_fem_mesh::vec3::{Vec3, combine, dot, is_finite, norm, scale, sub, unit};
 use signorini_tfeti::internal::{PrescribedDirection, prescribed_directions};
 use signorini_tfeti::{Directions, Motion, NodeSupport};
 use std::collections::BTreeMap;
@@ -25,8 +26,16 @@ impl Supports {
     pub(super) fn new(scene: &Scene) -> Result<Self, ContactError> {
         let mut motions: Vec<History> = Vec::new();
         let mut nodes = Vec::with_capacity(scene.supports.len());
+        let mut started = Vec::new();
         for (index, support) in scene.supports.iter().enumerate() {
             let own = scene.support_nodes(index)?;
+            if !scene.acts(support.span) {
+                nodes.push(NodeSupport::partial(own, Directions::Nothing));
+                continue;
+            }
+            if scene.has_started(index) {
+                started.push(index);
+            }
             let (directions, values) = match support.axis {
                 None => (support.directions.clone(), None),
                 Some(axis) => about_axis(scene, index, axis, &own)?,
@@ -40,6 +49,7 @@ impl Supports {
             }
             nodes.push(one);
         }
+        hold_where_they_are(scene, started, &mut nodes, &mut motions)?;
         let mut directions: BTreeMap<u32, Vec<_>> = BTreeMap::new();
         for direction in prescribed_directions(&nodes, scene.mesh.points().len())? {
             directions.entry(direction.node).or_default().push(direction);
@@ -63,6 +73,69 @@ impl Supports {
     /// The displacement case of a history.
     pub(super) fn case(&mut self, history: &History) -> u32 {
         case_of(&mut self.motions, history)
+    }
+}
+
+/// Supports that started later hold what those before them leave free, where it is.
+fn hold_where_they_are(
+    scene: &Scene,
+    mut started: Vec<usize>,
+    nodes: &mut [NodeSupport],
+    motions: &mut Vec<History>,
+) -> Result<(), ContactError> {
+    let start = |index: &usize| scene.supports[*index].span.start.unwrap_or(0.0);
+    started.sort_by(|a, b| start(a).total_cmp(&start(b)));
+    let mut before = nodes.to_vec();
+    started
+        .iter()
+        .for_each(|&index| before[index].directions = Directions::Nothing);
+    for index in started {
+        let (support, own) = (&scene.supports[index], &mut nodes[index]);
+        let mut held: BTreeMap<u32, Vec<Vec3>> = BTreeMap::new();
+        for PrescribedDirection { node, direction, .. } in prescribed_directions(&before, scene.mesh.points().len())? {
+            held.entry(node).or_default().push(direction);
+        }
+        if own.nodes.iter().any(|node| held.contains_key(node)) {
+            own.directions = left_free(own, &held);
+        }
+        if !support.left.is_empty() {
+            if support.left.len() != own.nodes.len() {
+                let (known, count) = (support.left.len(), own.nodes.len());
+                let reason = format!("it says where {known} nodes of support {index} are, which has {count}");
+                return Err(ContactError::Checkpoint { reason });
+            }
+            let fading = support.fading.clone().unwrap_or_else(|| History::constant(1.0));
+            own.motions.push(Motion {
+                case: case_of(motions, &fading),
+                values: support.left.clone(),
+            });
+        }
+        before[index] = own.clone();
+    }
+    Ok(())
+}
+
+/// The directions of a support that others do not hold, node by node.
+fn left_free(support: &NodeSupport, held: &BTreeMap<u32, Vec<Vec3>>) -> Directions {
+    let given = match &support.directions {
+        Directions::EachNode(lists) if lists.len() == support.nodes.len() => lists.clone(),
+        // another number than that of the nodes is refused with the others
+        Directions::EachNode(_) => return support.directions.clone(),
+        others => vec![others.vectors(); support.nodes.len()],
+    };
+    let rest = |node: &u32, direction: &Vec3| {
+        let others = held.get(node).into_iter().flatten();
+        let rest = others.fold(*direction, |rest, other| sub(rest, scale(dot(rest, *other), *other)));
+        // what is no direction is told with the others
+        let gone = norm(rest) <= HELD_ALREADY * norm(*direction) && norm(*direction) > 0.0;
+        (!gone).then_some(rest)
+    };
+    let lists = support.nodes.iter().zip(given);
+    let lists = lists.map(|(node, list)| list.iter().filter_map(|d| rest(node, d)).collect());
+    let lists: Vec<Vec<Vec3>> = lists.collect();
+    match lists.iter().all(Vec::is_empty) {
+        true => Directions::Nothing,
+        false => Directions::EachNode(lists),
     }
 }
 

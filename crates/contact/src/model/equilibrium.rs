@@ -139,11 +139,10 @@ fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Option
     };
     let loads: Vec<_> = model.loads.iter().map(work).collect();
     let mut approved: Option<Vec<f64>> = None;
-    // what is locked after a step may hold more than before
-    let lock = model.scene.couplings.iter().filter_map(|c| Some(c.pending()?.1));
-    let lock = lock.fold(f64::INFINITY, f64::min);
+    // other stages may hold more, or less
+    let steps = model.scene.stage_steps();
     let times = model.scene.analysis.times().iter().enumerate();
-    for (step, &time) in times.take_while(|(_, time)| **time <= lock * (1.0 + ROUNDING)) {
+    for (step, &time) in times.skip(steps.start).take(steps.len()) {
         let mut b = vec![0.0; motions.len()];
         let mut size = 0.0;
         for (load, (work, part)) in model.scene.loads.iter().zip(&loads) {

@@ -6,7 +6,7 @@ use super::{mesh_error, sanity};
 use crate::discrete::{ContactPoint, DiscreteScene, Supports};
 use crate::error::ContactError;
 use crate::report::Warning;
-use crate::scene::Scene;
+use crate::scene::{Scene, Stage};
 use crate::settings::{MethodKind, Settings};
 use signorini_tfeti::internal::{Forecast, HELD, HELD_MEANS, Rate, forecast_levels};
 use std::collections::BTreeSet;
@@ -55,6 +55,9 @@ pub struct Plan {
     pub coarse: usize,
     /// Time steps.
     pub steps: usize,
+    /// Stages: one more than there are steps before which supports or contacts start or end, or couplings are locked.
+    /// Sizes are those of one of them, of [`Plan::new`] of the largest.
+    pub stages: usize,
     /// The method that will be used.
     pub method: MethodKind,
     /// Bytes of the vectors that stay allocated (multipliers, displacements, loads).
@@ -76,8 +79,40 @@ impl Plan {
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, ContactError> {
-        let plan = DiscreteScene::new(scene).and_then(|discrete| Ok(Self::of(scene, &discrete, settings)?.0));
-        plan.map_err(|error| scene.names.tell(error))
+        let plan = |scene: &Scene| DiscreteScene::new(scene).and_then(|own| Ok(Self::of(scene, &own, settings)?.0));
+        let all = || {
+            if !scene.has_spans() {
+                return plan(scene);
+            }
+            let mut scene = scene.clone();
+            scene.enter(&Stage::default());
+            let mut largest = plan(&scene)?;
+            for stage in scene.later_stages().collect::<Vec<_>>() {
+                scene.enter(&stage);
+                let mut other = plan(&scene)?;
+                if other.bytes() > largest.bytes() {
+                    std::mem::swap(&mut largest, &mut other);
+                }
+                largest.warn(&[other]);
+            }
+            Ok(largest)
+        };
+        all().map_err(|error| scene.names.tell(error))
+    }
+
+    /// Takes over warnings of other stages, each kind once.
+    pub(crate) fn warn(&mut self, others: &[Self]) {
+        for warning in others.iter().flat_map(|other| &other.warnings) {
+            let kind = |w: &Warning| std::mem::discriminant(w.plain());
+            if !self.warnings.iter().any(|known| kind(known) == kind(warning)) {
+                self.warnings.push(warning.clone());
+            }
+        }
+    }
+
+    fn bytes(&self) -> u64 {
+        let cost = &self.estimate;
+        self.vector_bytes + cost.inverse_bytes + cost.coarse_bytes + cost.table_bytes
     }
 
     /// The same plan with times for a machine; [`Rate::measure`] measures this one.
@@ -165,6 +200,7 @@ impl Plan {
             ranks: settings.communicator.size(),
             coarse: 6 * subdomains,
             steps: scene.analysis.steps(),
+            stages: scene.stages().len(),
             method: if effects.contact {
                 settings.method.kind()
             } else {

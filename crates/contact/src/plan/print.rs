@@ -62,6 +62,9 @@ impl fmt::Display for Plan {
         }
         line("friction", self.friction_text())?;
         line("history", self.history_text())?;
+        if self.stages > 1 {
+            line("stages", format!("{}, set up one after another", self.stages))?;
+        }
         line("dual", format!("{} rows, coarse {}", self.dual(), self.coarse))?;
         line("method", self.method.to_string())?;
         let [vectors, inverses] = [self.vector_bytes, cost.inverse_bytes].map(mb);

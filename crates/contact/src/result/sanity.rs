@@ -219,7 +219,7 @@ fn turned_normal(model: &Model, recovered: &Recovered, u: &[f64], step: usize) -
         let turn = turned(scene, &p.contact, &pose(p.surface()), &place);
         ((p.surface(), p.node()), turn)
     });
-    let shaped = (0..scene.contacts.len()).filter(|&contact| is_shaped(model, contact));
+    let shaped = (0..scene.contacts.len()).filter(|&k| is_shaped(model, k) && scene.acts(scene.contacts[k].span));
     let without = shaped.flat_map(|contact| {
         let [first, end] = [contact, contact + 1].map(|k| discrete.conditions.partition_point(|c| c.surface < k));
         let nodes = beside(&discrete.surfaces[contact], &discrete.conditions[first..end]);

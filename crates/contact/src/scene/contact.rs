@@ -4,6 +4,7 @@ use super::friction::Friction;
 use super::gap::Gap;
 use super::obstacle::Obstacle;
 use super::pose::{Pose, Rotation};
+use super::span::Span;
 use crate::error::ContactError;
 use crate::vec3::norm;
 use signorini_fem_mesh::loads::Function;
@@ -50,6 +51,7 @@ pub struct Contact {
     pub(crate) tied: bool,
     /// Along the normal and along the surface, m/Pa.
     pub(crate) compliance: [f64; 2],
+    pub(crate) span: Span,
 }
 
 /// Angle between the normals of two neighbouring facets from which on their edge is a crease, degrees.
@@ -73,6 +75,7 @@ impl Contact {
             shape: None,
             tied: false,
             compliance: [0.0; 2],
+            span: Span::default(),
         }
     }
 
@@ -328,6 +331,31 @@ impl Contact {
     pub fn with_tangential_compliance(mut self, compliance: f64) -> Self {
         self.compliance[1] = compliance;
         self
+    }
+
+    /// It acts at steps that end later than a time, s; before, there is nothing that could be touched. Friction then acts
+    /// against displacements from where the sides were at the last step without it. What has moved into each other is
+    /// pressed apart at once, and [tied](Self::tied) sides are drawn together.
+    pub fn with_start(mut self, time: f64) -> Self {
+        self.span.start = Some(time);
+        self
+    }
+
+    /// It acts at steps until a time, s; its forces are gone at once, as those of a [support](crate::Support::with_end).
+    /// For one that comes back add another that [starts](Self::with_start) later.
+    pub fn with_end(mut self, time: f64) -> Self {
+        self.span.end = Some(time);
+        self
+    }
+
+    /// The time from which it acts, s; `None` from the beginning.
+    pub fn start(&self) -> Option<f64> {
+        self.span.start
+    }
+
+    /// The time until which it acts, s; `None` for ever.
+    pub fn end(&self) -> Option<f64> {
+        self.span.end
     }
 
     /// Compliance along the normal and along the surface, m/Pa; zero for the exact law.

@@ -162,8 +162,17 @@ impl Coupling {
 
     /// Motions that are to be locked yet, and when, s.
     pub(crate) fn pending(&self) -> Option<([bool; 6], f64)> {
+        self.locks(self.holds())
+    }
+
+    /// Motions that are locked once, and when, s.
+    pub(crate) fn lockable(&self) -> Option<([bool; 6], f64)> {
+        self.locks([0, 1, 2, 3, 4, 5].map(|c| self.held[c] || c > 2 && self.is_point()))
+    }
+
+    /// What it locks that is not held already.
+    fn locks(&self, holds: [bool; 6]) -> Option<([bool; 6], f64)> {
         let (locked, time) = self.lock?;
-        let holds = self.holds();
         let left = [0, 1, 2, 3, 4, 5].map(|c| locked[c] && !holds[c]);
         left.contains(&true).then_some((left, time))
     }

@@ -1,8 +1,8 @@
 //! The scene: plain data on what is to be simulated, not how.
 //!
 //! Mesh, materials, supports, loads, contact surfaces with their gaps and friction, how the mesh is partitioned, and
-//! the times with their difference formula (`time`). Everything here is what a user writes; nodes, rows and numbers of
-//! the mesh come in `discrete`.
+//! the times with their difference formula (`time`), and what acts in which steps (`stage`). Everything here is what a
+//! user writes; nodes, rows and numbers of the mesh come in `discrete`.
 //!
 //! Uses: errors only (and `fem-mesh` for meshes and histories).
 //! In: calls of builders. Out: a [`Scene`] whose data can be asked one by one.
@@ -20,7 +20,9 @@ mod pairs;
 mod partition;
 mod pose;
 mod scene;
+mod span;
 mod spring;
+mod stage;
 mod support;
 mod time;
 mod validate;
@@ -40,7 +42,9 @@ pub use pairs::ContactPair;
 pub use partition::Partition;
 pub(crate) use pose::Pose;
 pub use scene::Scene;
+pub(crate) use span::is_past;
 pub use spring::Spring;
+pub(crate) use stage::Stage;
 pub use support::{Place, Support};
 pub(crate) use time::Increment;
 pub use time::{Analysis, DifferenceFormula};

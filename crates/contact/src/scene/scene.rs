@@ -29,6 +29,8 @@ pub struct Scene {
     pub(crate) partition: Partition,
     pub(crate) analysis: Analysis,
     pub(crate) names: Names,
+    /// The first step of the stage that it is set up for.
+    pub(crate) stage: usize,
 }
 
 impl Scene {
@@ -49,6 +51,7 @@ impl Scene {
             partition: Partition::Automatic,
             analysis: Analysis::statics(),
             names: Names::default(),
+            stage: 0,
         }
     }
 

@@ -1,5 +1,6 @@
 //! Supports: where displacements are prescribed.
 
+use super::span::Span;
 use signorini_fem_mesh::{FacetTag, History};
 use signorini_tfeti::Directions;
 
@@ -46,6 +47,11 @@ pub struct Support {
     pub(crate) motion: Option<(Vec<[f64; 3]>, History)>,
     /// A point of the axis and its direction, of any length.
     pub(crate) axis: Option<([f64; 3], [f64; 3])>,
+    pub(crate) span: Span,
+    /// Factor of the displacements at its start.
+    pub(crate) fading: Option<History>,
+    /// The displacements at its start, one a node, m; none where it starts at rest.
+    pub(crate) left: Vec<[f64; 3]>,
 }
 
 impl Support {
@@ -87,6 +93,9 @@ impl Support {
             directions,
             motion: None,
             axis: None,
+            span: Span::default(),
+            fading: None,
+            left: Vec::new(),
         }
     }
 
@@ -132,6 +141,80 @@ impl Support {
     pub fn with_axis(mut self, point: [f64; 3], axis: [f64; 3]) -> Self {
         self.axis = Some((point, axis));
         self
+    }
+
+    /// It holds at steps until a time, s, and from then on its nodes are free: a clamp is released. The reaction is gone
+    /// at once, at the first step that ends later, however short that is. Between the two steps the scene is set up anew.
+    /// That what is left holds the loads is checked beforehand, which takes one more set-up for each such time.
+    ///
+    /// ```
+    /// use signorini_contact::{Analysis, Scene, Settings, Simulation, Support};
+    /// use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
+    ///
+    /// // a bar is stretched between two clamps, of which one is then released
+    /// let bar = Brick::new([0.2, 0.02, 0.02], [10, 2, 2]).build()?;
+    /// let pull = Support::fixed(brick::X_MAX).with_motion([1e-4, 0.0, 0.0], History::ramp(1.0, 1.0)?);
+    /// let scene = Scene::new(bar, Materials::uniform(Hooke::isotropic(2e11, 0.3)?))
+    ///     .with_support(Support::fixed(brick::X_MIN))
+    ///     .with_support(pull.with_end(1.0))
+    ///     .with_analysis(Analysis::quasistatic(2.0, 2));
+    /// let mut simulation = Simulation::new(scene, Settings::default())?;
+    /// let stretched = simulation.step()?;
+    /// assert!(stretched.reactions().supports[1].resultant.force[0] > 4e4);
+    /// let released = simulation.step()?;
+    /// assert_eq!(released.reactions().supports[1].resultant.force, [0.0; 3]);
+    /// assert!(released.displacement().iter().all(|u| u[0].abs() < 1e-10));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_end(mut self, time: f64) -> Self {
+        self.span.end = Some(time);
+        self
+    }
+
+    /// It holds at steps that end later than a time, s; before, its nodes are free. It holds them where they are at the
+    /// last step before, and a [motion](Self::with_motion) leads on from there. Directions of nodes that other supports
+    /// hold, or have held for longer, stay with these.
+    ///
+    /// ```
+    /// use signorini_contact::{Analysis, Load, Scene, Settings, Simulation, Support};
+    /// use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
+    ///
+    /// // a bar is pulled, clamped as it is, and the pull is taken away
+    /// let bar = Brick::new([0.2, 0.02, 0.02], [10, 2, 2]).build()?;
+    /// let hat = History::table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)])?;
+    /// let scene = Scene::new(bar, Materials::uniform(Hooke::isotropic(2e11, 0.3)?))
+    ///     .with_support(Support::fixed(brick::X_MIN))
+    ///     .with_support(Support::fixed(brick::X_MAX).with_start(1.0))
+    ///     .with_load(Load::force(brick::X_MAX, [4e4, 0.0, 0.0]).with_history(hat))
+    ///     .with_analysis(Analysis::quasistatic(2.0, 2));
+    /// let mut simulation = Simulation::new(scene, Settings::default())?;
+    /// simulation.step()?;
+    /// let clamped = simulation.step()?;
+    /// // the clamp keeps the force
+    /// assert!((clamped.reactions().supports[1].resultant.force[0] - 4e4).abs() < 1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn with_start(mut self, time: f64) -> Self {
+        self.span.start = Some(time);
+        self
+    }
+
+    /// The displacements at which it [starts](Self::with_start) count `history(t)` times: as this falls from one to zero,
+    /// the nodes come back to where they were at rest, or, with a [motion](Self::with_motion) that grows meanwhile, to a
+    /// place that is known beforehand.
+    pub fn with_fading(mut self, history: History) -> Self {
+        self.fading = Some(history);
+        self
+    }
+
+    /// The time from which it holds, s; `None` from the beginning.
+    pub fn start(&self) -> Option<f64> {
+        self.span.start
+    }
+
+    /// The time until which it holds, s; `None` for ever.
+    pub fn end(&self) -> Option<f64> {
+        self.span.end
     }
 
     /// Where it acts.

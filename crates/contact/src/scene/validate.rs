@@ -61,6 +61,18 @@ impl Scene {
             let value = contact.gap_history.as_ref().map_or(0.0, |h| h.value(0.0));
             check_value(("contact", index), 0.0, value)?;
         }
+        let supports = self.supports.iter().map(|s| s.span).enumerate();
+        let contacts = self.contacts.iter().map(|c| c.span).enumerate();
+        let mut spans = supports.map(|s| ("support", s)).chain(contacts.map(|c| ("contact", c)));
+        if let Some((what, (index, span))) = spans.find(|(_, (_, span))| !span.is_good()) {
+            let (start, end) = (span.start.unwrap_or(0.0), span.end.unwrap_or(f64::INFINITY));
+            return Err(ContactError::Span {
+                what,
+                index,
+                start,
+                end,
+            });
+        }
         for (index, spring) in self.springs.iter().enumerate() {
             spring.validate(index)?;
             if self.mesh.nodes_on(spring.tag).is_empty() {
@@ -86,7 +98,10 @@ impl Scene {
         let couplings = couplings.flat_map(|(k, c)| c.motions.iter().map(move |(_, h)| ("coupling", k, h)));
         let equations = self.equations.iter().enumerate();
         (loads.map(|(k, l)| ("load", k, &l.history)))
-            .chain(supports.filter_map(|(k, s)| Some(("support", k, &s.motion.as_ref()?.1))))
+            .chain(supports.flat_map(|(k, s)| {
+                let motion = s.motion.as_ref().map(|(_, history)| history);
+                motion.into_iter().chain(&s.fading).map(move |h| ("support", k, h))
+            }))
             .chain(contacts.flat_map(|(k, c)| {
                 let motion = c.motion.as_ref().map(|(_, history)| history);
                 let turn = c.rotation.as_ref().map(|rotation| &rotation.angle);

@@ -1,7 +1,7 @@
 //! The simulation: one step after another, each prepared, solved, recovered, certified and stored.
 //!
 //! `step` is one step, `accuracy` solves it until certificate or estimates are satisfied, `run` takes all steps,
-//! `halving` repeats a failed step in halves, `locks` holds couplings from a step on, `resume` continues from a stored
+//! `halving` repeats a failed step in halves, `stages` sets up anew where supports and contacts start or end, `resume` continues from a stored
 //! state, `checkpoints` (feature `checkpoint`) keeps states in a folder, `result` is what the user sees, `step_doubling`
 //! estimates errors in time.
 //!
@@ -12,13 +12,13 @@ mod accuracy;
 #[cfg(feature = "checkpoint")]
 mod checkpoints;
 mod halving;
-mod locks;
 mod observer;
 mod progress;
 mod result;
 mod resume;
 mod run;
 mod simulation;
+mod stages;
 mod step;
 mod step_doubling;
 

@@ -19,20 +19,18 @@ impl Simulation {
     /// [`ContactError::Checkpoint`] if the state does not fit; it says which part differs.
     pub fn resume(&mut self, mut state: State) -> Result<(), ContactError> {
         let refuse = |reason| Err(ContactError::Checkpoint { reason });
-        // what is locked belongs to the state
-        let is_locked = |list: &[[Option<f64>; 6]]| list.iter().flatten().any(Option::is_some);
-        let here = self.locked();
-        if here != state.locked && (is_locked(&here) || is_locked(&state.locked)) {
-            let fresh = self.set_up_locked(&state.locked);
+        let analysis = &self.model.scene.analysis;
+        if state.step() > analysis.steps() || state.stage.first >= analysis.steps() {
+            return refuse("it has more steps than this scene".to_owned());
+        }
+        // what acts and what is locked belongs to the state
+        if self.model.scene.stage() != state.stage {
+            let fresh = self.set_up_stage(&state.stage);
             let mut fresh = fresh.map_err(|error| self.model.scene.names.tell(error))?;
-            state.locked = fresh.locked();
+            state.stage = fresh.model.scene.stage();
             fresh.resume(state)?;
             *self = fresh;
             return Ok(());
-        }
-        let analysis = &self.model.scene.analysis;
-        if state.step() > analysis.steps() {
-            return refuse("it has more steps than this scene".to_owned());
         }
         let origin = self.origin.after(analysis, state.step());
         let known = state.origin.filter(|_| state.step() > 0);

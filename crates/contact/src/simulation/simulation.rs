@@ -7,7 +7,7 @@ use crate::model::{ConstrainedPoint, Model, check_equilibrium};
 use crate::plan::Plan;
 use crate::report::Counters;
 use crate::result::Recovered;
-use crate::scene::Scene;
+use crate::scene::{Scene, Stage};
 use crate::settings::Settings;
 use crate::solve::{Iterate, Solver};
 use crate::state::{Controller, Fingerprint, State, operator_hash};
@@ -56,10 +56,34 @@ impl Simulation {
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.
     pub fn new(mut scene: Scene, settings: Settings) -> Result<Self, ContactError> {
-        // a scene of a simulation may have been locked
-        scene.couplings.iter_mut().for_each(|c| c.locked = [None; 6]);
+        // a scene of a simulation may be that of a later stage
+        scene.enter(&Stage::default());
         let names = scene.names.clone();
-        on_pool(|| Self::set_up(scene, settings)).map_err(|error| names.tell(error))
+        let set_up = || {
+            let start = Instant::now();
+            let mut first = Self::set_up(scene, settings)?;
+            let later = first.plan_later_stages()?;
+            if let Some(model) = Arc::get_mut(&mut first.model) {
+                model.plan.warn(&later);
+            }
+            if !later.is_empty() {
+                first.setup = start.elapsed();
+            }
+            Ok(first)
+        };
+        on_pool(set_up).map_err(|error| names.tell(error))
+    }
+
+    /// Refuses what would be refused in a later stage, and makes the plans of these.
+    fn plan_later_stages(&self) -> Result<Vec<Plan>, ContactError> {
+        let scene = &self.model.scene;
+        let plan = |stage: Stage| {
+            let mut scene = scene.clone();
+            scene.enter(&stage);
+            Ok(Self::set_up(scene, self.settings.clone())?.plan().clone())
+        };
+        // what is locked only holds more
+        scene.later_stages().filter(|_| scene.has_spans()).map(plan).collect()
     }
 
     pub(super) fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
@@ -96,7 +120,7 @@ impl Simulation {
         })
     }
 
-    /// The plan.
+    /// The plan; where supports or contacts start or end that of the stage at hand.
     pub fn plan(&self) -> &Plan {
         &self.model.plan
     }

@@ -22,7 +22,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`ContactError::Finished`] after the last step; a breakdown of a solver. The state is then unchanged, but for
-    /// couplings that were locked before the step.
+    /// what starts, ends or is locked before the step.
     pub fn step(&mut self) -> Result<Arc<StepResult>, ContactError> {
         let analysis = &self.model.scene.analysis;
         let steps = analysis.steps();
@@ -31,8 +31,8 @@ impl Simulation {
         if let Some(last) = self.result.take().and_then(Arc::into_inner) {
             self.spare = last.recovered;
         }
-        let locked = self.lock_due();
-        locked.map_err(|error| self.model.scene.names.tell(error))?;
+        let entered = self.enter_due();
+        entered.map_err(|error| self.model.scene.names.tell(error))?;
         let result = on_pool(|| self.take_step(whole)).map_err(|error| self.model.scene.names.tell(error))?;
         let result = Arc::new(result);
         self.total += result.report.counters;
@@ -200,6 +200,9 @@ impl Simulation {
         let motions = model.coupling_motions(&recovered.torn).into_iter().enumerate();
         let along = |(k, motion)| model.discrete.couplings.along(k, motion);
         kept.motions = motions.map(along).collect();
+        if model.scene.has_spans() && model.scene.stage_steps().end < model.plan.steps {
+            kept.displacement = model.tfeti.nodal_mean(&recovered.torn);
+        }
         if history && model.any_law(Friction::depends_on_rate) {
             kept.rate = recovered.points.iter().map(|p| p.slip_rate).collect();
             result.report.counters.rate_updates += 1;

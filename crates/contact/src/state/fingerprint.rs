@@ -104,7 +104,8 @@ fn mix(mut x: u64) -> u64 {
     x ^ (x >> 31)
 }
 
-fn hash(words: impl Iterator<Item = u64>) -> u64 {
+/// A number for a list of them.
+pub(super) fn hash(words: impl Iterator<Item = u64>) -> u64 {
     words.fold(1, |hash, word| mix(hash ^ word).wrapping_add(1))
 }
 

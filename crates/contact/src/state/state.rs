@@ -3,6 +3,7 @@
 use super::fingerprint::{Fingerprint, seal};
 use super::tolerance::Controller;
 use crate::error::ContactError;
+use crate::scene::Stage;
 use crate::tolerances::MOST_HALVINGS;
 
 /// What one step passes to the next.
@@ -41,8 +42,10 @@ pub struct State {
     pub(crate) shortest_step: f64,
     /// Motions of couplings at the last step, along their axes.
     pub(crate) motions: Vec<[f64; 6]>,
-    /// Motions at which couplings are locked; none where none are.
-    pub(crate) locked: Vec<[Option<f64>; 6]>,
+    /// Displacements of all nodes at the last step, m; empty where neither supports nor contacts start or end later.
+    pub(crate) displacement: Vec<f64>,
+    /// The stage whose rows and points its numbers belong to.
+    pub(crate) stage: Stage,
     /// What its numbers refer to; `None` if that is not to be compared.
     pub(crate) origin: Option<Fingerprint>,
     /// Of each product what it was made from and came to be, see [`seal`].
@@ -63,7 +66,7 @@ pub(crate) struct Peak {
 
 impl Peak {
     /// The larger of both, one by one.
-    fn or(self, other: Self) -> Self {
+    pub(super) fn or(self, other: Self) -> Self {
         Self {
             multipliers: self.multipliers.max(other.multipliers),
             force: self.force.max(other.force),
@@ -97,6 +100,8 @@ pub(crate) struct Kept {
     pub(crate) shortest_step: f64,
     /// Motions of couplings.
     pub(crate) motions: Vec<[f64; 6]>,
+    /// Displacements of all nodes, m.
+    pub(crate) displacement: Vec<f64>,
 }
 
 impl State {
@@ -172,6 +177,7 @@ impl State {
         self.effort = new.effort;
         self.shortest_step = new.shortest_step;
         self.motions = new.motions;
+        self.displacement = new.displacement;
         if !new.between {
             self.step += 1;
             if let Some(origin) = &mut self.origin {
@@ -186,15 +192,6 @@ impl State {
         self.peaks.resize(sizes.len(), Peak::default());
         for (peak, size) in self.peaks.iter_mut().zip(sizes) {
             *peak = peak.or(*size);
-        }
-    }
-
-    /// Puts others in the place of some rows of dual vectors: these of them, or such that nothing acts on.
-    pub(crate) fn replace_rows(&mut self, rows: std::ops::Range<usize>, others: &[Option<usize>]) {
-        let vectors = self.lambda.iter_mut().chain(&mut self.f_lambda);
-        for vector in vectors.filter(|v| !v.is_empty()) {
-            let before = vector[rows.clone()].to_vec();
-            vector.splice(rows.clone(), others.iter().map(|k| k.map_or(0.0, |k| before[k])));
         }
     }
 
@@ -236,6 +233,8 @@ impl State {
             "it says that a step was halved more often than it can be"
         } else if !self.numbers().flatten().chain(self.moved()).all(|v| v.is_finite()) {
             "it contains NaN or infinity"
+        } else if self.stage.first > self.step {
+            "it says that it belongs to steps that it has not reached"
         } else if self.unconverged.is_some_and(|k| k >= self.step) {
             "it says that a step did not converge that it has not solved"
         } else if !sizes.all(|v| v.is_finite() && v >= 0.0) {
@@ -248,14 +247,15 @@ impl State {
 
     /// What it says of couplings.
     fn moved(&self) -> impl Iterator<Item = &f64> {
-        let locked = self.locked.iter().flatten().flatten();
-        self.motions.iter().flatten().chain(locked)
+        let locked = self.stage.locked.iter().flatten().flatten();
+        let left = self.stage.left.iter().flatten().flatten();
+        self.motions.iter().flatten().chain(locked).chain(left)
     }
 
     /// All vectors of numbers.
     fn numbers(&self) -> impl Iterator<Item = &Vec<f64>> {
         let pairs = [&self.lambda, &self.f_lambda, &self.multiplier, &self.trace];
-        pairs.into_iter().flatten().chain([&self.rate])
+        pairs.into_iter().flatten().chain([&self.rate, &self.displacement])
     }
 }
 

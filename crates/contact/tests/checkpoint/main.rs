@@ -1,7 +1,7 @@
 //! States as bytes: what was stored and read back is the same state, and continues bit for bit.
 //! Stands alone, so that it runs with the feature `checkpoint` and no other.
 
-mod locks;
+mod stages;
 
 use allocation_counter::measure;
 use signorini_contact::{

@@ -55,6 +55,8 @@ mod sanity;
 mod shapes;
 mod sheets;
 mod springs;
+mod stages;
+mod stages_start;
 mod step_doubling;
 mod supports;
 mod tables;

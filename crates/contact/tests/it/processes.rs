@@ -79,6 +79,8 @@ fn other_scenes_and_methods_have_the_same_bits() {
     }
     let linear = loaded_brick(mesh([9, 3, 3]), ramp()).with_subdomains(9);
     the_same_on(&[2, 4], &linear, Settings::default(), "linear");
+    let held = linear.with_support(Support::components(brick::Z_MIN, [false, false, true]));
+    the_same_on(&[2, 3], &held, Settings::default(), "held across the cuts");
     let quadratic = loaded_brick(mesh([6, 2, 2]).raise_order().expect("quadratic"), ramp())
         .with_contact(foundation(Friction::coulomb(0.3)))
         .with_subdomains(6);

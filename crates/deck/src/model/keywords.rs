@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::assembly::Assembly;
 use super::step::{self, SOLVER, Step};
-use super::{Ignored, Model, coupling, elastic, equation, mesh, orientation, property, temperature, transform};
+use super::{Ignored, Model, change, coupling, elastic, equation, mesh, orientation, property, temperature, transform};
 use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
 
@@ -12,7 +12,7 @@ use crate::lexer::Card;
 const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, *EXPANSION, \
 *INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *ORIENTATION, *TRANSFORM, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, \
 *CLEARANCE, *TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *PRE-TENSION SECTION, *EQUATION, *PART, *ASSEMBLY, *INSTANCE, \
-*SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *END STEP, *INCLUDE, and requests for output, \
+*SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *MODEL CHANGE, *END STEP, *INCLUDE, and requests for output, \
 which are ignored and reported";
 
 /// Requests for output, which ask nothing of the solution.
@@ -58,10 +58,7 @@ const REFUSED: [(&str, &str); 8] = [
         "SHELLSECTION BEAMSECTION MEMBRANESECTION SPRING MASS",
         "only solid elements C3D4 and C3D10 are read",
     ),
-    (
-        "MODELCHANGE CHANGEFRICTION",
-        "bodies, contacts and coefficients of friction hold for all steps",
-    ),
+    ("CHANGEFRICTION", "coefficients of friction hold for all steps"),
     (
         "CONTACTINTERFERENCE",
         "overlaps press from the first step on; give that of a pair by *CLEARANCE, negative",
@@ -189,12 +186,18 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
             let why = "the step before has not ended; put *END STEP before this one";
             Err(card.word.cannot(why))
         }
-        ("STATIC" | "CLOAD" | "DLOAD" | "DSLOAD" | "TEMPERATURE" | "ENDSTEP", None) => Err(card.word.cannot(INSIDE)),
+        ("STATIC" | "CLOAD" | "DLOAD" | "DSLOAD" | "TEMPERATURE" | "MODELCHANGE" | "ENDSTEP", None) => {
+            Err(card.word.cannot(INSIDE))
+        }
         ("STATIC", Some(step)) => step.procedure(model, card),
         ("CLOAD", Some(step)) => step::forces(model, step, card),
         ("DLOAD", Some(step)) => step::distributed(model, step, card, false),
         ("DSLOAD", Some(step)) => step::distributed(model, step, card, true),
         ("TEMPERATURE", Some(step)) => temperature::temperatures(model, step, card),
+        ("MODELCHANGE", Some(step)) => {
+            step.changes.append(&mut change::changes(card)?);
+            Ok(())
+        }
         ("ENDSTEP", Some(step)) => {
             card.allow(&[])?;
             card.lines_at_most(0, "no data")?;

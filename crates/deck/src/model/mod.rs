@@ -6,6 +6,7 @@
 //! `error`.
 
 mod assembly;
+mod change;
 mod coupling;
 mod elastic;
 mod equation;
@@ -204,6 +205,13 @@ pub(crate) struct Pair {
     pub(crate) law: Law,
     pub(crate) slave: Named,
     pub(crate) master: Named,
+}
+
+impl Pair {
+    /// The names of both surfaces.
+    pub(crate) fn surfaces(&self) -> [&str; 2] {
+        [&self.slave.name, &self.master.name]
+    }
 }
 
 /// What holds between the surfaces of a pair.

@@ -219,7 +219,7 @@ pub(super) fn pair(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         reach.map(|reach| (named.word, reach))
     });
     let adjust = adjust.transpose()?;
-    surfaces(model, card, &Law::Contact(Touch { interaction, adjust }))
+    pairs(model, card, &Law::Contact(Touch { interaction, adjust }))
 }
 
 /// The value of a parameter that is a distance.
@@ -255,12 +255,12 @@ pub(super) fn tie(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         adjust: adjust != Some(1),
         tolerance: tolerance.transpose()?,
     };
-    surfaces(model, card, &Law::Tied(tie))
+    pairs(model, card, &Law::Tied(tie))
 }
 
-/// The lines of pairs of surfaces.
-fn surfaces(model: &mut Model, card: &Card, law: &Law) -> Result<(), DeckError> {
-    for line in &card.lines {
+/// The lines of pairs of surfaces: the dependent and the independent one.
+pub(super) fn surfaces(card: &Card) -> Result<Vec<[Named; 2]>, DeckError> {
+    let pair = |line: &Word| {
         let wanted = "the dependent (slave) and the independent (master) surface";
         let fields = line.at_most(2, wanted)?;
         let named = |text: &str| Named {
@@ -268,17 +268,23 @@ fn surfaces(model: &mut Model, card: &Card, law: &Law) -> Result<(), DeckError> 
             word: line.part(text),
         };
         match fields[..] {
-            [slave, master] if !slave.is_empty() && !master.is_empty() => model.pairs.push(Pair {
-                law: law.clone(),
-                slave: named(slave),
-                master: named(master),
-            }),
-            _ => return Err(line.expected(wanted)),
+            [slave, master] if !slave.is_empty() && !master.is_empty() => Ok([named(slave), named(master)]),
+            _ => Err(line.expected(wanted)),
         }
+    };
+    match card.lines.is_empty() {
+        true => Err(card.word.cannot("the pair has no surfaces; name two in a line")),
+        false => card.lines.iter().map(pair).collect(),
     }
-    if card.lines.is_empty() {
-        return Err(card.word.cannot("the pair has no surfaces; name two in a line"));
-    }
+}
+
+fn pairs(model: &mut Model, card: &Card, law: &Law) -> Result<(), DeckError> {
+    let pairs = surfaces(card)?.into_iter().map(|[slave, master]| Pair {
+        law: law.clone(),
+        slave,
+        master,
+    });
+    model.pairs.extend(pairs);
     Ok(())
 }
 

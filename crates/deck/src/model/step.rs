@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use super::change::Change;
 use super::mesh::target;
 use super::{Ignored, Model};
 use crate::error::{DeckError, Fault, Word};
@@ -159,6 +160,8 @@ pub(crate) struct Step {
     pub(crate) forces: Conditions<Components>,
     pub(crate) distributed: Conditions<DistributedKind>,
     pub(crate) temperatures: Conditions<()>,
+    /// Contact pairs that come or go.
+    pub(crate) changes: Vec<Change>,
 }
 
 impl Step {
@@ -195,6 +198,7 @@ impl Step {
             forces: Conditions::default(),
             distributed: Conditions::default(),
             temperatures: Conditions::default(),
+            changes: Vec::new(),
         })
     }
 

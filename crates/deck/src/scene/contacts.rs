@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use signorini_contact::{Contact, Friction};
 use signorini_fem_mesh::FacetTag;
 
+use super::changes::{Span, spans};
 use super::faces::{FaceTable, Known};
 use super::rigid::{FreeLead, Lead, obstacle};
 use super::ties;
@@ -12,17 +13,24 @@ use crate::error::{DeckError, Fault};
 use crate::lexer::Named;
 use crate::model::{Clearance, Ignored, Law, Model, Names, Pair, Touch};
 
-/// One contact for each pair: nodes of the dependent surface touch nodes of the other one, or an obstacle.
+/// One contact for each pair, and those of pairs that come back, with the position of the pair.
+pub(super) struct Contacts {
+    pub(super) first: Vec<Contact>,
+    pub(super) later: Vec<(usize, Contact)>,
+}
+
+/// Nodes of the dependent surface of each pair touch nodes of the other one, or an obstacle.
 pub(super) fn contacts(
     known: Known,
     faces: &FaceTable,
     surfaces: &Names<Vec<FacetTag>>,
     leads: &[Result<Lead, FreeLead>],
     ignored: &mut Vec<Ignored>,
-) -> Result<Vec<Contact>, DeckError> {
+) -> Result<Contacts, DeckError> {
     let (model, clearances) = (known.model, clearances(known.model)?);
-    let mut out = Vec::with_capacity(model.pairs.len());
-    for pair in &model.pairs {
+    let spans = spans(model, ignored)?;
+    let (mut first, mut later) = (Vec::with_capacity(model.pairs.len()), Vec::new());
+    for (index, (pair, spans)) in model.pairs.iter().zip(spans).enumerate() {
         let law = match &pair.law {
             Law::Contact(Touch { interaction, .. }) => {
                 let Named { name, word } = interaction;
@@ -66,12 +74,21 @@ pub(super) fn contacts(
             }
         }
         if let Law::Contact(touch) = &pair.law {
-            let given = clearances.get(&surfaces_of(pair)).copied();
+            let given = clearances.get(&pair.surfaces()).copied();
             contact = with_gap(contact, (given, takes_gap), (touch, master.is_empty()), ignored)?;
         }
-        out.push(contact);
+        let during = |[from, until]: Span| {
+            let begins = |step: Option<usize>| step.and_then(|step| known.timeline.spans.get(step)).map(|s| s.start);
+            let contact = begins(from).map_or(contact.clone(), |time| contact.clone().with_start(time));
+            begins(until).map_or(contact.clone(), |time| contact.with_end(time))
+        };
+        let mut all = spans.into_iter().map(during);
+        // one that is gone all the time comes when all is over
+        let over = known.timeline.spans.last().map_or(0.0, |last| last.end);
+        first.push(all.next().unwrap_or_else(|| contact.clone().with_start(over)));
+        later.extend(all.map(|contact| (index, contact)));
     }
-    Ok(out)
+    Ok(Contacts { first, later })
 }
 
 /// The positions of both surfaces of a pair, which have no face in common; the dependent one has faces of elements.
@@ -124,15 +141,10 @@ fn with_gap(
     }
 }
 
-/// The names of both surfaces.
-fn surfaces_of(pair: &Pair) -> [&str; 2] {
-    [&pair.slave.name, &pair.master.name]
-}
-
 /// The clearances of contact pairs, by their surfaces. Refuses those of no pair, and second ones of a pair.
 fn clearances(model: &Model) -> Result<BTreeMap<[&str; 2], &Clearance>, DeckError> {
     let contacts = model.pairs.iter().filter(|pair| matches!(pair.law, Law::Contact(_)));
-    let pairs: BTreeSet<[&str; 2]> = contacts.map(surfaces_of).collect();
+    let pairs: BTreeSet<[&str; 2]> = contacts.map(Pair::surfaces).collect();
     let mut known: BTreeMap<[&str; 2], &Clearance> = BTreeMap::new();
     for given in &model.clearances {
         let surfaces = [given.slave.name.as_str(), given.master.name.as_str()];

@@ -91,6 +91,11 @@ impl Track {
         }
     }
 
+    /// Takes the removal by a step back: values stay as they were.
+    pub(super) fn keep(&mut self, step: usize) {
+        self.events.retain(|event| *event != (step, None));
+    }
+
     /// Whether a step removes it.
     pub(super) fn is_removed_in(&self, step: usize) -> bool {
         self.event(step) == Some(None)

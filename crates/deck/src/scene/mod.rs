@@ -5,10 +5,12 @@
 //! solver is refused here, with its place. May use `model`, `lexer`, `error`.
 
 mod boundary;
+mod changes;
 mod contacts;
 mod couplings;
 mod equations;
 mod faces;
+mod held;
 mod history;
 mod loads;
 mod materials;
@@ -98,8 +100,13 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
 
     let mut supports = supports::supports(known, &faces, &loads.on_rigid(), model.pairs.len())?;
     supports.ignored.append(&mut notes);
-    let mut contacts = contacts::contacts(known, &faces, &surfaces, &supports.leads, &mut supports.ignored)?;
+    let contacts::Contacts {
+        first: mut contacts,
+        later,
+    } = contacts::contacts(known, &faces, &surfaces, &supports.leads, &mut supports.ignored)?;
     contacts.extend((next..).step_by(2).take(sections.0.len()).map(pretension::tie));
+    parts.come_back(contacts.len(), later.iter().map(|own| own.0));
+    contacts.extend(later.into_iter().map(|own| own.1));
     let warm = temperatures::temperatures(known, &mut supports.ignored)?;
     let (equations, words): (Vec<_>, Vec<_>) = equations::equations(known, &supports.rigid)?.into_iter().unzip();
     parts.equations = words.iter().map(Word::told).collect();

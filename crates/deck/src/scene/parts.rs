@@ -10,7 +10,7 @@ use crate::model::{Law, Names, Pair};
 /// Lines and names by the numbers of the scene.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Parts {
-    contacts: Vec<String>,
+    contacts: Vec<Option<String>>,
     pub(super) supports: Vec<String>,
     pub(super) couplings: Vec<String>,
     pub(super) equations: Vec<String>,
@@ -51,9 +51,16 @@ impl Parts {
             nodes,
             elements: elements.map(|(tet, &label)| (label, region(tet))).collect(),
             sections: model.sections.iter().map(|s| s.elset.word.told()).collect(),
-            contacts: model.pairs.iter().map(contact).collect(),
+            contacts: model.pairs.iter().map(|pair| Some(contact(pair))).collect(),
             ..Self::default()
         }
+    }
+
+    /// Notes that pairs come back as the contacts behind so many.
+    pub(super) fn come_back(&mut self, contacts: usize, pairs: impl Iterator<Item = usize>) {
+        let names: Vec<_> = pairs.map(|pair| self.contacts.get(pair).cloned().flatten()).collect();
+        self.contacts.resize(contacts, None);
+        self.contacts.extend(names);
     }
 
     /// Notes the tags of surfaces.
@@ -70,7 +77,7 @@ impl Parts {
             section.map_or_else(|| label.to_string(), |section| format!("{label} in {section}"))
         };
         match part {
-            Part::Contact(index) => self.contacts.get(index).cloned(),
+            Part::Contact(index) => self.contacts.get(index).cloned().flatten(),
             Part::Support(index) => self.supports.get(index).cloned(),
             Part::Coupling(index) => self.couplings.get(index).cloned(),
             Part::Equation(index) => self.equations.get(index).cloned(),

@@ -7,12 +7,13 @@ use signorini_fem_mesh::History;
 
 use super::couplings::Coupling as Node;
 use super::faces::{FaceTable, Known};
+use super::held::Held;
 use super::history::{Histories, Track};
 use super::pretension::ONE;
 use super::rigid::{FreeLead, Lead, all_components, rigid_components};
 use super::spread::coupled_nodes;
 use crate::error::{DeckError, Word};
-use crate::model::{COMPONENT, Components, Condition, Given, Ignored, Target};
+use crate::model::{COMPONENT, Components, Condition, Ignored, Target};
 
 /// Name of what is given on nodes by their numbers.
 const SINGLE: &str = "nodes";
@@ -20,20 +21,16 @@ const SINGLE: &str = "nodes";
 /// Name of a target, and the first word that is it.
 type Owner = (String, Word);
 
-/// A held component of a node: the target that it is given on first, and what the steps say.
-#[derive(Clone)]
-struct Held {
-    owner: usize,
-    track: Track,
-    /// Given before the first step, which may say it anew.
-    before: bool,
-}
+/// A node of the mesh, or the position of one, and a component.
+type Key = (u32, usize);
 
 /// Held components by node of the mesh and component, and by position of nodes of rigid bodies and couplings.
 #[derive(Default)]
 struct Table {
-    held: BTreeMap<(u32, usize), Held>,
-    rigid: BTreeMap<(u32, usize), Held>,
+    held: BTreeMap<Key, Held>,
+    rigid: BTreeMap<Key, Held>,
+    /// Of the former those that are released.
+    released: Vec<(Key, Held)>,
     /// The first and the last step that lock the node of a section.
     locks: BTreeMap<u32, [usize; 2]>,
     owners: Vec<Owner>,
@@ -81,12 +78,12 @@ pub(super) fn supports(
         for line in &given.boundary.lines {
             table.add(known, Some(step), line)?;
         }
-        let elastic = table.held.iter();
-        let elastic = elastic.map(|(key, held)| (known.raw.node_labels[key.0 as usize], key.1, held));
-        let rigid = table.rigid.iter();
-        let rigid = rigid.map(|(key, held)| (known.model.nodes[key.0 as usize].label, key.1, held));
-        let released = elastic.chain(rigid).find(|r| r.2.track.is_removed_in(step));
-        let released = released.map(|(label, component, _)| (label, component));
+        let gone = table.held.iter().filter(|(_, held)| held.track.is_removed_in(step));
+        for key in gone.map(|(key, _)| *key).collect::<Vec<Key>>() {
+            table.release(key, step);
+        }
+        let rigid = table.rigid.iter().find(|(_, held)| held.track.is_removed_in(step));
+        let released = rigid.map(|(key, _)| (known.model.nodes[key.0 as usize].label, key.1));
         let mut locked = table.locks.iter().filter(|(_, lock)| removes && lock[1] < step);
         let unlocked = || {
             locked
@@ -95,8 +92,8 @@ pub(super) fn supports(
         };
         if let (Some((label, component)), Some((word, _))) = (released.or_else(unlocked), &given.boundary.first) {
             return Err(word.cannot(format!(
-                "this releases component {} of node {label}; what is held in the first step is held to the end, so \
-                give it again here",
+                "this releases component {} of node {label}; what is held of a rigid body, a coupling or a node of \
+                equations in the first step is held to the end, so give it again here",
                 component + 1,
             )));
         }
@@ -119,27 +116,6 @@ pub(super) fn supports(
     })
 }
 
-impl Held {
-    /// Notes a value of a component of a node with this number in the deck; `step` is none before the first.
-    fn give(&mut self, step: Option<usize>, given: Given, what: &str) -> Result<(), String> {
-        let now = step.unwrap_or(0);
-        let again = !(self.before && step == Some(0));
-        if let Some(before) = self.track.given_in(now)
-            && again
-            && before != given
-            && (before.value, given.value) != (0.0, 0.0)
-        {
-            let (before, now) = (before.value, given.value);
-            return Err(format!(
-                "{what} is given {before} and {now} in one step; keep one of them"
-            ));
-        }
-        self.before = step.is_none();
-        self.track.set(now, given);
-        Ok(())
-    }
-}
-
 impl Table {
     fn owner(&mut self, target: &Target, word: &Word) -> usize {
         let name = match target {
@@ -152,6 +128,15 @@ impl Table {
             self.owners.push((name.to_owned(), word.clone()));
             self.owners.len() - 1
         })
+    }
+
+    /// Ends a component before a step.
+    fn release(&mut self, key: Key, step: usize) {
+        if let Some(mut held) = self.held.remove(&key) {
+            held.track.keep(step);
+            held.span[1] = Some(step);
+            self.released.push((key, held));
+        }
     }
 
     /// Notes a line of a step, or of the part before the first.
@@ -204,10 +189,11 @@ impl Table {
                 let label = known.model.nodes[node as usize].label;
                 let what = format!("component {} of node {label}", component + 1);
                 let new = !map.contains_key(&(key, component));
-                if new && step.is_some_and(|step| step > 0) {
+                let from = step.filter(|step| new && *step > 0);
+                if from.is_some() && inside.is_none_or(|inside| (inside, components) != (key, 3)) {
                     return Err(line.word.cannot(format!(
-                        "{what} is free in the steps before; what is held in one step has to be held from \
-                        the first one on"
+                        "{what} is free in the steps before; what is held of a rigid body, a coupling or a node of \
+                        equations in one step has to be held from the first one on"
                     )));
                 }
                 let copies = inside.map(|inside| known.raw.with_copies(inside).skip(1));
@@ -217,6 +203,7 @@ impl Table {
                         owner,
                         track: Track::new(next, &line.word),
                         before: step.is_none(),
+                        span: [from, None],
                     });
                     held.give(step, line.given, &what)
                         .map_err(|why| line.word.cannot(why))?;
@@ -379,21 +366,29 @@ impl Table {
         }: Known,
     ) -> Result<(Vec<Support>, Vec<Owner>), DeckError> {
         let mut histories = Histories::default();
-        // by target, axes, first component, history and components: nodes and their displacements
-        type Key = (usize, Option<usize>, usize, Option<usize>, [bool; 3]);
-        let mut groups: BTreeMap<Key, Vec<(u32, [f64; 3])>> = BTreeMap::new();
-        let mut held = self.held.into_iter().peekable();
-        while let Some(((node, component), first)) = held.next() {
-            let mut of_node = vec![(component, first)];
-            while let Some(&((other, component), _)) = held.peek()
-                && other == node
-            {
-                of_node.extend(held.next().map(|(_, held)| (component, held)));
-            }
+        // by target, axes, first component, history, components, steps and fading: nodes and their displacements
+        type Group = (
+            usize,
+            Option<usize>,
+            usize,
+            Option<usize>,
+            [bool; 3],
+            [Option<usize>; 2],
+            bool,
+        );
+        let mut groups: BTreeMap<Group, Vec<(u32, [f64; 3])>> = BTreeMap::new();
+        let mut all: Vec<(Key, Held)> = self.held.into_iter().chain(self.released).collect();
+        let part = |((node, component), held): &(Key, Held)| (*node, held.span, held.fades(timeline), *component);
+        all.sort_by_key(part);
+        for of_node in all.chunk_by(|a, b| {
+            let [a, b] = [a, b].map(part);
+            (a.0, a.1, a.2) == (b.0, b.1, b.2)
+        }) {
+            let (node, span, fades, _) = part(&of_node[0]);
             let mut moves = Vec::with_capacity(3);
-            for (component, held) in of_node {
+            for ((_, component), held) in of_node {
                 let motion = histories.add(timeline, &held.track)?;
-                moves.push((component, held.owner, motion));
+                moves.push((*component, held.owner, motion));
             }
             let all: Vec<usize> = moves.iter().filter_map(|m| Some(m.2?.1)).collect();
             // one motion takes the components that stay at zero along, as part of it
@@ -410,18 +405,27 @@ impl Table {
             for ((owner, history), (on, value)) in parts {
                 let moves = value.iter().any(|v| *v != 0.0);
                 let first = on.iter().position(|on| *on).unwrap_or(0);
-                let key = (owner, transforms.of(node), first, history.filter(|_| moves), on);
+                let key = (
+                    owner,
+                    transforms.of(node),
+                    first,
+                    history.filter(|_| moves),
+                    on,
+                    span,
+                    fades,
+                );
                 groups.entry(key).or_default().push((node, value));
             }
         }
         let (mut supports, mut names) = (Vec::new(), Vec::new());
-        for ((owner, axes, _, history, on), nodes) in groups {
+        for ((owner, axes, _, history, on, span, fades), nodes) in groups {
             let (nodes, mut values): (Vec<u32>, Vec<[f64; 3]>) = nodes.into_iter().unzip();
             if values.iter().all(|value| *value == values[0]) {
                 values.truncate(1);
             }
             let motion = history.map(|history| (values, histories.at(history)));
-            supports.push(transforms.support(axes, (nodes, on), motion));
+            let support = transforms.support(axes, (nodes, on), motion);
+            supports.push(timeline.during(support, span, fades)?);
             names.push(self.owners[owner].clone());
         }
         Ok((supports, names))

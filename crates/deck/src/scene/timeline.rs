@@ -1,6 +1,7 @@
 //! The steps on one axis of time.
 
-use signorini_contact::{Analysis, DifferenceFormula};
+use signorini_contact::{Analysis, DifferenceFormula, Support};
+use signorini_fem_mesh::History;
 
 use crate::error::{DeckError, Fault};
 use crate::model::{INCREMENTS, Model};
@@ -67,6 +68,28 @@ impl<'a> Timeline<'a> {
             (end, step.word.told())
         });
         steps.collect()
+    }
+
+    /// A support from a step on, and until another. From where its nodes are then they go, where it `fades`, along a
+    /// straight line in the first of these steps to what the steps say; else they jump.
+    pub(super) fn during(
+        &self,
+        support: Support,
+        [from, until]: [Option<usize>; 2],
+        fades: bool,
+    ) -> Result<Support, DeckError> {
+        let span = |step: Option<usize>| step.and_then(|step| self.spans.get(step));
+        let support = span(until).map_or(support.clone(), |span| support.with_end(span.start));
+        let Some(first) = span(from) else {
+            return Ok(support);
+        };
+        let line = match fades {
+            true => History::table(vec![(first.start, 1.0), (first.end, 0.0)]),
+            false => Ok(History::constant(0.0)),
+        };
+        let word = &self.model.steps[from.unwrap_or(0)].word;
+        let line = line.map_err(|error| word.fault(Fault::History(error)))?;
+        Ok(support.with_start(first.start).with_fading(line))
     }
 
     /// Backward Euler over all increments; a single one is static.

@@ -21,7 +21,8 @@ fn valid() -> String {
         *CONTACT PAIR, INTERACTION=I, TYPE=NODE TO SURFACE\nS1, S2\nS5, PLANE\n*BOUNDARY\n94, ENCASTRE\n96, 1, 6\nN5, 1, 3\n\
         *STEP, INC=20, NLGEOM=NO\n*STATIC, DIRECT\n0.25, 1., 1e-5, 0.5\n*BOUNDARY\nMORE, 3, 3, 0.\n*CLOAD, AMPLITUDE=UP\nN6, 1, 2.5\n95, 4, 1.\n\
         *DLOAD\nHERE, 1.\nALL, GRAV, 9.81, 0., 0., -1.\n*NODE FILE\nU\n*END STEP\n\
-        *STEP\n*STATIC\n*DSLOAD, OP=NEW\nS6, P, 2.\n*BOUNDARY, OP=MOD\nN5, PINNED\n*END STEP\n",
+        *STEP\n*STATIC\n*DSLOAD, OP=NEW\nS6, P, 2.\n*BOUNDARY, OP=MOD\nN5, PINNED\n\
+        *MODEL CHANGE, TYPE=CONTACT PAIR, REMOVE\nS1, S2\n*END STEP\n",
     );
     deck.replace("HERE", &format!("{element}, P{number}"))
 }

@@ -13,6 +13,7 @@ mod reading;
 mod refusals;
 mod rigid;
 mod same_bits;
+mod stages;
 mod surfaces;
 mod temperatures;
 mod ties;

@@ -18,6 +18,8 @@ pub enum Directions {
     Vectors(Vec<[f64; 3]>),
     /// The same with a list for each node of the support, in their order, for instance the normals of a curved surface.
     EachNode(Vec<Vec<[f64; 3]>>),
+    /// Nothing: a support that holds no more, or not yet, and keeps its place among the others.
+    Nothing,
 }
 
 impl Directions {
@@ -29,6 +31,7 @@ impl Directions {
             Self::Components(on) => (0..3).filter(|&c| on[c]).map(|c| AXES[c]).collect(),
             Self::Vectors(vectors) => vectors.clone(),
             Self::EachNode(vectors) => vectors.concat(),
+            Self::Nothing => Vec::new(),
         }
     }
 }
@@ -39,8 +42,8 @@ impl Directions {
 /// fixed directions counts.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Motion {
-    /// Number of the displacement case. Cases are numbered from 0, below the number of supports; several supports may
-    /// belong to one case.
+    /// Number of the displacement case. Cases are numbered from 0, below the number of supports and their motions;
+    /// several may belong to one case.
     pub case: u32,
     /// Displacement vectors in metres: one for all nodes, or one for each node of the support.
     pub values: Vec<[f64; 3]>,
@@ -75,8 +78,8 @@ pub struct NodeSupport {
     pub nodes: Vec<u32>,
     /// The directions in which they are fixed.
     pub directions: Directions,
-    /// Prescribed displacement; `None` means zero.
-    pub motion: Option<Motion>,
+    /// Prescribed displacements, which add up; none means zero.
+    pub motions: Vec<Motion>,
 }
 
 impl NodeSupport {
@@ -90,7 +93,7 @@ impl NodeSupport {
         Self {
             nodes,
             directions,
-            motion: None,
+            motions: Vec::new(),
         }
     }
 
@@ -104,18 +107,17 @@ impl NodeSupport {
         {
             *lists = keep(std::mem::take(lists), &kept);
         }
-        if let Some(motion) = &mut self.motion
-            && motion.values.len() == count
-            && count > 1
-        {
-            motion.values = keep(std::mem::take(&mut motion.values), &kept);
+        for motion in &mut self.motions {
+            if motion.values.len() == count && count > 1 {
+                motion.values = keep(std::mem::take(&mut motion.values), &kept);
+            }
         }
     }
 
-    /// The same support, moved.
+    /// The same support, moved, by this beside what moves it already.
     #[must_use]
     pub fn with_motion(mut self, motion: Motion) -> Self {
-        self.motion = Some(motion);
+        self.motions.push(motion);
         self
     }
 }
@@ -228,16 +230,19 @@ impl MergedSupports {
     pub(super) fn new(supports: &[NodeSupport], nodes: usize) -> Result<Self, TfetiError> {
         let mut fixed: BTreeMap<u32, FixedNode> = BTreeMap::new();
         let mut merged = Self::default();
-        for (s, support) in supports.iter().enumerate() {
+        let holding = |support: &NodeSupport| support.directions != Directions::Nothing;
+        let motions: usize = supports.iter().map(|s| s.motions.len()).sum();
+        let cases = supports.len().max(motions);
+        for (s, support) in supports.iter().enumerate().filter(|(_, support)| holding(support)) {
             let of_nodes = unit_directions(s, support)?;
-            if let Some(motion) = &support.motion {
-                motion.check(s, support.nodes.len(), supports.len())?;
+            for motion in &support.motions {
+                motion.check(s, support.nodes.len(), cases)?;
                 merged.cases = merged.cases.max(motion.case as usize + 1);
             }
             for (k, &node) in support.nodes.iter().enumerate() {
                 check_node(node, nodes, || format!("support {s}"))?;
-                let motion = support.motion.as_ref().map(|m| (m.case, m.of(k)));
-                if motion.is_some_and(|(_, value)| !value.iter().all(|v| v.is_finite())) {
+                let motions: Vec<(u32, [f64; 3])> = support.motions.iter().map(|m| (m.case, m.of(k))).collect();
+                if !motions.iter().flat_map(|m| m.1).all(f64::is_finite) {
                     return Err(TfetiError::BadMotion { support: s, node });
                 }
                 let new = || FixedNode {
@@ -251,7 +256,7 @@ impl MergedSupports {
                     &of_nodes[k]
                 };
                 for direction in directions {
-                    add_direction(entry, s, *direction, motion)?;
+                    add_direction(entry, s, *direction, &motions)?;
                 }
             }
         }
@@ -305,15 +310,14 @@ fn add_direction(
     fixed_node: &mut FixedNode,
     support: usize,
     direction: [f64; 3],
-    motion: Option<(u32, [f64; 3])>,
+    motions: &[(u32, [f64; 3])],
 ) -> Result<(), TfetiError> {
     let mut rest = direction;
     let mut values: Vec<(u32, f64)> = Vec::new();
     let mut size = 0.0_f64;
-    if let Some((case, vector)) = motion {
-        let value = dot(direction, vector);
-        size = norm(vector);
-        values.push((case, value));
+    for &(case, vector) in motions {
+        size = size.max(norm(vector));
+        *entry(&mut values, case, 0.0) += dot(direction, vector);
     }
     let mut first = support;
     // Twice, so that rounding leaves the new direction orthogonal; the second pass changes no value noticeably.

@@ -25,7 +25,7 @@ impl Tfeti {
     pub fn part(&self) -> Option<SystemPart> {
         let (gluing, exchange) = (self.gluing(), self.parts.map.exchange());
         let plain = gluing.is_aligned && self.copy_stiffness().is_plain() && !gluing.is_compliant();
-        if exchange.ranks() == 1 || !plain || !gluing.dependent_nodes().is_empty() {
+        if exchange.ranks() == 1 || !plain || !gluing.dependent_nodes().is_empty() || self.row_weights().is_some() {
             return None;
         }
         let subdomains = &self.parts.subdomains;

@@ -67,24 +67,24 @@ fn doubled_supports_are_removed_and_contradictions_refused() {
     let b = Brick::new(1, 2);
     let node = b.fixed[0];
     let moved = |case, values: [f64; 3]| {
-        Some(Motion {
+        vec![Motion {
             case,
             values: vec![values],
-        })
+        }]
     };
     let supports = [
         NodeSupport::fixed(b.fixed.clone()),
         NodeSupport {
             nodes: vec![node],
             directions: Directions::Vectors(vec![[0.3, 0.4, 0.0]]),
-            motion: None,
+            motions: Vec::new(),
         },
     ];
     let g = gluing(&b, &supports, &[]).unwrap();
     assert_eq!(g.ranges().dirichlet.len(), 3 * b.fixed.len());
 
     let mut contradicting = supports.clone();
-    contradicting[1].motion = moved(0, [1e-3, 0.0, 0.0]);
+    contradicting[1].motions = moved(0, [1e-3, 0.0, 0.0]);
     let error = gluing(&b, &contradicting, &[]).unwrap_err();
     assert!(
         matches!(error, TfetiError::ContradictorySupports { second: 1, case: 0, .. }),
@@ -97,12 +97,12 @@ fn doubled_supports_are_removed_and_contradictions_refused() {
         NodeSupport {
             nodes: vec![node],
             directions: Directions::Vectors(vec![[1.0, 1.0, 0.0], [0.0, 1.0, 1.0]]),
-            motion: moved(1, w),
+            motions: moved(1, w),
         },
         NodeSupport {
             nodes: vec![node],
             directions: Directions::Vectors(vec![[1.0, 2.0, 1.0]]),
-            motion: moved(1, w),
+            motions: moved(1, w),
         },
     ];
     let g = gluing(&b, &agreeing, &[]).unwrap();
@@ -123,10 +123,10 @@ fn prescribed_motion_of_a_support_appears_in_the_contact_offset() {
     let supports = [NodeSupport {
         nodes: vec![node],
         directions,
-        motion: Some(Motion {
+        motions: vec![Motion {
             case: 0,
             values: vec![w],
-        }),
+        }],
     }];
     {
         let g = gluing(&b, &supports, &b.contact(true)).unwrap();

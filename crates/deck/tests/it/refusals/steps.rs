@@ -25,16 +25,6 @@ fn supports() {
         "N6",
         "0.1 and 0.2",
     );
-    let next = "*STEP\n*STATIC\n*BOUNDARY, OP=NEW\nN5, 1, 2\n*END STEP\n";
-    let line = "*BOUNDARY, OP=NEW";
-    refused(
-        &cube(&(in_step("") + next)),
-        line,
-        "OP=NEW",
-        "releases component 3 of node",
-    );
-    let next = "*STEP\n*STATIC\n*BOUNDARY\nN6, 2\n*END STEP\n";
-    refused(&cube(&(in_step("") + next)), "N6, 2", "N6", "free in the steps before");
 }
 
 #[test]

@@ -1,0 +1,206 @@
+//! Supports that start, and random stages.
+
+use crate::common::*;
+use signorini_tfeti::internal::on_ranks;
+
+/// A block on a floor, held at one side, pulled until time 2; its top may be clamped where it is.
+fn grabbed(clamps: Vec<Support>, friction: Friction) -> Scene {
+    let hat = History::table(vec![(0.0, 0.0), (2.0, 1.0), (3.0, 0.0)]).expect("table");
+    let scene = Scene::new(block([2.0, 1.0, 1.0], [6, 3, 3]), steel())
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(Load::traction(brick::Z_MAX, [4e7, 1e7, -1e8]).with_history(hat))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(friction))
+        .with_boxes([2, 1, 1])
+        .with_analysis(Analysis::quasistatic(4.0, 4));
+    clamps.into_iter().fold(scene, Scene::with_support)
+}
+
+fn top(scene: &Scene, u: &[f64]) -> Vec<f64> {
+    let nodes = scene.mesh().nodes_on(brick::Z_MAX).into_iter();
+    nodes.flat_map(|n| [0, 1, 2].map(|c| u[3 * n as usize + c])).collect()
+}
+
+/// A support that starts holds its nodes where they are, or takes them back; the force that is taken away is its reaction.
+#[test]
+fn a_support_that_starts_holds_nodes_where_they_are() {
+    let clamp = || Support::fixed(brick::Z_MAX).with_start(2.0);
+    let (simulation, held) = run(grabbed(vec![clamp()], Friction::None), tight());
+    let scene = simulation.scene();
+    let places = |k: usize| top(scene, &held[k].displacement);
+    assert!(norm(&places(1)) > 1e-4);
+    assert_close(&places(2), &places(1), 1e-9, "step 2");
+    assert_close(&places(3), &places(1), 1e-9, "step 3");
+    // nothing moves: the contact forces stay, and the reaction is the load that is gone
+    assert_close(&forces(&held[3].points), &forces(&held[1].points), 1e-6, "forces");
+    let result = simulation.result().expect("steps");
+    // an edge of one of twelve parts of the top is the other support's
+    let found = result.reactions().supports[1].resultant.force.map(|f| f * 12.0 / 11.0);
+    assert_close(&found, &[8e7, 2e7, -2e8], 1e-6, "reaction");
+    // back to rest, and to a place that is known: as if the support had always been there
+    let line = |from, to| History::table(vec![(2.0, from), (4.0, to)]).expect("table");
+    let (_, back) = run(
+        grabbed(vec![clamp().with_fading(line(1.0, 0.0))], Friction::None),
+        tight(),
+    );
+    let half: Vec<f64> = places(1).iter().map(|u| 0.5 * u).collect();
+    assert_close(&top(scene, &back[2].displacement), &half, 1e-9, "half way");
+    assert!(norm(&top(scene, &back[3].displacement)) < 1e-12);
+    let to = [1e-4, 0.0, -3e-4];
+    let moved = clamp().with_fading(line(1.0, 0.0)).with_motion(to, line(0.0, 1.0));
+    let (_, moved) = run(grabbed(vec![moved], Friction::None), tight());
+    // the clamped end keeps its nodes
+    let mut free = scene.mesh().nodes_on(brick::Z_MAX);
+    free.retain(|&n| scene.mesh().points()[n as usize][0] > 0.0);
+    let always = Support::fixed(free).with_motion(to, History::constant(1.0));
+    let (_, always) = run(grabbed(vec![always], Friction::None), tight());
+    let off = relative_distance(scene, &moved[3].displacement, &always[3].displacement);
+    assert!(off < 1e-7, "{off:e}");
+}
+
+/// Supports that start one after another, end, and share nodes with others that move, touch or are held for longer.
+#[test]
+fn supports_share_nodes_with_those_before() {
+    let sides = |start: f64| {
+        vec![
+            // nodes of the clamped end and of contact points among them
+            Support::fixed(brick::Y_MIN).with_start(start),
+            Support::components(brick::Z_MIN, [false, false, true]).with_start(start + 1.0),
+            Support::components(brick::Y_MIN, [false, true, true])
+                .with_start(start)
+                .with_end(start + 1.0),
+        ]
+    };
+    for friction in [Friction::None, Friction::coulomb(0.3)] {
+        let scene = grabbed(sides(1.0), friction);
+        let (simulation, steps) = run(scene.clone(), tight());
+        let mesh = simulation.scene().mesh();
+        let at = |k: usize, tag: FacetTag, c: usize| -> Vec<f64> {
+            let nodes = mesh.nodes_on(tag).into_iter();
+            nodes.map(|n| steps[k].displacement[3 * n as usize + c]).collect()
+        };
+        for c in 0..3 {
+            assert!((0..4).all(|k| norm(&at(k, brick::X_MIN, c)) < 1e-12));
+            for k in [1, 2, 3] {
+                assert_close(&at(k, brick::Y_MIN, c), &at(0, brick::Y_MIN, c), 1e-9, "side");
+            }
+        }
+        let (floor, before) = (at(3, brick::Z_MIN, 2), at(1, brick::Z_MIN, 2));
+        assert!(floor.iter().zip(before).all(|(a, b)| (a - b).abs() < 1e-12), "floor");
+        assert!(norm(&simulation.result().expect("steps").reactions().imbalance().force) < 1.0);
+        // the same from states, and on two ranks
+        let last = bits(&steps[3]);
+        let mut whole = Simulation::new(scene.clone(), tight()).expect("set-up");
+        for k in 0..4 {
+            let mut resumed = Simulation::new(scene.clone(), tight()).expect("set-up");
+            resumed.resume(whole.state().clone()).expect("its state");
+            assert!(
+                bits(&rest(&mut resumed).pop().expect("steps")) == last,
+                "after step {k}"
+            );
+            let _ = step(&mut whole);
+        }
+        let run = |settings: Settings| {
+            let settings = settings.with_share_translates(false);
+            rest(&mut Simulation::new(scene.clone(), settings).expect("set-up"))
+                .iter()
+                .map(bits)
+                .collect::<Vec<_>>()
+        };
+        let alone = run(tight());
+        for rank in on_ranks(2, |c| run(tight().with_communicator(c))) {
+            assert!(rank.expect("no panic") == alone);
+        }
+    }
+}
+
+/// A place that a support would take its nodes to inside an obstacle is refused as soon as it is known.
+#[test]
+fn nodes_are_not_taken_into_obstacles() {
+    let down = |way: f64| {
+        let line = History::table(vec![(3.0, 0.0), (4.0, 1.0)]).expect("table");
+        let support = Support::components(brick::Z_MIN, [false, false, true]).with_start(2.0);
+        grabbed(vec![support.with_motion([0.0, 0.0, way], line)], Friction::None)
+    };
+    let mut simulation = Simulation::new(down(-1e-5), Settings::default()).expect("set-up");
+    let _ = [step(&mut simulation), step(&mut simulation)];
+    let state = simulation.state().clone();
+    let error = simulation.step().map(drop).expect_err("inside");
+    assert!(
+        matches!(error, ContactError::SupportInObstacle { time: 4.0, .. }),
+        "{error}"
+    );
+    assert!(*simulation.state() == state);
+    let (_, up) = run(down(1e-5), at(1e-8));
+    assert!(up[3].points.is_empty());
+}
+
+/// Without friction each step is a static scene of what acts in it: supports, obstacles and ties with random spans.
+#[test]
+fn random_stages_are_scenes_of_their_own() {
+    let mut rng = random(7);
+    for round in 0..24 {
+        let order = rng.random_range(1..3);
+        let own = block([2.0, 1.0, 1.0], [4, 2, 2]);
+        let other = block([2.0, 1.0, 1.0], [[4, 2, 2], [3, 3, 2]][rng.random_range(0..2)]);
+        let both = with_second(&own, &lifted(&other, 1.0));
+        let mesh = if order == 2 {
+            both.raise_order().expect("mid-nodes")
+        } else {
+            both
+        };
+        let mut span = || {
+            let [a, b] = [0, 1].map(|_| f64::from(rng.random_range(0..5)));
+            [a.min(b), a.max(b) + 1.0]
+        };
+        let spans: Vec<[f64; 2]> = (0..6).map(|_| span()).collect();
+        let push = [(); 3].map(|()| 1e7 * rng.random_range(-1.0..1.0));
+        let history = History::table((0..6).map(|k| (f64::from(k), rng.random_range(-1.0..1.0))).collect());
+        let history = history.expect("table");
+        let faces = [brick::X_MAX, brick::Y_MIN, second(brick::Z_MAX), second(brick::X_MAX)];
+        let held: Vec<[bool; 3]> = faces.iter().map(|_| [(); 3].map(|()| rng.random_bool(0.6))).collect();
+        // at one time only what acts then, or all with their spans
+        let scene = |time: Option<f64>| {
+            let acts = |span: &[f64; 2]| time.is_none_or(|t| span[0] < t && t <= span[1]);
+            let mut scene = Scene::new(mesh.clone(), steel())
+                .with_support(Support::fixed(brick::X_MIN))
+                .with_support(Support::fixed(second(brick::X_MIN)))
+                .with_load(Load::traction(brick::Z_MAX, push).with_history(history.clone()))
+                .with_load(Load::traction(second(brick::Z_MAX), push.map(|f| -f)).with_history(history.clone()))
+                .with_analysis(match time {
+                    Some(time) => Analysis::Static { time },
+                    None => Analysis::quasistatic(5.0, 5),
+                });
+            for ((face, held), span) in faces.iter().zip(&held).zip(&spans) {
+                if held.contains(&true) && acts(span) {
+                    let support = Support::components(*face, *held);
+                    // back where they were at rest, at once
+                    let fading = History::constant(0.0);
+                    scene = scene.with_support(match time {
+                        Some(_) => support,
+                        None => support.with_start(span[0]).with_end(span[1]).with_fading(fading),
+                    });
+                }
+            }
+            let between = match round % 3 {
+                0 => Contact::tied(brick::Z_MAX, second(brick::Z_MIN)),
+                _ => Contact::between(brick::Z_MAX, second(brick::Z_MIN)),
+            };
+            let floor = Contact::rigid(brick::Z_MIN).with_gap(1e-6);
+            for (contact, span) in [floor, between].into_iter().zip(&spans[4..]) {
+                if acts(span) {
+                    scene = scene.with_contact(match time {
+                        Some(_) => contact,
+                        None => contact.with_start(span[0]).with_end(span[1]),
+                    });
+                }
+            }
+            scene
+        };
+        let (simulation, steps) = run(scene(None), at(1e-8));
+        for (k, found) in steps.iter().enumerate() {
+            let (_, alone) = run(scene(Some((k + 1) as f64)), at(1e-8));
+            let off = relative_distance(simulation.scene(), &found.displacement, &alone[0].displacement);
+            assert!(off < 1e-5, "round {round}, step {k}: {off:e}");
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! What the steps say of one component of a node that is held.
+
+use super::history::Track;
+use super::timeline::Timeline;
+use crate::model::Given;
+
+/// A held component of a node: the target that it is given on first, and what the steps say.
+#[derive(Clone)]
+pub(super) struct Held {
+    pub(super) owner: usize,
+    pub(super) track: Track,
+    /// Given before the first step, which may say it anew.
+    pub(super) before: bool,
+    /// The step from which on it is held, if that is not the first, and that which releases it.
+    pub(super) span: [Option<usize>; 2],
+}
+
+impl Held {
+    /// Notes a value of a component of a node with this number in the deck; `step` is none before the first.
+    pub(super) fn give(&mut self, step: Option<usize>, given: Given, what: &str) -> Result<(), String> {
+        let now = step.unwrap_or(0);
+        let again = !(self.before && step == Some(0));
+        if let Some(before) = self.track.given_in(now)
+            && again
+            && before != given
+            && (before.value, given.value) != (0.0, 0.0)
+        {
+            let (before, now) = (before.value, given.value);
+            return Err(format!(
+                "{what} is given {before} and {now} in one step; keep one of them"
+            ));
+        }
+        self.before = step.is_none();
+        self.track.set(now, given);
+        Ok(())
+    }
+
+    /// Whether it begins in a step along a straight line.
+    pub(super) fn fades(&self, timeline: &Timeline) -> bool {
+        let [from, _] = self.span;
+        let ramp = |step: usize| timeline.spans.get(step).is_some_and(|span| span.ramp);
+        let by_line = |step| self.track.given_in(step).is_some_and(|given| given.amplitude.is_none());
+        from.is_some_and(|step| ramp(step) && by_line(step))
+    }
+}
