@@ -28,6 +28,7 @@ mod estimates_tied;
 mod explicit;
 mod free_bodies;
 mod gap_history;
+mod gaps_of_curves;
 mod halving;
 mod invariance;
 mod levels;
