@@ -29,6 +29,7 @@ mod explicit;
 mod free_bodies;
 mod gap_history;
 mod gaps_of_curves;
+mod groups;
 mod halving;
 mod invariance;
 mod levels;
