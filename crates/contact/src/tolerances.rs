@@ -104,19 +104,19 @@ pub(crate) const NO_EXTENT: f64 = 1e-13;
 /// Distance of a mid-node from the middle of its edge, over the size of the facet, from which on the edge is bent.
 pub(crate) const BENT: f64 = 1e-9;
 
-/// Distance of the middle of an edge from its curve, over the edge, up to which it is straight: a file with six digits leaves
-/// a tenth of it.
+/// Distance of the middle of an edge from its curve, over the edge, up to which it is straight: a file with six digits
+/// leaves a tenth of it.
 pub(crate) const FLAT_EDGE: f64 = 1e-4;
 
-/// Distance between curves that facets stand for which is not known, over that of both from straight edges: with 11 to 24 edges
-/// around up to 0.6 % of it was left.
+/// Distance between curves that facets stand for which is not known, over that of both from straight edges: with 11 to
+/// 24 edges around up to 0.6 % of it was left.
 pub(crate) const CURVE: f64 = 0.01;
 
 /// Part of that up to which overlaps are none, without a warning.
 pub(crate) const SURELY: f64 = 0.5;
 
-/// Eigenvalue of a quadric through nodes, over the largest, up to which they do not say what it is, and up to which they
-/// hardly do: of one row of facets around a shaft.
+/// Eigenvalue of a quadric through nodes, over the largest, up to which they do not say what it is, and up to which
+/// they hardly do: of one row of facets around a shaft.
 pub(crate) const SMALL_CURVATURE: f64 = 1e-4;
 pub(crate) const DOUBTFUL: f64 = 4e-4;
 

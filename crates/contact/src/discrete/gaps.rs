@@ -1,8 +1,8 @@
 //! The gaps that coordinates give between sides whose meshes do not match.
 //!
-//! Along curved sides they are those of the curves that facets stand for, which are known to a hundredth of the distance
-//! between the two: what is less counts as none. Points are means around nodes; a contact touches where the curves of its
-//! sides do, also between them.
+//! Along curved sides they are those of the curves that facets stand for, which are known to a hundredth of the
+//! distance between the two: what is less counts as none. Points are means around nodes; a contact touches where the
+//! curves of its sides do, also between them.
 
 use crate::error::ContactError;
 use crate::mortar::MortarNode;
@@ -89,9 +89,9 @@ impl MortarGaps {
     }
 }
 
-/// Brings points together where curves touch, or are nearest, between them: of those over such places the nearest one of each
-/// neighbourhood, and its neighbours as far; all others as far as the first of all. None comes nearer than the curves around
-/// it are.
+/// Brings points together where curves touch, or are nearest, between them: of those over such places the nearest one
+/// of each neighbourhood, and its neighbours as far; all others as far as the first of all. None comes nearer than the
+/// curves around it are.
 fn touch(surface: &Surface, is_fixed: bool, nodes: &[Option<MortarNode>], gaps: &mut [f64]) {
     let seen = || nodes.iter().flatten();
     let arc = seen().map(|s| s.arc).fold(0.0, f64::max);
@@ -139,8 +139,8 @@ fn mortar_gap(mesh: &TetMesh, node: u32, normal: &[f64; 3], seen: &MortarNode) -
     partner - own + seen.way + vector::dot(&seen.bulge, normal)
 }
 
-/// Refuses bodies that lie in each other deeper than the facets of a node and its partner, unless the gap is given: tied
-/// sides may be apart, not one within the other. `size` is the root of the area of the node, m.
+/// Refuses bodies that lie in each other deeper than the facets of a node and its partner, unless the gap is given:
+/// tied sides may be apart, not one within the other. `size` is the root of the area of the node, m.
 pub(super) fn check_overlap(
     index: usize,
     contact: &Contact,

@@ -189,7 +189,8 @@ impl Piece {
         (area > COVERED * whole).then_some(piece)
     }
 
-    /// How much nearer curves of both sides are at a point than straight edges or facets, by how far they are outside them, m.
+    /// How much nearer curves of both sides are at a point than straight edges or facets, by how far they are outside
+    /// them, m.
     fn nearer(&self, own: &Flat, [here, there]: &[[f64; 3]; 2], p: Point) -> f64 {
         let outside =
             |edges: &[f64; 3], l: [f64; 3]| (0..3).map(|k| 4.0 * l[k] * l[(k + 1) % 3] * edges[k]).sum::<f64>();

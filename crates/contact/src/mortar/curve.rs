@@ -1,9 +1,10 @@
 //! The curves that straight facets stand for: how far the middles of their edges are within them.
 //!
-//! Nodes of a mesh are on the surface of the part, facets between them are not, by the sagitta `l² / 8 r` of an edge. The
-//! curvature of a surface at a node is that of the quadric through its neighbours and theirs, by least squares. With the
-//! height `w` of a neighbour over the tangent plane and its distance `d`, `2 w / d²` is the curvature along the way to it,
-//! on cylinders and spheres exactly. What is found of one end of an edge only, as where a flat begins, is none.
+//! Nodes of a mesh are on the surface of the part, facets between them are not, by the sagitta `l² / 8 r` of an edge.
+//! The curvature of a surface at a node is that of the quadric through its neighbours and theirs, by least squares.
+//! With the height `w` of a neighbour over the tangent plane and its distance `d`, `2 w / d²` is the curvature along
+//! the way to it, on cylinders and spheres exactly. What is found of one end of an edge only, as where a flat begins,
+//! is none.
 
 use crate::tolerances::{DOUBTFUL, FLAT_EDGE, RIM_TURN, SAME_NORMAL, SMALL_CURVATURE};
 use crate::vec3::edge_cosine;
@@ -13,8 +14,8 @@ use signorini_fem_mesh::internal::Lists;
 use signorini_fem_mesh::vec3::{add, area_vector, dot, norm, scale, sub, unit};
 use signorini_fem_mesh::{SurfaceFrame, TetMesh};
 
-/// Of each triangle how far the curve is outside the middles of its edges 01, 12, 20, m: where it is hollow negative, zero
-/// where it is flat, at creases, which are given by a cosine, and where mid-nodes are on it.
+/// Of each triangle how far the curve is outside the middles of its edges 01, 12, 20, m: where it is hollow negative,
+/// zero where it is flat, at creases, which are given by a cosine, and where mid-nodes are on it.
 pub(super) fn bulges(mesh: &TetMesh, corners: &[[u32; 3]], mids: &[Option<[u32; 3]>], crease: f64) -> Vec<[f64; 3]> {
     let mut nodes: Vec<u32> = corners.as_flattened().to_vec();
     nodes.sort_unstable();

@@ -23,7 +23,8 @@ pub(crate) struct MortarNode {
     pub(crate) way: f64,
     /// The same between sides that may touch, from the curves that facets stand for to the facets of both sides, m.
     pub(crate) bulge: [f64; 3],
-    /// How far these curves are outside edges on both sides, at most, m, and outside straight ones; zero where they are flat.
+    /// How far these curves are outside edges on both sides, at most, m, and outside straight ones; zero where they are
+    /// flat.
     pub(crate) sagitta: f64,
     pub(crate) arc: f64,
     /// The smallest and the largest distance of the curves of both sides around it, m; negative inside.

@@ -161,8 +161,8 @@ impl Normals {
 /// The cover of each facet of a surface, by the nodes of the other one; the normals of the facets beside it.
 ///
 /// What is farther away than four times the largest distance found anywhere is not looked for, unless nothing is found.
-/// Displacements of the other side are those where they are, or [on the facet](Way) if it is `tied`. Sides that may touch
-/// are as far apart as the curves that their facets stand for; these end at creases, which are given by a cosine.
+/// Displacements of the other side are those where they are, or [on the facet](Way) if it is `tied`. Sides that may
+/// touch are as far apart as the curves that their facets stand for; these end at creases, which are given by a cosine.
 pub(super) fn covers(
     mesh: &TetMesh,
     triangles: &[Triangle],

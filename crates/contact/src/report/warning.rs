@@ -54,8 +54,8 @@ signorini_fem_mesh::errors! {
             gap.abs(), if *gap < 0.0 { "inside" } else { "from" }, at(place);
         FacetedOverlap { contact: usize, node: u32, place: [f64; 3], overlap: f64, sagitta: f64 } =
             "contact {contact} begins {overlap:.3e} inside its partner at node {node}, {}, between curves that are \
-            {sagitta:.3e} beside straight facets and known to {:.0e}, up to which sides touch without stress: tell the gap \
-            (with_gap, 0 for sides that touch, negative for a press fit), or take smaller facets",
+            {sagitta:.3e} beside straight facets and known to {:.0e}, up to which sides touch without stress: tell \
+            the gap (with_gap, 0 for sides that touch, negative for a press fit), or take smaller facets",
             at(place), CURVE * sagitta;
         LargeCoefficient { contact: usize, node: u32, place: [f64; 3], coefficient: f64 } =
             "friction of contact {contact}: the coefficient at node {node}, {}, is {coefficient}; hardly any pair of \

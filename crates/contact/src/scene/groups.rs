@@ -21,8 +21,9 @@ struct Groups {
 }
 
 impl Scene {
-    /// Names from the groups of a mesh file, as `GroupNames` of a Gmsh file lists them: errors and warnings then begin with
-    /// those of the contacts, supports, loads, regions and nodes concerned. What is added to the scene later has none.
+    /// Names from the groups of a mesh file, as `GroupNames` of a Gmsh file lists them: errors and warnings then begin
+    /// with those of the contacts, supports, loads, regions and nodes concerned. What is added to the scene later has
+    /// none.
     ///
     /// ```
     /// use signorini_contact::{Contact, Plan, Scene, Settings};

@@ -1,5 +1,5 @@
-//! Between curved sides of straight facets, whose meshes do not match, gaps are those of the curves: what touches in the
-//! drawing touches without stress, clearances and press fits are what coordinates of nodes say.
+//! Between curved sides of straight facets, whose meshes do not match, gaps are those of the curves: what touches in
+//! the drawing touches without stress, clearances and press fits are what coordinates of nodes say.
 
 use crate::common::*;
 use crate::curved_sides::ring;
@@ -7,8 +7,8 @@ use crate::curved_sides::ring;
 const YOUNG: f64 = 1e3;
 const RADIUS: f64 = 10.0;
 
-/// A shaft in a sleeve whose bore is wider, both round about the z axis, of so many cells around; in meshes of order 1 nodes are
-/// moved along the circle and the axis.
+/// A shaft in a sleeve whose bore is wider, both round about the z axis, of so many cells around; in meshes of order 1
+/// nodes are moved along the circle and the axis.
 fn fitted([inside, outside]: [usize; 2], wider: f64, order: usize) -> TetMesh {
     let shaft = ring([4.0, RADIUS], [1, inside, 3], 0.0, order);
     let sleeve = ring([RADIUS + wider, 14.0], [1, outside, 4], 0.1, order);
@@ -69,8 +69,8 @@ fn what_touches_in_the_drawing_is_without_stress() {
     }
 }
 
-/// Its friction holds a sleeve without interference once a pressure closes it; between facets 2,545 to 19,057 products went
-/// into bolts in bores.
+/// Its friction holds a sleeve without interference once a pressure closes it; between facets 2,545 to 19,057 products
+/// went into bolts in bores.
 #[test]
 fn a_load_on_a_fit_without_clearance_costs_little() {
     for cells in CELLS {
