@@ -14,6 +14,7 @@ mod equation;
 mod facets;
 mod friction;
 mod gap;
+mod groups;
 mod load;
 mod obstacle;
 mod pairs;

@@ -28,6 +28,8 @@ mod estimates_tied;
 mod explicit;
 mod free_bodies;
 mod gap_history;
+mod gaps_of_curves;
+mod groups;
 mod halving;
 mod invariance;
 mod levels;
