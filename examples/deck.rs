@@ -11,6 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
+use signorini::contact::Part;
 use signorini::deck::Deck;
 use signorini::prelude::*;
 
@@ -116,7 +117,8 @@ fn run(part: &Path, out: Option<&Path>, states: Option<&Path>, stop: Arc<AtomicB
     Ok(report.stopped)
 }
 
-/// The forces that hold the body at the end, by the sets of the deck, with the numbers of their supports in the table.
+/// The forces that hold the body at the end, by the sets of the deck, with the numbers of their supports in the table, and
+/// those of its contacts.
 fn print_reactions(deck: &Deck, step: &StepResult) {
     let reactions = step.reactions();
     let names = deck.support_names();
@@ -136,6 +138,11 @@ fn print_reactions(deck: &Deck, step: &StepResult) {
             "reaction at {name} (support {}): {x:.5e} {y:.5e} {z:.5e}",
             numbers.join(", ")
         );
+    }
+    for (k, contact) in reactions.contacts.iter().enumerate() {
+        let [x, y, z] = contact.force;
+        let name = step.scene().name(Part::Contact(k)).unwrap_or_default();
+        println!("force of contact {k} ({name}): {x:.5e} {y:.5e} {z:.5e}");
     }
     for (k, (name, motion)) in deck.coupling_names().iter().zip(step.couplings()).enumerate() {
         let coupling = &step.scene().couplings()[k];

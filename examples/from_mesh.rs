@@ -15,7 +15,8 @@ pub fn run(file: &str, folder: &str) -> Result<(), Error> {
     let scene = Scene::new(mesh, rubber)
         .with_support(Support::fixed(names.surface("top")?).with_motion([0.0, 0.0, -0.8], ramp))
         .with_contact(Contact::half_space(names.surface("rim")?, [0.0; 3], [0.0, 0.0, 1.0]))
-        .with_analysis(Analysis::quasistatic(1.0, 5));
+        .with_analysis(Analysis::quasistatic(1.0, 5))
+        .with_groups(names.surfaces(), names.volumes());
     let mut simulation = Simulation::new(scene, Settings::default())?;
     println!("{}", simulation.plan());
     let writer = ResultWriter::new(folder, "roller").with_field(ResultField::Stress);

@@ -31,6 +31,11 @@ impl Names {
         }
     }
 
+    /// That of a part.
+    pub(crate) fn name(&self, part: Part) -> Option<String> {
+        (self.0.as_ref()?)(part)
+    }
+
     /// Those of some parts, if any has one.
     pub(crate) fn of(&self, parts: Vec<Part>) -> Option<String> {
         let names = listed(parts, &**self.0.as_ref()?);

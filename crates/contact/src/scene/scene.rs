@@ -155,6 +155,11 @@ impl Scene {
         self
     }
 
+    /// What a part is called, if the scene [has names](Self::with_names) and it has one.
+    pub fn name(&self, part: Part) -> Option<String> {
+        self.names.name(part)
+    }
+
     /// The mesh.
     pub fn mesh(&self) -> &TetMesh {
         &self.mesh
