@@ -136,9 +136,9 @@ pub(crate) const SHORT_LEVER: f64 = 1.0;
 /// Depth of a supported node in an obstacle that counts, over its displacement or gap.
 pub(crate) const DEPTH: f64 = 1e-9;
 
-/// The same of a node that a support holds where an earlier step has left it, over the largest displacement of the
-/// support's nodes there: what solvers with large tolerances leave.
-pub(crate) const LEFT_DEPTH: f64 = 1e-3;
+/// How far nodes that a support holds where an earlier step has left them may be off, over their largest displacement:
+/// what solvers with large tolerances leave.
+pub(crate) const LEFT_OFF: f64 = 1e-3;
 
 /// What is left of a direction that other supports hold already.
 pub(crate) const HELD_ALREADY: f64 = 1e-8;

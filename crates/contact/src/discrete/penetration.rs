@@ -7,7 +7,7 @@ use super::points::ContactPoint;
 use super::supports::Supports;
 use crate::error::ContactError;
 use crate::scene::{Pose, Scene};
-use crate::tolerances::{DEPTH, LEFT_DEPTH};
+use crate::tolerances::{DEPTH, LEFT_OFF};
 use signorini_fem_mesh::vec3::norm;
 use signorini_tfeti::internal::PrescribedPoint;
 
@@ -23,10 +23,8 @@ pub(super) fn check_penetration(
         return Ok(());
     }
     let rest = Pose::default();
-    let slack: Vec<Option<f64>> = prescribed
-        .iter()
-        .map(|p| slack(scene, &points[p.point], supports))
-        .collect();
+    let slack = |p| slack(scene, points, p, (supports, poses));
+    let slack: Vec<Option<f64>> = prescribed.iter().map(slack).collect::<Result<_, _>>()?;
     let steps = scene.stage_steps();
     for (step, &time) in scene
         .analysis
@@ -66,15 +64,36 @@ pub(super) fn check_penetration(
     Ok(())
 }
 
-/// How deep a point may be because an earlier step left it there, m; `None` where that step is not solved yet.
-fn slack(scene: &Scene, point: &ContactPoint, supports: &Supports) -> Option<f64> {
+/// How deep a point is because an earlier step left it there, m, as far as solvers do; `None` where that step is not solved
+/// yet.
+fn slack(
+    scene: &Scene,
+    points: &[ContactPoint],
+    fixed: &PrescribedPoint,
+    (supports, poses): (&Supports, &[Vec<Pose>]),
+) -> Result<Option<f64>, ContactError> {
+    let point = &points[fixed.point];
     let nodes = point.sides.nodes();
     let held = nodes.flat_map(|(node, _)| supports.directions.get(&node).into_iter().flatten());
     let started = held.map(|h| h.support).filter(|&support| scene.has_started(support));
-    started
-        .map(|support| &scene.supports[support].left)
-        .try_fold(0.0, |slack: f64, left| {
-            let largest = left.iter().map(|u| norm(*u)).reduce(f64::max)?;
-            Some(slack.max(LEFT_DEPTH * largest))
-        })
+    let mut most = 0.0_f64;
+    for support in started {
+        let left = scene.supports[support].left.iter();
+        let Some(largest) = left.map(|u| norm(*u)).reduce(f64::max) else {
+            return Ok(None);
+        };
+        most = most.max(LEFT_OFF * largest);
+    }
+    if most == 0.0 {
+        return Ok(Some(0.0));
+    }
+    let before = scene.stage_steps().start.checked_sub(1);
+    let pose = before.and_then(|step| poses[point.surface].get(step));
+    let gap = point.gap_after(scene, pose.unwrap_or(&Pose::default()))?;
+    let along = fixed
+        .normal
+        .iter()
+        .filter(|(case, _)| supports.left.contains(&(*case as usize)));
+    let depth = along.map(|(_, value)| value).sum::<f64>() - gap;
+    Ok(Some(depth.clamp(0.0, most)))
 }

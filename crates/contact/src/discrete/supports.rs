@@ -2,13 +2,14 @@
 
 use crate::error::ContactError;
 use crate::scene::Scene;
-use crate::tolerances::HELD_ALREADY;
+use crate::tolerances::{HELD_ALREADY, LEFT_OFF};
 use signorini_fem_mesh::History;
 use signorini_fem_mesh::internal::cylindrical;
 use signorini_fem_mesh::vec3::{Vec3, combine, dot, is_finite, norm, scale, sub, unit};
 use signorini_tfeti::internal::{PrescribedDirection, prescribed_directions};
 use signorini_tfeti::{Directions, Motion, NodeSupport};
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// The supports of a scene, node by node.
 #[derive(Debug)]
@@ -18,6 +19,8 @@ pub(crate) struct Supports {
     /// History of each displacement case. Equal histories are one case, so that equal displacements of a node that two
     /// supports share are recognised as equal.
     pub(crate) motions: Vec<History>,
+    /// Cases of nodes that are held where earlier steps have left them.
+    pub(super) left: Range<usize>,
     /// The directions that supports fix at each node, each by the first support that does.
     pub(crate) directions: BTreeMap<u32, Vec<PrescribedDirection>>,
 }
@@ -42,14 +45,14 @@ impl Supports {
             };
             let mut one = NodeSupport::partial(own, directions);
             if let Some((given, history)) = &support.motion {
-                one = one.with_motion(Motion {
-                    case: case_of(&mut motions, history),
-                    values: values.unwrap_or_else(|| given.clone()),
-                });
+                let values = values.unwrap_or_else(|| given.clone());
+                one = one.with_motion(Motion::new(case_of(&mut motions, history), values));
             }
             nodes.push(one);
         }
+        let given = motions.len();
         hold_where_they_are(scene, started, &mut nodes, &mut motions)?;
+        let left = given..motions.len();
         let mut directions: BTreeMap<u32, Vec<_>> = BTreeMap::new();
         for direction in prescribed_directions(&nodes, scene.mesh.points().len())? {
             directions.entry(direction.node).or_default().push(direction);
@@ -57,6 +60,7 @@ impl Supports {
         Ok(Self {
             nodes,
             motions,
+            left,
             directions,
         })
     }
@@ -105,9 +109,12 @@ fn hold_where_they_are(
                 return Err(ContactError::Checkpoint { reason });
             }
             let fading = support.fading.clone().unwrap_or_else(|| History::constant(1.0));
+            // a case of its own: it says how far what solves have left may be off
+            motions.push(fading);
+            let largest = support.left.iter().map(|u| norm(*u)).fold(0.0, f64::max);
             own.motions.push(Motion {
-                case: case_of(motions, &fading),
-                values: support.left.clone(),
+                off: LEFT_OFF * largest,
+                ..Motion::new(motions.len() as u32 - 1, support.left.clone())
             });
         }
         before[index] = own.clone();

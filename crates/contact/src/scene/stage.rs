@@ -51,6 +51,13 @@ impl Scene {
         self.spans().any(|span| span != Span::default())
     }
 
+    /// Whether supports start after the stage that the scene is set up for, where its steps leave their nodes.
+    pub(crate) fn leaves(&self) -> bool {
+        let now = self.analysis.time(self.stage);
+        let later = |start: f64| now.is_some_and(|now| !is_past(start, now));
+        self.supports.iter().filter_map(|s| s.span.start).any(later)
+    }
+
     fn spans(&self) -> impl Iterator<Item = Span> {
         let supports = self.supports.iter().map(|s| s.span);
         supports.chain(self.contacts.iter().map(|c| c.span))

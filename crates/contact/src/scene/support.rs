@@ -172,8 +172,10 @@ impl Support {
     }
 
     /// It holds at steps that end later than a time, s; before, its nodes are free. It holds them where they are at the
-    /// last step before, and a [motion](Self::with_motion) leads on from there. Directions of nodes that other supports
-    /// hold, or have held for longer, stay with these.
+    /// last step before, and displacements of a [motion](Self::with_motion) are added to that: let its history begin with
+    /// zero there. Let the time be the end of a step, or halved steps hold them elsewhere. Directions of nodes that other
+    /// supports hold, or have held for longer, stay with these until they end. Nodes that are held along the normal of a
+    /// contact neither press nor rub there.
     ///
     /// ```
     /// use signorini_contact::{Analysis, Load, Scene, Settings, Simulation, Support};
@@ -199,7 +201,7 @@ impl Support {
         self
     }
 
-    /// The displacements at which it [starts](Self::with_start) count `history(t)` times: as this falls from one to zero,
+    /// The displacements at which it [starts](Self::with_start), if it does, count `history(t)` times: as this falls from one to zero,
     /// the nodes come back to where they were at rest, or, with a [motion](Self::with_motion) that grows meanwhile, to a
     /// place that is known beforehand.
     pub fn with_fading(mut self, history: History) -> Self {

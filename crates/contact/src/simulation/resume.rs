@@ -2,7 +2,7 @@
 
 use super::simulation::Simulation;
 use crate::error::ContactError;
-use crate::state::State;
+use crate::state::{NOT_FINITE, State};
 use signorini_qp::SymmetricOperator;
 use std::sync::Arc;
 
@@ -12,7 +12,8 @@ impl Simulation {
     /// These must be the same: mesh, decomposition, nodes and directions of supports, contact points with their normals
     /// and areas, difference formula, and the times of the steps already solved. Loads, motions of supports, materials,
     /// gaps, coefficients of friction, future times, settings and method may change; the changed scene then continues
-    /// from the state. To start from the state of a different scene on purpose, call [`State::without_origin`]; sizes
+    /// from the state. What starts, ends or is locked may have other times later on; what has started is held where it was
+    /// then. To start from the state of a different scene on purpose, call [`State::without_origin`]; sizes
     /// must match in any case.
     ///
     /// # Errors
@@ -25,13 +26,23 @@ impl Simulation {
         }
         // what acts and what is locked belongs to the state
         if self.model.scene.stage() != state.stage {
+            if !state.is_finite() {
+                return refuse(NOT_FINITE.to_owned());
+            }
             let fresh = self.set_up_stage(&state.stage);
             let mut fresh = fresh.map_err(|error| self.model.scene.names.tell(error))?;
             state.stage = fresh.model.scene.stage();
-            fresh.resume(state)?;
+            fresh.take(state)?;
             *self = fresh;
             return Ok(());
         }
+        self.take(state)
+    }
+
+    /// Takes a state of the stage at hand.
+    fn take(&mut self, mut state: State) -> Result<(), ContactError> {
+        let refuse = |reason| Err(ContactError::Checkpoint { reason });
+        let analysis = &self.model.scene.analysis;
         let origin = self.origin.after(analysis, state.step());
         let known = state.origin.filter(|_| state.step() > 0);
         if let Some(part) = known.and_then(|known| known.difference(&origin)) {
@@ -77,6 +88,30 @@ mod tests {
             .with_boxes([2, 1, 1])
             .with_analysis(Analysis::quasistatic(1.0, 4));
         Simulation::new(scene, Settings::default()).expect("set-up")
+    }
+
+    /// A state with damaged places of a support that starts: it was set up for without end.
+    #[test]
+    fn damaged_stages_are_refused() {
+        let scene = || {
+            let mesh = Brick::new([2.0, 1.0, 1.0], [2, 1, 1]).build().expect("mesh");
+            let hooke = Hooke::isotropic(1e9, 0.3).expect("Hooke");
+            Scene::new(mesh, Materials::uniform(hooke))
+                .with_support(Support::fixed(brick::X_MIN))
+                .with_support(Support::fixed(brick::X_MAX).with_start(1.0))
+                .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -1e6]))
+                .with_analysis(Analysis::quasistatic(3.0, 3))
+        };
+        let simulation = || Simulation::new(scene(), Settings::default()).expect("set-up");
+        let mut run = simulation();
+        for _ in 0..2 {
+            let _ = run.step().expect("step");
+        }
+        let mut state = run.state().clone();
+        assert!(simulation().resume(state.clone()).is_ok());
+        state.stage.left[1][0][2] = f64::NAN;
+        let error = simulation().resume(state).unwrap_err().to_string();
+        assert!(error.contains("it contains NaN"), "{error}");
     }
 
     /// Products of another material, and such as are none, are made anew, by name of the scene or without it; those of

@@ -217,7 +217,7 @@ impl Simulation {
             // what did not converge is no scale for later steps
             let peaks: Vec<Peak> = recovered.sizes.iter().map(Sizes::peak).collect();
             state.raise(&peaks);
-        } else if history || model.scene.couplings.iter().any(|c| c.pending().is_some()) {
+        } else if history || model.scene.leaves() || model.scene.couplings.iter().any(|c| c.pending().is_some()) {
             state.note_unconverged();
         }
         let old = state.advance(self.settings.extrapolate, self.operator, kept);

@@ -104,6 +104,9 @@ pub(crate) struct Kept {
     pub(crate) displacement: Vec<f64>,
 }
 
+/// Why a state is refused that is damaged so.
+pub(crate) const NOT_FINITE: &str = "it contains NaN or infinity; use an earlier checkpoint or start anew";
+
 impl State {
     /// Steps solved so far.
     pub fn step(&self) -> usize {
@@ -135,7 +138,8 @@ impl State {
     }
 
     /// The first step, from 0, that did not converge and on whose displacement later steps depend. `None` if all
-    /// converged, and in scenes without history (no friction, or static), whose steps are independent.
+    /// converged, and in scenes without history (no friction, nothing that starts or is locked later, or static), whose
+    /// steps are independent.
     pub fn unconverged_history(&self) -> Option<usize> {
         self.unconverged
     }
@@ -231,8 +235,8 @@ impl State {
         let mut sizes = sizes.chain(self.controller.numbers()).chain([self.shortest_step]);
         let damage = if self.halved > MOST_HALVINGS {
             "it says that a step was halved more often than it can be"
-        } else if !self.numbers().flatten().chain(self.moved()).all(|v| v.is_finite()) {
-            "it contains NaN or infinity"
+        } else if !self.is_finite() {
+            return refuse(NOT_FINITE.to_owned());
         } else if self.stage.first > self.step {
             "it says that it belongs to steps that it has not reached"
         } else if self.unconverged.is_some_and(|k| k >= self.step) {
@@ -245,7 +249,12 @@ impl State {
         refuse(format!("{damage}; use an earlier checkpoint or start anew"))
     }
 
-    /// What it says of couplings.
+    /// Whether all that is stored at nodes, rows and couplings are numbers.
+    pub(crate) fn is_finite(&self) -> bool {
+        self.numbers().flatten().chain(self.moved()).all(|v| v.is_finite())
+    }
+
+    /// What it says of couplings, and of nodes that supports hold where they were left.
     fn moved(&self) -> impl Iterator<Item = &f64> {
         let locked = self.stage.locked.iter().flatten().flatten();
         let left = self.stage.left.iter().flatten().flatten();

@@ -1,6 +1,7 @@
 //! Supports that start, and random stages.
 
 use crate::common::*;
+use signorini_qp::active_set::ActiveSetSettings;
 use signorini_tfeti::internal::on_ranks;
 
 /// A block on a floor, held at one side, pulled until time 2; its top may be clamped where it is.
@@ -203,4 +204,70 @@ fn random_stages_are_scenes_of_their_own() {
             assert!(off < 1e-5, "round {round}, step {k}: {off:e}");
         }
     }
+}
+
+/// Equations and supports that start say the same of nodes as well as a solve does; they were contradictions.
+#[test]
+fn supports_start_on_nodes_of_equations() {
+    let mesh = || block([2.0, 1.0, 1.0], [4, 2, 2]);
+    let node = |point: [f64; 3]| mesh().points().iter().position(|p| *p == point).expect("node") as u32;
+    let (corner, other) = (node([2.0, 0.0, 1.0]), node([2.0, 1.0, 1.0]));
+    let equal = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(|d| {
+        let back = d.map(|v: f64| -v);
+        Equation::new([(corner, d), (other, back)])
+    });
+    let one = [Equation::new([(corner, [0.0, 1.0, 0.0])])];
+    for equations in [&one[..], &equal] {
+        for (settings, most) in [(Settings::default(), 1e-6), (tight(), 1e-9), (at(1e-3), 1e-3)] {
+            let scene = Scene::new(mesh(), steel())
+                .with_support(Support::fixed(brick::X_MIN))
+                .with_support(Support::fixed([corner, other]).with_start(1.0))
+                .with_load(Load::traction(brick::Z_MAX, [0.0, 2e7, -1e8]).with_history(ramp()))
+                .with_analysis(Analysis::quasistatic(2.0, 2));
+            let scene = equations.iter().cloned().fold(scene, Scene::with_equation);
+            let mut simulation = Simulation::new(scene, settings).expect("set-up");
+            let mut place = || {
+                let result = step(&mut simulation);
+                assert!(result.report.status.converged());
+                [0, 1, 2].map(|c| result.displacement[3 * corner as usize + c])
+            };
+            let [before, held] = [place(), place()];
+            assert_close(&held, &before, most, "place");
+        }
+    }
+}
+
+/// Where a step that failed has left nodes is history where a support holds them later.
+#[test]
+fn places_of_steps_that_failed_are_told() {
+    let clamp = || vec![Support::fixed(brick::Z_MAX).with_start(2.0)];
+    let few = by(Method::ActiveSet(ActiveSetSettings::default().with_max_products(1)));
+    let few = few.with_max_fallback_products(1);
+    let mut failed = Simulation::new(grabbed(clamp(), Friction::None), few).expect("set-up");
+    let first = step(&mut failed);
+    assert!(!first.report.status.converged());
+    let mut simulation = Simulation::new(grabbed(clamp(), Friction::None), tight()).expect("set-up");
+    simulation.resume(failed.state().clone()).expect("resume");
+    let later = [(); 3].map(|()| step(&mut simulation).report.unconverged_history);
+    assert_eq!(later, [Some(0); 3]);
+}
+
+/// A support that starts may be as deep in an obstacle as it is left, not lead on into it.
+#[test]
+fn supports_that_start_lead_into_no_obstacle() {
+    let into = |depth: f64| {
+        let line = History::table(vec![(2.0, 0.0), (4.0, 1.0)]).expect("table");
+        let press = Support::components(brick::Z_MIN, [false, false, true]).with_start(2.0);
+        let slide = Support::fixed(brick::Z_MAX).with_motion([1e-3, 0.0, 0.0], ramp());
+        let scene = Scene::new(block([2.0, 1.0, 1.0], [6, 3, 3]), steel())
+            .with_support(slide)
+            .with_support(press.with_motion([0.0, 0.0, -depth], line))
+            .with_contact(Contact::rigid(brick::Z_MIN))
+            .with_analysis(Analysis::quasistatic(4.0, 4));
+        let mut simulation = Simulation::new(scene, Settings::default())?;
+        (0..4).try_for_each(|_| simulation.step().map(|_| ()))
+    };
+    into(0.0).expect("no motion");
+    let error = into(9e-7).unwrap_err();
+    assert!(matches!(error, ContactError::SupportInObstacle { .. }), "{error}");
 }

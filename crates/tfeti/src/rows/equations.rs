@@ -164,7 +164,7 @@ pub fn independent_equations(
         let left = elimination.reduce(line);
         let most = left.largest();
         match line.kind {
-            Kind::Equation(k) if most <= FIXED * left.size => left.check(&all[k])?,
+            Kind::Equation(k) if most <= FIXED * left.size => left.check(&all[k], &merged)?,
             Kind::Equation(k) if most <= ALMOST * left.size => {
                 let reason = "it depends on others but for a millionth of its coefficients; give these more digits, or \
                     leave it out";
@@ -311,14 +311,17 @@ impl Left {
     }
 
     /// Refuses an equation of which nothing is left unless it agrees with the others.
-    fn check(&self, equation: &FreeEquation) -> Result<(), TfetiError> {
+    fn check(&self, equation: &FreeEquation, supports: &MergedSupports) -> Result<(), TfetiError> {
         if self.tied {
             return Err(self.refused(
                 equation,
                 "it says what a tied contact says, too; leave its nodes out of one of them",
             ));
         }
-        match self.values.iter().all(|v| v.1.abs() <= AGREEING * self.value_size) {
+        let agrees = |(case, value): &(u32, f64)| {
+            value.abs() <= (AGREEING * self.value_size).max(self.size * supports.off(*case))
+        };
+        match self.values.iter().all(agrees) {
             true => Ok(()),
             false => Err(self.refused(
                 equation,

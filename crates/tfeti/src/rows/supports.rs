@@ -47,9 +47,18 @@ pub struct Motion {
     pub case: u32,
     /// Displacement vectors in metres: one for all nodes, or one for each node of the support.
     pub values: Vec<[f64; 3]>,
+    /// How far they may be off, m: where a solve has left nodes. Equations that supports say, too, then need not agree
+    /// with them better. Zero for given ones.
+    pub off: f64,
 }
 
 impl Motion {
+    /// Given displacements.
+    pub fn new(case: u32, values: Vec<[f64; 3]>) -> Self {
+        let off = 0.0;
+        Self { case, values, off }
+    }
+
     fn check(&self, support: usize, nodes: usize, supports: usize) -> Result<(), TfetiError> {
         let (found, case) = (self.values.len(), self.case);
         if found != 1 && found != nodes {
@@ -179,6 +188,8 @@ pub(super) struct MergedSupports {
     /// Nodes with at least one fixed direction, ascending (each counts three rows in the paper).
     pub(super) nodes: Vec<FixedNode>,
     pub(super) cases: usize,
+    /// How far displacements of each case may be off, m.
+    off: Vec<f64>,
 }
 
 /// A direction that supports fix at a node, and the first of them that does.
@@ -222,6 +233,11 @@ pub(super) fn check_node(node: u32, nodes: usize, place: impl FnOnce() -> String
 }
 
 impl MergedSupports {
+    /// How far displacements of a case may be off, m.
+    pub(super) fn off(&self, case: u32) -> f64 {
+        self.off.get(case as usize).copied().unwrap_or(0.0)
+    }
+
     pub(super) fn at(&self, node: u32) -> Option<&FixedNode> {
         let at = self.nodes.binary_search_by_key(&node, |n| n.node);
         at.ok().map(|k| &self.nodes[k])
@@ -238,6 +254,9 @@ impl MergedSupports {
             for motion in &support.motions {
                 motion.check(s, support.nodes.len(), cases)?;
                 merged.cases = merged.cases.max(motion.case as usize + 1);
+                merged.off.resize(merged.cases, 0.0);
+                let off = &mut merged.off[motion.case as usize];
+                *off = off.max(motion.off);
             }
             for (k, &node) in support.nodes.iter().enumerate() {
                 check_node(node, nodes, || format!("support {s}"))?;

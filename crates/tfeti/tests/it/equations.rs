@@ -25,10 +25,7 @@ fn system(equations: &[NodalEquation]) -> Result<(Tfeti, Decomposition), TfetiEr
         .with_rigid(vec![Rigid::Places(vec![0, 1, 30])])
         .expect("nodes of the mesh");
     let materials = Materials::uniform(Hooke::isotropic(2e11, 0.3).expect("steel"));
-    let moved = Motion {
-        case: 0,
-        values: vec![[2.0, 3.0, 5.0]],
-    };
+    let moved = Motion::new(0, vec![[2.0, 3.0, 5.0]]);
     let supports = [NodeSupport::fixed(b.mesh.nodes_on(brick::X_MIN)).with_motion(moved)];
     let builder = TfetiBuilder::new(&b.mesh, &cut, &materials).with_supports(&supports);
     let tfeti = builder.with_equations(equations).build()?;

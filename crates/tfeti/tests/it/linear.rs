@@ -158,10 +158,7 @@ fn prescribed_displacement_is_reached() {
     let right = b.mesh.nodes_on(brick::X_MAX);
     let supports = [
         NodeSupport::fixed(b.fixed.clone()),
-        NodeSupport::fixed(right.clone()).with_motion(Motion {
-            case: 0,
-            values: vec![pull],
-        }),
+        NodeSupport::fixed(right.clone()).with_motion(Motion::new(0, vec![pull])),
     ];
     let system = TfetiBuilder::new(&b.mesh, &b.decomposition, &b.materials)
         .with_supports(&supports)

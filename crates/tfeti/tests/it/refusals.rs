@@ -68,7 +68,7 @@ fn cases_beyond_the_supports_are_refused() {
     let b = Brick::new(1, 2);
     let of_case = |case| {
         let values = vec![[0.0; 3]];
-        let support = NodeSupport::fixed(b.fixed.clone()).with_motion(Motion { case, values });
+        let support = NodeSupport::fixed(b.fixed.clone()).with_motion(Motion::new(case, values));
         gluing(&b, &[support], &[])
     };
     assert!(of_case(0).is_ok());

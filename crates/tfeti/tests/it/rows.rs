@@ -167,7 +167,7 @@ fn bad_input_is_named() {
             }
         ));
     }
-    let motion = |values| Motion { case: 0, values };
+    let motion = |values| Motion::new(0, values);
     let support = NodeSupport::fixed(vec![0, 1]).with_motion(motion(vec![[0.0; 3]; 3]));
     assert!(matches!(
         err(&[support], &[]),

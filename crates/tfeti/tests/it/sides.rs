@@ -136,10 +136,7 @@ fn supports_at_some_nodes_leave_the_row() {
     let b = Brick::new(2, 3);
     let (own, contact) = (own(&b), contact(&b));
     let partner = b.mesh.nodes_on(brick::Z_MAX)[5..9].to_vec();
-    let motion = |case, z| Motion {
-        case,
-        values: vec![[0.0, 0.0, z]],
-    };
+    let motion = |case, z| Motion::new(case, vec![[0.0, 0.0, z]]);
     let held = |nodes: &[u32], case, z| {
         let z_only = Directions::Components([false, false, true]);
         NodeSupport::partial(nodes.to_vec(), z_only).with_motion(motion(case, z))

@@ -66,12 +66,7 @@ fn partial_supports_reduce_the_tangential_space() {
 fn doubled_supports_are_removed_and_contradictions_refused() {
     let b = Brick::new(1, 2);
     let node = b.fixed[0];
-    let moved = |case, values: [f64; 3]| {
-        vec![Motion {
-            case,
-            values: vec![values],
-        }]
-    };
+    let moved = |case, values: [f64; 3]| vec![Motion::new(case, vec![values])];
     let supports = [
         NodeSupport::fixed(b.fixed.clone()),
         NodeSupport {
@@ -123,10 +118,7 @@ fn prescribed_motion_of_a_support_appears_in_the_contact_offset() {
     let supports = [NodeSupport {
         nodes: vec![node],
         directions,
-        motions: vec![Motion {
-            case: 0,
-            values: vec![w],
-        }],
+        motions: vec![Motion::new(0, vec![w])],
     }];
     {
         let g = gluing(&b, &supports, &b.contact(true)).unwrap();
@@ -154,7 +146,7 @@ fn dragged_nodes_keep_their_tangential_rows() {
     let support = |along: [f64; 3]| {
         let directions = Directions::Components([true, false, false]);
         let values = vec![along];
-        [NodeSupport::partial(vec![node], directions).with_motion(Motion { case: 0, values })]
+        [NodeSupport::partial(vec![node], directions).with_motion(Motion::new(0, values))]
     };
     let rows = |along: [f64; 3], friction: bool| {
         let contact = b.contact(friction);
@@ -211,7 +203,7 @@ fn the_motion_of_a_partner_counts_against_that_of_the_node() {
     let (own, other) = (2e-3, 5e-4);
     let moved = |node: u32, case: u32, by: f64| {
         let values = vec![[0.0, 0.0, -by]];
-        NodeSupport::fixed(vec![node]).with_motion(Motion { case, values })
+        NodeSupport::fixed(vec![node]).with_motion(Motion::new(case, values))
     };
     for (second, expected) in [(0, vec![(0, own - other)]), (1, vec![(0, own), (1, -other)])] {
         let supports = [moved(0, 0, own), moved(5, second, other)];
