@@ -114,11 +114,11 @@
 //! - `OP` is read from the first card of its kind in a step; `*DLOAD` and `*DSLOAD` are one kind. Forces at one
 //!   node in one step are added; pressures given twice on one face are refused.
 //! - A support that a step leaves out ([`OP=NEW`](signorini_contact::Support::with_end)), and a contact pair that it removes,
-//!   are gone in its first increment, as in CalculiX; in Abaqus the reaction fades during the step. A support that a step
-//!   [adds](signorini_contact::Support::with_start) leads its nodes from where they are along a straight line to their value
-//!   at the end of the step; with an amplitude they jump. A pair that it adds presses overlaps apart in the first increment,
-//!   not during the step. What is held of rigid bodies, couplings and nodes of equations
-//!   stays the same in all steps.
+//!   are gone in its first increment, as in CalculiX; in Abaqus the reaction fades during the step. A support that a
+//!   step [adds](signorini_contact::Support::with_start) leads its nodes from where they are along a straight line to
+//!   their value at the end of the step; with an amplitude they jump. A pair that it adds presses overlaps apart in
+//!   the first increment, not during the step. What is held of rigid bodies, couplings and nodes of equations stays
+//!   the same in all steps.
 //!
 //! # Rigid bodies
 //!

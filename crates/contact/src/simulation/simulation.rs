@@ -151,7 +151,7 @@ impl Simulation {
         &self.settings
     }
 
-    /// Wall-clock time of the set-up.
+    /// Wall-clock time of the set-up, with those of the stages entered so far.
     pub fn setup_time(&self) -> Duration {
         self.setup
     }

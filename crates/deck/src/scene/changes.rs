@@ -3,12 +3,12 @@
 use crate::error::DeckError;
 use crate::model::{Ignored, Law, Model};
 
-/// From which step on, if not from the first, and up to which.
-pub(super) type Span = [Option<usize>; 2];
+/// From which step on something acts, if not from the first, and up to which.
+pub(super) type Acting = [Option<usize>; 2];
 
 /// The spans of each pair.
-pub(super) fn spans(model: &Model, ignored: &mut Vec<Ignored>) -> Result<Vec<Vec<Span>>, DeckError> {
-    let mut spans: Vec<Vec<Span>> = vec![vec![[None; 2]]; model.pairs.len()];
+pub(super) fn spans(model: &Model, ignored: &mut Vec<Ignored>) -> Result<Vec<Vec<Acting>>, DeckError> {
+    let mut spans: Vec<Vec<Acting>> = vec![vec![[None; 2]]; model.pairs.len()];
     for (step, given) in model.steps.iter().enumerate() {
         for change in &given.changes {
             let names = [change.slave.name.as_str(), change.master.name.as_str()];

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use signorini_contact::{Contact, Friction};
 use signorini_fem_mesh::FacetTag;
 
-use super::changes::{Span, spans};
+use super::changes::{Acting, spans};
 use super::faces::{FaceTable, Known};
 use super::rigid::{FreeLead, Lead, obstacle};
 use super::ties;
@@ -77,7 +77,7 @@ pub(super) fn contacts(
             let given = clearances.get(&pair.surfaces()).copied();
             contact = with_gap(contact, (given, takes_gap), (touch, master.is_empty()), ignored)?;
         }
-        let during = |[from, until]: Span| {
+        let during = |[from, until]: Acting| {
             let begins = |step: Option<usize>| step.and_then(|step| known.timeline.spans.get(step)).map(|s| s.start);
             let contact = begins(from).map_or(contact.clone(), |time| contact.clone().with_start(time));
             begins(until).map_or(contact.clone(), |time| contact.with_end(time))

@@ -1,5 +1,6 @@
 //! What the steps say of one component of a node that is held.
 
+use super::changes::Acting;
 use super::history::Track;
 use super::timeline::Timeline;
 use crate::model::Given;
@@ -12,7 +13,7 @@ pub(super) struct Held {
     /// Given before the first step, which may say it anew.
     pub(super) before: bool,
     /// The step from which on it is held, if that is not the first, and that which releases it.
-    pub(super) span: [Option<usize>; 2],
+    pub(super) span: Acting,
 }
 
 impl Held {
