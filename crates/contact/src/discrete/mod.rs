@@ -14,7 +14,6 @@ mod creases;
 mod equations;
 mod extents;
 mod free_points;
-mod gaps;
 mod means;
 mod normals;
 mod overflow;

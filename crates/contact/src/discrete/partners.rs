@@ -5,11 +5,10 @@
 //! those of facets. Nodes on sides that do not face each other are no partners: a thin body has nodes of its far side
 //! on the same normal.
 
-use super::gaps::{MortarGaps, check_overlap};
 use super::normals::{differ, fixed_frame};
 use crate::error::ContactError;
 use crate::mortar::{MortarNode, mortar_nodes};
-use crate::scene::Contact;
+use crate::scene::{Contact, Gap};
 use crate::tolerances::{BESIDE, COARSER, FACING, HARDER, LOCKING, MOST_TILT, OVERLAP, TILT};
 use rayon::prelude::*;
 use rstar::primitives::GeomWithData;
@@ -40,8 +39,6 @@ pub(super) struct Paired {
     pub(super) partners: Partners,
     /// Whether the scene names the other side first.
     pub(super) swapped: bool,
-    /// What coordinates say where meshes do not match.
-    pub(super) apart: MortarGaps,
 }
 
 /// What the nodes of a contact surface may touch.
@@ -80,7 +77,6 @@ impl Paired {
             fixed,
             partners: Partners::Obstacle,
             swapped: false,
-            apart: MortarGaps::default(),
         };
         if contact.partner.is_empty() {
             return Ok(paired);
@@ -130,14 +126,12 @@ impl Paired {
             let contact = index;
             return Err(ContactError::NoPartner { contact, distance });
         }
+        paired.partners = Partners::Mortar(mortar);
         paired.swapped = swapped;
         if swapped {
             paired.surface = other.surface;
             paired.fixed = fixed.and_then(|frame| SurfaceFrame::from_normal(frame.normal.map(|c| -c)));
         }
-        let own = (&paired.surface, paired.fixed);
-        paired.apart = MortarGaps::new(mesh, (index, contact), own, &mortar, rounding)?;
-        paired.partners = Partners::Mortar(mortar);
         Ok(paired)
     }
 }
@@ -204,6 +198,28 @@ fn nodes(
     Ok(found
         .filter(|found| differ_in_place(mesh, surface, found, rounding))
         .and_then(|found| match_facets(mesh, surface, found, &other.surface)))
+}
+
+/// Refuses bodies that lie in each other deeper than the facets of a node and its partner, unless the gap is given: tied
+/// sides may be apart, not one within the other. `size` is the root of the area of the node, m.
+pub(super) fn check_overlap(
+    index: usize,
+    contact: &Contact,
+    [node, partner]: [u32; 2],
+    gap: f64,
+    size: f64,
+) -> Result<(), ContactError> {
+    let measured = contact.tied || matches!(contact.gap, Gap::Measured);
+    if measured && -gap > size {
+        return Err(ContactError::Overlap {
+            contact: index,
+            node,
+            partner,
+            depth: -gap,
+            size,
+        });
+    }
+    Ok(())
 }
 
 /// Whether the partners of nodes in different places differ.

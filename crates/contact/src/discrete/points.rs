@@ -11,9 +11,10 @@
 use super::creases::{SurfaceSide, creases};
 use super::means::{MatchingMid, Means, mean_gap};
 use super::normals::{along_axis, differ, shape_frames};
-use super::partners::{Paired, Partners};
+use super::partners::{Paired, Partners, check_overlap};
 use super::side::{Sides, mean_place, turned};
 use crate::error::ContactError;
+use crate::mortar::MortarNode;
 use crate::scene::{Contact, Pose, Scene};
 use crate::tolerances::SAME_NORMAL;
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh, vec3};
@@ -122,7 +123,14 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                         continue;
                     };
                     (one[0].frame, one[0].area) = (seen.frame, seen.area);
-                    measured = paired.apart.gaps[local];
+                    let normal = fixed.unwrap_or(seen.frame).normal;
+                    let gap = mortar_gap(scene, index, surface, (local, &normal), seen)?;
+                    // weights are in part negative: over a curved side a mean may be inside where nothing is
+                    let deepest = seen.nearest.min(0.0);
+                    let inside = scene.mesh.order() == 1 && !contact.tied && gap < deepest - rounding;
+                    let gap = if inside { deepest } else { gap };
+                    let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
+                    measured = if gap.abs() <= weights * rounding { 0.0 } else { gap };
                     mean.clone_from(&seen.own);
                     Some(Side::new(seen.partner.clone()))
                 }
@@ -219,6 +227,27 @@ fn turn(mesh: &TetMesh, sides: &mut Sides, rounding: f64) {
             false => partner,
         }
     });
+}
+
+/// The weighted gap of a node of a surface along a normal, m: from the node to the weighted mean of what it sees.
+fn mortar_gap(
+    scene: &Scene,
+    contact: usize,
+    surface: &Surface,
+    (local, normal): (usize, &[f64; 3]),
+    seen: &MortarNode,
+) -> Result<f64, ContactError> {
+    let node = surface.nodes()[local];
+    let from = scene.mesh.points()[node as usize];
+    let along = |&(other, weight): &(u32, f64)| {
+        let way = vec3::sub(scene.mesh.points()[other as usize], from);
+        weight * vector::dot(&way, normal)
+    };
+    let [partner, own] = [&seen.partner, &seen.own].map(|side| side.iter().map(along).sum::<f64>());
+    let gap = partner - own + seen.way;
+    let (nodes, size) = ([node, seen.partner[0].0], surface.areas()[local].sqrt());
+    check_overlap(contact, &scene.contacts[contact], nodes, gap, size)?;
+    Ok(gap)
 }
 
 /// The contact points: of the conditions of a node those with one normal are one, in the place of the first. Beside them

@@ -2,7 +2,6 @@
 
 use super::couplings::Couplings;
 use super::equations::equations;
-use super::gaps::Overlap;
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
 use super::partners::Paired;
 use super::penetration::check_penetration;
@@ -49,8 +48,6 @@ pub(crate) struct DiscreteScene {
     pub(crate) rounding: f64,
     /// Contacts whose meshes do not match, and whether the other side than the scene names first has the points.
     pub(crate) apart: Vec<(usize, bool)>,
-    /// Contacts of which coordinates do not say how far their sides overlap, with the deepest place.
-    pub(crate) unsure: Vec<(usize, Overlap)>,
     /// How long it took to find the sides of the contacts.
     pub(crate) search: Duration,
 }
@@ -75,11 +72,6 @@ impl DiscreteScene {
         let search = started.elapsed();
         let mortar = paired.iter().enumerate().filter(|(_, p)| p.is_apart());
         let apart = mortar.map(|(index, p)| (index, p.swapped)).collect();
-        let unsure = paired
-            .iter()
-            .enumerate()
-            .filter_map(|(index, p)| Some((index, p.apart.unsure?)));
-        let unsure = unsure.collect();
         let mut conditions = conditions(scene, &paired, rounding)?;
         let ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
         if !ties.is_empty() {
@@ -139,7 +131,6 @@ impl DiscreteScene {
             poses,
             rounding,
             apart,
-            unsure,
             search,
         })
     }

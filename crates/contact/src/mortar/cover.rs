@@ -6,9 +6,10 @@
 //! A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34, 2012). On quadratic facets it is half the sum
 //! of that and of the shape function of the corner; edges that are bent in the plane, as at the rim of a disc, count.
 
-use super::plane::{NOWHERE, Point, area, barycentric, cross, cut, mean, place, pseudo_inverse, sub, widened};
-use crate::tolerances::{COVERED, FLAT_EDGE};
+use crate::tolerances::{BENT_STEPS, COVERED, NO_EXTENT};
 use signorini_fem_mesh::internal::{facet_shape, triangle};
+
+type Point = [f64; 2];
 
 /// A triangle of the other side, laid into the plane of the facet: corners, counter-clockwise, and their node numbers.
 #[derive(Debug, Clone, Copy)]
@@ -21,9 +22,6 @@ pub(super) struct Laid {
     pub(super) bend: Option<[Point; 3]>,
     /// Where a displacement is to be taken from its tetrahedron to the facet, the way there.
     pub(super) way: Option<Way>,
-    /// How far its curve is outside its edges at their middles, m, and outside straight ones.
-    pub(super) bulge: [f64; 3],
-    pub(super) arc: [f64; 3],
 }
 
 impl Laid {
@@ -83,15 +81,6 @@ pub(super) struct Flat {
     pub(super) bend: Option<[Point; 3]>,
     /// How high its mid-nodes are over the plane, m.
     pub(super) heights: [f64; 3],
-    /// How far its curve is outside its edges at their middles, m.
-    pub(super) bulge: [f64; 3],
-}
-
-impl Flat {
-    /// The same outside straight edges.
-    fn arc(&self) -> [f64; 3] {
-        [0, 1, 2].map(|k| self.heights[k] + self.bulge[k])
-    }
 }
 
 /// The covered part of a facet.
@@ -107,13 +96,8 @@ pub(super) struct Cover {
     pub(super) own: Vec<(u32, [f64; 3])>,
     /// The same of the ways to triangles that are not in the plane of the facet, m³.
     pub(super) ways: [f64; 3],
-    /// The same of what the curves of both sides bring nearer than facets are, negative, m³.
-    pub(super) bulges: [f64; 3],
-    /// How far the curves of both sides are outside their edges, and outside straight ones, at most, m.
-    pub(super) sagitta: f64,
-    pub(super) arc: f64,
-    /// The smallest and the largest distance of the other side over the part, m; negative inside.
-    pub(super) range: [f64; 2],
+    /// The smallest distance of the other side over the part, m; negative inside.
+    pub(super) nearest: f64,
 }
 
 /// Adds to what a node has.
@@ -130,17 +114,14 @@ pub(super) struct Piece {
     polygon: Vec<Point>,
     pub(super) area: f64,
     laid: Laid,
-    /// The smallest and the largest distance of the triangle over it, m; negative inside.
-    range: [f64; 2],
-    /// Whether the sides are curved here.
-    is_curved: bool,
+    /// The smallest distance of the triangle over it, m; negative inside.
+    pub(super) nearest: f64,
 }
 
 impl Piece {
     /// The part of a triangle inside a facet (corners counter-clockwise); `None` if they do not overlap. `heights` are the
     /// distances of its corners, m.
-    pub(super) fn new(own: &Flat, laid: Laid, heights: [f64; 3]) -> Option<Self> {
-        let facet = &own.corners;
+    pub(super) fn new(facet: &[Point; 3], laid: Laid, heights: [f64; 3]) -> Option<Self> {
         let mut polygon = laid.corners.to_vec();
         let whole = area(facet);
         for k in 0..3 {
@@ -158,43 +139,13 @@ impl Piece {
                 .map(|(l, h)| l * h)
                 .sum()
         };
-        let arcs = [own.arc(), laid.arc];
-        let mut piece = Self {
-            range: NOWHERE,
+        let nearest = polygon.iter().map(height).fold(f64::INFINITY, f64::min);
+        (area > COVERED * whole).then_some(Self {
+            polygon,
             area,
             laid,
-            is_curved: arcs.as_flattened().iter().any(|a| a.abs() > FLAT_EDGE * whole.sqrt()),
-            polygon,
-        };
-        if piece.is_curved {
-            // along an edge distances of curves are parabolas
-            let distance = |p: Point| -> f64 { height(&p) - piece.nearer(own, &arcs, p) };
-            let ends = piece.polygon.iter().zip(piece.polygon.iter().cycle().skip(1));
-            let along = |(p, q): (&Point, &Point)| {
-                let [from, middle, to] = [*p, mean(*p, *q), *q].map(distance);
-                let (slope, bend) = (0.5 * (to - from), from + to - 2.0 * middle);
-                let turns = slope.abs() < bend.abs();
-                let top = if turns {
-                    middle - 0.5 * slope * slope / bend
-                } else {
-                    middle
-                };
-                widened([from.min(top), from.max(top)], [middle; 2])
-            };
-            let inside = distance(piece.middle());
-            piece.range = ends.map(along).fold([inside; 2], widened);
-        } else {
-            piece.range = piece.polygon.iter().map(|p| [height(p); 2]).fold(NOWHERE, widened);
-        }
-        (area > COVERED * whole).then_some(piece)
-    }
-
-    /// How much nearer curves of both sides are at a point than straight edges or facets, by how far they are outside
-    /// them, m.
-    fn nearer(&self, own: &Flat, [here, there]: &[[f64; 3]; 2], p: Point) -> f64 {
-        let outside =
-            |edges: &[f64; 3], l: [f64; 3]| (0..3).map(|k| 4.0 * l[k] * l[(k + 1) % 3] * edges[k]).sum::<f64>();
-        outside(here, barycentric(&own.corners, p)) + outside(there, barycentric(&self.laid.corners, p))
+            nearest,
+        })
     }
 
     /// Mean of the points.
@@ -307,9 +258,7 @@ impl Cover {
     pub(super) fn new(own: &Flat, pieces: &[Piece]) -> Option<Self> {
         let multipliers = Multipliers::new(own, pieces)?;
         let rule = own.nodes.map(|_| triangle());
-        let (mut weights, mut here) = (Vec::new(), [[0.0; 3]; 6]);
-        let (mut ways, mut bulges, mut range) = ([[0.0; 3]], [[0.0; 3]], NOWHERE);
-        let (mut sagitta, mut arc) = (0.0f64, 0.0f64);
+        let (mut weights, mut here, mut ways) = (Vec::new(), [[0.0; 3]; 6], [[0.0; 3]]);
         for piece in pieces {
             let laid = &piece.laid;
             let mut there = [[0.0; 3]; 10];
@@ -331,19 +280,6 @@ impl Cover {
             for (node, moments) in laid.all_nodes().zip(&there) {
                 add(&mut weights, node, multipliers.take(moments));
             }
-            range = widened(range, piece.range);
-            let most = |edges: &[f64; 3]| edges.iter().fold(0.0f64, |m, e| m.max(e.abs()));
-            let missing = most(&own.bulge) + most(&laid.bulge);
-            if missing > 0.0 {
-                sagitta = sagitta.max(missing);
-                let both = [own.bulge, laid.bulge];
-                piece.integrate(Some(&triangle()), |p, w| {
-                    multipliers.add(&mut bulges, &[-piece.nearer(own, &both, p)], p, w);
-                });
-            }
-            if piece.is_curved {
-                arc = arc.max(most(&own.arc()) + most(&laid.arc));
-            }
         }
         let own = own.nodes.into_iter().flatten().zip(&here);
         Some(Self {
@@ -352,12 +288,92 @@ impl Cover {
             weights,
             own: own.map(|(node, moments)| (node, multipliers.take(moments))).collect(),
             ways: multipliers.take(&ways[0]),
-            bulges: multipliers.take(&bulges[0]),
-            sagitta,
-            arc,
-            range,
+            nearest: pieces.iter().map(|piece| piece.nearest).fold(f64::INFINITY, f64::min),
         })
     }
+}
+
+/// The part of a polygon where a linear function is not negative.
+fn cut(polygon: &[Point], side: impl Fn(Point) -> f64) -> Vec<Point> {
+    let mut out = Vec::with_capacity(polygon.len() + 1);
+    for (k, &p) in polygon.iter().enumerate() {
+        let q = polygon[(k + 1) % polygon.len()];
+        let [a, b] = [side(p), side(q)];
+        if a >= 0.0 {
+            out.push(p);
+        }
+        if (a > 0.0 && b < 0.0) || (a < 0.0 && b > 0.0) {
+            let t = a / (a - b);
+            out.push([0, 1].map(|c| p[c] + t * (q[c] - p[c])));
+        }
+    }
+    out
+}
+
+/// Shape functions of a triangle at a point.
+pub(super) fn barycentric(corners: &[Point; 3], p: Point) -> [f64; 3] {
+    let [a, b, c] = *corners;
+    let whole = cross(sub(b, a), sub(c, a));
+    let [second, third] = [cross(sub(p, a), sub(c, a)), cross(sub(b, a), sub(p, a))].map(|v| v / whole);
+    [1.0 - second - third, second, third]
+}
+
+/// Barycentric coordinates of a point in a triangle with bent edges 01, 12, 20: Newton's method for `x(l) = p`, `x` the
+/// quadratic interpolation of corners and mid-nodes.
+fn place(corners: &[Point; 3], bend: Option<&[Point; 3]>, p: Point) -> [f64; 3] {
+    let mut l = barycentric(corners, p);
+    let (Some([e, f, g]), [a, b, c]) = (bend, *corners) else {
+        return l;
+    };
+    let sum = |terms: [(f64, Point); 3]| [0, 1].map(|k| 4.0 * terms.iter().map(|(t, x)| t * x[k]).sum::<f64>());
+    let plus = |a: Point, b: Point| [a[0] + b[0], a[1] + b[1]];
+    for _ in 0..BENT_STEPS {
+        let bent = sum([(l[0] * l[1], *e), (l[1] * l[2], *f), (l[2] * l[0], *g)]);
+        let off = [0, 1].map(|k| p[k] - bent[k] - (0..3).map(|i| l[i] * corners[i][k]).sum::<f64>());
+        // derivatives along the second and the third coordinate
+        let u = plus(sub(b, a), sum([(l[0] - l[1], *e), (l[2], *f), (-l[2], *g)]));
+        let v = plus(sub(c, a), sum([(-l[1], *e), (l[1], *f), (l[0] - l[2], *g)]));
+        let det = cross(u, v);
+        let [s, t] = [cross(off, v) / det, cross(u, off) / det];
+        if !(s.is_finite() && t.is_finite()) {
+            break;
+        }
+        l = [l[0] - s - t, l[1] + s, l[2] + t];
+    }
+    l
+}
+
+/// Inverse of a symmetric matrix `[xx, xy, yy]` of second moments, without directions in which there is no extent.
+fn pseudo_inverse([xx, xy, yy]: [f64; 3]) -> [f64; 3] {
+    let (mean, half) = (0.5 * (xx + yy), (0.5 * (xx - yy)).hypot(xy));
+    let (large, small) = (mean + half, (xx * yy - xy * xy) / (mean + half));
+    if small > NO_EXTENT * large {
+        let det = large * small;
+        return [yy / det, -xy / det, xx / det];
+    }
+    // the direction of the larger one: a column of the matrix minus the smaller one
+    let [x, y] = if xx > yy { [xx, xy] } else { [xy, yy] };
+    let scale = large * (x * x + y * y);
+    [x * x / scale, x * y / scale, y * y / scale]
+}
+
+/// Area of a polygon, counter-clockwise positive.
+fn area(polygon: &[Point]) -> f64 {
+    let first = polygon[0];
+    let pairs = polygon[1..].windows(2);
+    pairs.map(|p| 0.5 * cross(sub(p[0], first), sub(p[1], first))).sum()
+}
+
+fn sub(a: Point, b: Point) -> Point {
+    [a[0] - b[0], a[1] - b[1]]
+}
+
+fn mean(a: Point, b: Point) -> Point {
+    [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
+}
+
+fn cross(a: Point, b: Point) -> f64 {
+    a[0] * b[1] - a[1] * b[0]
 }
 
 #[cfg(test)]
@@ -372,8 +388,6 @@ mod tests {
             mids: None,
             bend: None,
             way: None,
-            bulge: [0.0; 3],
-            arc: [0.0; 3],
         }
     }
 
@@ -409,15 +423,14 @@ mod tests {
         ];
         let linear = |p: Point| 2.0 - 3.0 * p[0] + 0.7 * p[1];
         for laid in covers {
+            let pieces: Vec<Piece> = laid.iter().filter_map(|&l| Piece::new(&facet, l, [0.0; 3])).collect();
+            assert_eq!(pieces.len(), laid.len());
             let flat = Flat {
                 corners: facet,
                 nodes: None,
                 bend: None,
                 heights: [0.0; 3],
-                bulge: [0.0; 3],
             };
-            let pieces: Vec<Piece> = laid.iter().filter_map(|&l| Piece::new(&flat, l, [0.0; 3])).collect();
-            assert_eq!(pieces.len(), laid.len());
             let cover = Cover::new(&flat, &pieces).expect("covered");
             let sum: f64 = pieces.iter().map(|p| p.area).sum();
             assert!((cover.area - sum).abs() < 1e-15 && (cover.areas.iter().sum::<f64>() - sum).abs() < 1e-15);

@@ -9,9 +9,7 @@
 //! side faces.
 
 mod cover;
-mod curve;
 mod nodes;
-mod plane;
 mod search;
 
 pub(crate) use nodes::{MortarNode, mortar_nodes};

@@ -1,13 +1,12 @@
 //! The other side of each node of a surface.
 
 use super::cover::Cover;
-use super::curve::is_bent;
-use super::plane::widened;
 use super::search::{Normals, covers, in_order};
-use crate::tolerances::{COVERED, NO_WEIGHT};
+use crate::tolerances::{COVERED, NO_WEIGHT, SAME_NORMAL};
+use crate::vec3::edge_cosine;
 use rayon::prelude::*;
 use signorini_fem_mesh::internal::Lists;
-use signorini_fem_mesh::vec3::{add, scale};
+use signorini_fem_mesh::vec3::{add, area_vector, scale};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use std::collections::BTreeMap;
 
@@ -21,14 +20,8 @@ pub(crate) struct MortarNode {
     pub(crate) partner: Vec<(u32, f64)>,
     /// Mean distance between tied sides along the normal, m, as far as the nodes of the partner do not have it.
     pub(crate) way: f64,
-    /// The same between sides that may touch, from the curves that facets stand for to the facets of both sides, m.
-    pub(crate) bulge: [f64; 3],
-    /// How far these curves are outside edges on both sides, at most, m, and outside straight ones; zero where they are
-    /// flat.
-    pub(crate) sagitta: f64,
-    pub(crate) arc: f64,
-    /// The smallest and the largest distance of the curves of both sides around it, m; negative inside.
-    pub(crate) range: [f64; 2],
+    /// The smallest distance of facets of both sides around it, as if they were flat, m; negative inside.
+    pub(crate) nearest: f64,
     /// Integral of the dual shape function of the node over what is covered: `D_jj`, m².
     pub(crate) area: f64,
     /// Normal of the covered facets, out of the first side, and tangents: of curved ones the mean that displacements of its
@@ -53,12 +46,12 @@ pub(crate) fn mortar_nodes(
     crease: f64,
 ) -> Vec<Option<MortarNode>> {
     let triangles = in_order(mesh, surface);
-    let crease = crease.to_radians().cos();
-    let covers = covers(mesh, &triangles, other, (tied, crease));
+    let covers = covers(mesh, &triangles, other, tied);
     let corners: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.nodes).collect();
     let around = Lists::by_key(mesh.points().len(), corners.as_flattened());
     // tied sides need no normal, and means of displacements have their own
     let bends = !tied && mesh.order() == 1;
+    let crease = crease.to_radians().cos();
     let is_tip = |node: u32| other.local(node).is_some();
     let node = |(local, &own): (usize, &u32)| {
         if is_tip(own) {
@@ -104,10 +97,7 @@ impl Share {
 struct Sums {
     area: f64,
     way: f64,
-    bulge: [f64; 3],
-    sagitta: f64,
-    arc: f64,
-    range: Option<[f64; 2]>,
+    nearest: Option<f64>,
     normal: [f64; 3],
     own: BTreeMap<u32, f64>,
     partner: BTreeMap<u32, f64>,
@@ -117,12 +107,7 @@ impl Sums {
     fn add(&mut self, share: &Share, corners: &[u32; 3], cover: &Cover, normals: &Normals) {
         self.area += share.of(&cover.areas);
         self.way += share.of(&cover.ways);
-        if cover.sagitta > 0.0 {
-            self.bulge = add(self.bulge, scale(share.of(&cover.bulges), normals.mean()));
-            self.sagitta = self.sagitta.max(cover.sagitta);
-        }
-        self.arc = self.arc.max(cover.arc);
-        self.range = Some(self.range.map_or(cover.range, |known| widened(known, cover.range)));
+        self.nearest = Some(self.nearest.map_or(cover.nearest, |known| known.min(cover.nearest)));
         match normals {
             Normals::Plane(normal) => self.normal = add(self.normal, scale(cover.area, *normal)),
             // the mean that displacements have; three times, as plane facets count whole
@@ -173,12 +158,20 @@ impl Sums {
             own,
             partner,
             way: self.way / self.area,
-            bulge: self.bulge.map(|b| b / self.area),
-            sagitta: self.sagitta,
-            arc: self.arc,
-            range: self.range?,
+            nearest: self.nearest?,
             area: self.area,
             frame,
         })
     }
+}
+
+/// Whether facets around a node are not in one plane, and none meets its neighbour at a crease, which is given by its
+/// cosine.
+fn is_bent(mesh: &TetMesh, facets: &[&[u32; 3]], crease: f64) -> bool {
+    let vector = |facet: &[u32; 3]| area_vector(&facet.map(|n| mesh.points()[n as usize]));
+    let pairs =
+        (facets.iter().enumerate()).flat_map(|(k, first)| facets[..k].iter().map(move |other| [*first, *other]));
+    let cosines = pairs.filter_map(|pair| edge_cosine(pair, pair.map(vector)));
+    let least = cosines.fold(1.0, f64::min);
+    least > crease && least < SAME_NORMAL
 }

@@ -1,8 +1,6 @@
 //! Which facets of the other side cover a facet.
 
-use super::cover::{Cover, Flat, Laid, Piece, Way};
-use super::curve::bulges;
-use super::plane::barycentric;
+use super::cover::{Cover, Flat, Laid, Piece, Way, barycentric};
 use crate::tolerances::{BENT, FACING, OVERLAP};
 use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -45,14 +43,13 @@ impl Triangle {
     }
 
     /// Itself in its own plane.
-    fn flat(&self, mesh: &TetMesh, plane: &Plane, bulge: [f64; 3]) -> Flat {
+    fn flat(&self, mesh: &TetMesh, plane: &Plane) -> Flat {
         let height = |n: u32| plane.lay(mesh.points()[n as usize]).1;
         Flat {
             corners: plane.corners,
             nodes: self.quadratic(),
             bend: self.bend(mesh, plane, &plane.corners),
             heights: self.mids.map_or([0.0; 3], |mids| mids.map(height)),
-            bulge,
         }
     }
 
@@ -130,7 +127,6 @@ struct OtherSide {
     tree: RTree<GeomWithData<Rectangle<[f64; 3]>, u32>>,
     corners: Vec<Corners>,
     normals: Vec<[f64; 3]>,
-    bulges: Vec<[f64; 3]>,
 }
 
 /// A facet in its own plane: origin in the middle.
@@ -149,35 +145,17 @@ pub(super) enum Normals {
     Curved([[f64; 3]; 6]),
 }
 
-impl Normals {
-    pub(super) fn mean(&self) -> [f64; 3] {
-        match self {
-            Self::Plane(normal) => *normal,
-            Self::Curved(normals) => unit(normals.iter().copied().fold([0.0; 3], add)),
-        }
-    }
-}
-
 /// The cover of each facet of a surface, by the nodes of the other one; the normals of the facets beside it.
 ///
 /// What is farther away than four times the largest distance found anywhere is not looked for, unless nothing is found.
-/// Displacements of the other side are those where they are, or [on the facet](Way) if it is `tied`. Sides that may
-/// touch are as far apart as the curves that their facets stand for; these end at creases, which are given by a cosine.
+/// Displacements of the other side are those where they are, or [on the facet](Way) if it is `tied`.
 pub(super) fn covers(
     mesh: &TetMesh,
     triangles: &[Triangle],
     other: &Surface,
-    (tied, crease): (bool, f64),
+    tied: bool,
 ) -> Vec<Option<(Cover, Normals)>> {
-    let curves = |triangles: &[Triangle]| match tied {
-        true => vec![[0.0; 3]; triangles.len()],
-        false => {
-            let (nodes, mids): (Vec<_>, Vec<_>) = triangles.iter().map(|t| (t.nodes, t.mids)).unzip();
-            bulges(mesh, &nodes, &mids, crease)
-        }
-    };
-    let other = OtherSide::new(mesh, other, curves);
-    let own_bulges = curves(triangles);
+    let other = OtherSide::new(mesh, other);
     let planes: Vec<Option<Plane>> = triangles.iter().map(|t| Plane::new(&t.corners(mesh))).collect();
     let size = planes.iter().flatten().map(|p| p.size).fold(0.0, f64::max);
     let most = other.farthest(planes.iter().flatten());
@@ -189,10 +167,10 @@ pub(super) fn covers(
             .filter(|&k| out[k].is_none())
             .filter_map(|k| {
                 let plane = planes[k].as_ref()?;
-                let own = triangles[k].flat(mesh, plane, own_bulges[k]);
+                let own = triangles[k].flat(mesh, plane);
                 // a steep facet may go on beyond
                 let reaches = [reach, reach + FARTHER * plane.size];
-                let pieces = other.pieces(mesh, (plane, &own, tied), reaches);
+                let pieces = other.pieces(mesh, (plane, tied.then_some(&own)), reaches);
                 let farthest = pieces.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
                 let pieces: Vec<Piece> = pieces.into_iter().map(|p| p.0).collect();
                 let cover = Cover::new(&own, &pieces);
@@ -248,7 +226,7 @@ impl Plane {
 }
 
 impl OtherSide {
-    fn new(mesh: &TetMesh, surface: &Surface, curves: impl Fn(&[Triangle]) -> Vec<[f64; 3]>) -> Self {
+    fn new(mesh: &TetMesh, surface: &Surface) -> Self {
         let triangles = in_order(mesh, surface);
         let corners: Vec<Corners> = triangles.iter().map(|t| t.corners(mesh)).collect();
         let boxes = corners.iter().zip(0..);
@@ -256,7 +234,6 @@ impl OtherSide {
         Self {
             tree: RTree::bulk_load(boxes.collect()),
             normals: corners.iter().map(|c| unit(area_vector(c))).collect(),
-            bulges: curves(&triangles),
             corners,
             triangles,
         }
@@ -280,18 +257,18 @@ impl OtherSide {
     fn pieces(
         &self,
         mesh: &TetMesh,
-        (plane, own, tied): (&Plane, &Flat, bool),
+        (plane, tied): (&Plane, Option<&Flat>),
         [near, far]: [f64; 2],
     ) -> Vec<(Piece, f64)> {
-        let corners = plane.corners.map(|c| plane.space(c));
+        let own = plane.corners.map(|c| plane.space(c));
         let ways = [far, -far].map(|by| scale(by, plane.frame.normal));
-        let swept: Vec<[f64; 3]> = ways.iter().flat_map(|&way| corners.map(|c| add(c, way))).collect();
+        let swept: Vec<[f64; 3]> = ways.iter().flat_map(|&way| own.map(|c| add(c, way))).collect();
         let boxes = self.tree.locate_in_envelope_intersecting(&AABB::from_points(&swept));
         let mut numbers: Vec<u32> = boxes.map(|found| found.data).collect();
         numbers.sort_unstable();
         let mut found: Vec<(Piece, f64)> = numbers
             .iter()
-            .filter_map(|&k| self.piece(mesh, (plane, own, tied), k, far))
+            .filter_map(|&k| self.piece(mesh, (plane, tied), k, far))
             .collect();
         if found.iter().all(|(_, distance)| distance.abs() > near) {
             return Vec::new();
@@ -314,45 +291,33 @@ impl OtherSide {
     fn piece(
         &self,
         mesh: &TetMesh,
-        (plane, own, tied): (&Plane, &Flat, bool),
+        (plane, tied): (&Plane, Option<&Flat>),
         facet: u32,
         reach: f64,
     ) -> Option<(Piece, f64)> {
         let facet = facet as usize;
-        let facing = -dot(self.normals[facet], plane.frame.normal);
-        if facing < FACING {
+        if -dot(self.normals[facet], plane.frame.normal) < FACING {
             return None;
         }
         // seen from the other side it turns the other way round
         let [a, b, c] = self.corners[facet];
         let seen = [a, c, b].map(|corner| plane.lay(corner));
         let [i, j, k] = self.triangles[facet].nodes;
-        // along the normal of the plane
-        let [ij, jk, ki] = self.bulges[facet].map(|bulge| bulge / facing);
         let mut laid = Laid {
             corners: seen.map(|s| s.0),
             nodes: [i, k, j],
             mids: self.triangles[facet].mids.map(|[ij, jk, ki]| [ki, jk, ij]),
             bend: None,
             way: None,
-            bulge: [ki, jk, ij],
-            arc: [ki, jk, ij],
         };
         let seen_from = Triangle {
             nodes: laid.nodes,
             mids: laid.mids,
             tet: self.triangles[facet].tet,
         };
-        if let Some(mids) = laid.mids {
-            for k in 0..3 {
-                let over = plane.lay(mesh.points()[mids[k] as usize]).1;
-                let off = over - 0.5 * (seen[k].1 + seen[(k + 1) % 3].1);
-                laid.arc[k] -= if off.abs() > BENT * plane.size { off } else { 0.0 };
-            }
-        }
         laid.bend = seen_from.bend(mesh, plane, &laid.corners);
-        laid.way = tied.then(|| seen_from.way(mesh, plane, own)).flatten();
-        let piece = Piece::new(own, laid, seen.map(|s| s.1))?;
+        laid.way = tied.and_then(|own| seen_from.way(mesh, plane, own));
+        let piece = Piece::new(&plane.corners, laid, seen.map(|s| s.1))?;
         let shape = barycentric(&laid.corners, piece.middle());
         let distance: f64 = shape.iter().zip(&seen).map(|(l, s)| l * s.1).sum();
         (distance.abs() <= reach).then_some((piece, distance))

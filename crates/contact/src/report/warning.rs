@@ -2,7 +2,6 @@
 
 use crate::names::Names;
 use crate::part::Part;
-use crate::tolerances::CURVE;
 use std::path::PathBuf;
 
 signorini_fem_mesh::errors! {
@@ -16,8 +15,8 @@ signorini_fem_mesh::errors! {
     /// [plain](Self::plain) one.
     ///
     /// The thresholds are a tenth of the body for displacements, 0.05 for its rotation, 5 % for strains, an edge of a
-    /// facet for slips, 0.1 for the turn of normals, the body for gaps, a tenth of an overlap for what facets leave
-    /// open of it, 3 for coefficients, 0.45 for Poisson's ratios of linear tetrahedra and 10 % for the error of the
+    /// facet for slips, 0.1 for the turn of normals, the body for gaps, a tenth of an overlap for the distance of facets
+    /// from their curve, 3 for coefficients, 0.45 for Poisson's ratios of linear tetrahedra and 10 % for the error of the
     /// mesh. A body is as long as the longest side of the box around it; its rotation is that which fits the displacements
     /// of its nodes best. Strain is measured per tetrahedron by the Frobenius norm; at clamped edges the strain of linear
     /// theory grows without bound as the mesh is refined.
@@ -53,10 +52,10 @@ signorini_fem_mesh::errors! {
             {extent:.3e} long; look at the unit of the gap and at the places of the bodies",
             gap.abs(), if *gap < 0.0 { "inside" } else { "from" }, at(place);
         FacetedOverlap { contact: usize, node: u32, place: [f64; 3], overlap: f64, sagitta: f64 } =
-            "contact {contact} begins {overlap:.3e} inside its partner at node {node}, {}, between curves that are \
-            {sagitta:.3e} beside straight facets and known to {:.0e}, up to which sides touch without stress: tell \
-            the gap (with_gap, 0 for sides that touch, negative for a press fit), or take smaller facets",
-            at(place), CURVE * sagitta;
+            "contact {contact} begins {overlap:.3e} inside its partner at node {node}, {}, between facets that are \
+            {sagitta:.3e} beside the curve that they stand for, which is measured with it and presses all the same: tell \
+            the gap (with_gap, 0 for sides that touch), or take smaller facets, or mid-nodes on the curve",
+            at(place);
         LargeCoefficient { contact: usize, node: u32, place: [f64; 3], coefficient: f64 } =
             "friction of contact {contact}: the coefficient at node {node}, {}, is {coefficient}; hardly any pair of \
             materials has so much: {coefficient} in per cent is {}", at(place), 0.01 * coefficient;

@@ -114,12 +114,6 @@ impl Contact {
     /// the body with `tag`. The gap is measured between the sides, unless [`with_gap`](Self::with_gap) or
     /// [`with_gap_field`](Self::with_gap_field) prescribes it; sides may coincide. Sliding is small: a node keeps its
     /// partner, however far it slides.
-    ///
-    /// Where meshes do not match and facets are straight, curved sides are as far apart as the curves through their
-    /// nodes: clearances and press fits are what a drawing says. Facets that meet at more than the angle of
-    /// [`with_crease`](Self::with_crease) are no curve. These are known to a hundredth of their height over the facets;
-    /// smaller gaps and overlaps count as none, with a [warning](crate::Warning::FacetedOverlap) where one of them may
-    /// be meant.
     pub fn between(tag: FacetTag, partner: FacetTag) -> Self {
         Self {
             partner: vec![partner],
@@ -216,8 +210,7 @@ impl Contact {
     /// The angle between the normals of adjacent facets, in degrees, from which on their common edge is a crease (60 by
     /// default; in (0, 180], 180 for none). At a crease a node has one contact point for each side, so that an edge can
     /// touch both floor and wall; elsewhere it has one point with the mean normal. Put flat sides that meet at a
-    /// smaller angle into separate contacts. No effect on normals with [`with_normal`](Self::with_normal). Between
-    /// bodies whose meshes do not match, facets that meet at a smaller angle stand for a curve.
+    /// smaller angle into separate contacts. No effect with [`with_normal`](Self::with_normal).
     pub fn with_crease(mut self, degrees: f64) -> Self {
         self.crease = degrees;
         self

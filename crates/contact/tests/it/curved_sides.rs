@@ -270,6 +270,71 @@ fn rubber_that_can_go_nowhere_keeps_its_pressure() {
     }
 }
 
+/// A quarter of a ring, in meshes of order 2 with mid-nodes on the circle where it is bent.
+fn arc(radii: [f64; 2], cells: usize, order: usize, bent: bool) -> TetMesh {
+    let place = |[x, y, z]: [f64; 3]| {
+        let (radius, angle) = (radii[0] + x * (radii[1] - radii[0]), 0.5 * std::f64::consts::PI * y);
+        [radius * angle.cos(), radius * angle.sin(), z]
+    };
+    let raised = |mesh: TetMesh| {
+        if order == 2 {
+            mesh.raise_order().expect("order 2")
+        } else {
+            mesh
+        }
+    };
+    let straight = block([1.0; 3], [1, cells, 1]);
+    match bent {
+        true => raised(straight).map_points(place).expect("arc"),
+        false => raised(straight.map_points(place).expect("arc")),
+    }
+}
+
+/// A ring pressed on a shaft by 0.02 m: facets of the shaft are as far within its circle. Not
+/// where the gap is told, where mid-nodes are on the circle, where facets are small against the overlap, and where they
+/// match.
+#[test]
+fn overlaps_of_facets_are_no_interference() {
+    let plan = |cells: [usize; 2], order, bent, overlap: f64, told: bool| {
+        let rings = [([4.0, 10.0], 0), ([if told { 10.0 } else { 10.0 - overlap }, 14.0], 1)];
+        let [shaft, sleeve] = rings.map(|(radii, k)| arc(radii, cells[k], order, bent));
+        let fit = Contact::between(brick::X_MAX, second(brick::X_MIN));
+        let scene = Scene::new(with_second(&shaft, &sleeve), uniform(1e3, 0.3))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_support(Support::fixed(second(brick::X_MAX)))
+            .with_contact(if told { fit.with_gap(-overlap) } else { fit });
+        Plan::new(&scene, &Settings::default())
+            .expect("plan")
+            .warnings()
+            .to_vec()
+    };
+    for order in [1, 2] {
+        let warnings = plan([12, 20], order, false, 0.02, false);
+        let [
+            warning @ Warning::FacetedOverlap {
+                contact: 0,
+                overlap,
+                sagitta,
+                ..
+            },
+        ] = &warnings[..]
+        else {
+            panic!("{warnings:?}");
+        };
+        // at the rim normals are those of one facet, and differ half as much
+        let expected = 10.0 * (1.0 - (std::f64::consts::PI / 48.0).cos());
+        assert!(
+            (0.49..1.01).contains(&(sagitta / expected)) && *overlap > 0.0,
+            "{warning}"
+        );
+        assert!(warning.to_string().contains("with_gap, 0"), "{warning}");
+        assert_eq!(plan([12, 20], order, false, 0.02, true), []);
+        assert_eq!(plan([12, 12], order, false, 0.02, false), []);
+        assert_eq!(plan([12, 20], order, false, 0.4, false), []);
+    }
+    assert_eq!(plan([12, 20], 2, true, 0.02, false), []);
+}
+
 /// A shoe on a shaft, with mid-nodes on the circle.
 fn shoe([inside, outside]: [usize; 2]) -> TetMesh {
     with_second(&ring([4.0, 10.0], [1, inside, 2], 0.0, 2), &single_shoe(outside))

@@ -28,7 +28,6 @@ mod estimates_tied;
 mod explicit;
 mod free_bodies;
 mod gap_history;
-mod gaps_of_curves;
 mod groups;
 mod halving;
 mod invariance;
