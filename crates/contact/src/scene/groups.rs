@@ -23,7 +23,8 @@ struct Groups {
 impl Scene {
     /// Names from the groups of a mesh file, as `GroupNames` of a Gmsh file lists them: errors and warnings then begin
     /// with those of the contacts, supports, loads, regions and nodes concerned. What is added to the scene later has
-    /// none.
+    /// none. They take the place of names that were [given before](Self::with_names); of two names of a tag the last
+    /// counts.
     ///
     /// ```
     /// use signorini_contact::{Contact, Plan, Scene, Settings};
