@@ -7,8 +7,7 @@ use super::points::ContactPoint;
 use super::supports::Supports;
 use crate::error::ContactError;
 use crate::scene::{Pose, Scene};
-use crate::tolerances::{DEPTH, LEFT_OFF};
-use signorini_fem_mesh::vec3::norm;
+use crate::tolerances::DEPTH;
 use signorini_tfeti::internal::PrescribedPoint;
 
 /// Refuses supports that hold contact nodes inside the obstacle, wherever it has moved, at some step of the stage.
@@ -78,11 +77,11 @@ fn slack(
     let started = held.map(|h| h.support).filter(|&support| scene.has_started(support));
     let mut most = 0.0_f64;
     for support in started {
-        let left = scene.supports[support].left.iter();
-        let Some(largest) = left.map(|u| norm(*u)).reduce(f64::max) else {
+        if scene.supports[support].left.is_empty() {
             return Ok(None);
-        };
-        most = most.max(LEFT_OFF * largest);
+        }
+        let off = supports.nodes[support].motions.iter().map(|motion| motion.off);
+        most = off.fold(most, f64::max);
     }
     if most == 0.0 {
         return Ok(Some(0.0));

@@ -111,8 +111,7 @@ impl Plan {
     }
 
     fn bytes(&self) -> u64 {
-        let cost = &self.estimate;
-        self.vector_bytes + cost.inverse_bytes + cost.coarse_bytes + cost.table_bytes
+        self.vector_bytes + self.estimate.setup_bytes()
     }
 
     /// The same plan with times for a machine; [`Rate::measure`] measures this one.

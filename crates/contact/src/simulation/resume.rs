@@ -29,7 +29,7 @@ impl Simulation {
             if !state.is_finite() {
                 return refuse(NOT_FINITE.to_owned());
             }
-            let fresh = self.set_up_stage(&state.stage);
+            let fresh = self.set_up_stage(self.model.scene.clone(), &state.stage);
             let mut fresh = fresh.map_err(|error| self.model.scene.names.tell(error))?;
             state.stage = fresh.model.scene.stage();
             fresh.take(state)?;

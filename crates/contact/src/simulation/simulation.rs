@@ -82,8 +82,7 @@ impl Simulation {
             scene.enter(&stage);
             Ok(Self::set_up(scene, self.settings.clone())?.plan().clone())
         };
-        // what is locked only holds more
-        scene.later_stages().filter(|_| scene.has_spans()).map(plan).collect()
+        scene.later_stages().map(plan).collect()
     }
 
     pub(super) fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {

@@ -2,7 +2,7 @@
 
 use super::simulation::{Simulation, on_pool};
 use crate::error::ContactError;
-use crate::scene::{Stage, is_past};
+use crate::scene::{Scene, Stage, is_past};
 use std::sync::Arc;
 
 impl Simulation {
@@ -47,12 +47,12 @@ impl Simulation {
             let places = state.places(next.mesh.points().len())?;
             stage.left[k] = nodes.iter().map(|node| places[*node as usize]).collect();
         }
-        self.enter(&stage)
+        self.enter(next, &stage)
     }
 
     /// Sets the scene up anew for a stage, and goes on from the state.
-    fn enter(&mut self, stage: &Stage) -> Result<(), ContactError> {
-        let fresh = self.set_up_stage(stage)?;
+    fn enter(&mut self, scene: Scene, stage: &Stage) -> Result<(), ContactError> {
+        let fresh = self.set_up_stage(scene, stage)?;
         let mut state = self.state.clone();
         let own = Arc::make_mut(&mut state);
         own.carry_over(&self.model, &fresh.model)?;
@@ -65,8 +65,7 @@ impl Simulation {
     }
 
     /// The same simulation before its first step, set up for a stage.
-    pub(super) fn set_up_stage(&self, stage: &Stage) -> Result<Self, ContactError> {
-        let mut scene = self.model.scene.clone();
+    pub(super) fn set_up_stage(&self, mut scene: Scene, stage: &Stage) -> Result<Self, ContactError> {
         scene.enter(stage);
         let fresh = on_pool(|| Self::set_up(scene, self.settings.clone()))?;
         let (total, setup) = (self.total, self.setup + fresh.setup);

@@ -1,10 +1,8 @@
 //! When contact pairs are there.
 
+use super::timeline::Acting;
 use crate::error::DeckError;
 use crate::model::{Ignored, Law, Model};
-
-/// From which step on something acts, if not from the first, and up to which.
-pub(super) type Acting = [Option<usize>; 2];
 
 /// The spans of each pair.
 pub(super) fn spans(model: &Model, ignored: &mut Vec<Ignored>) -> Result<Vec<Vec<Acting>>, DeckError> {

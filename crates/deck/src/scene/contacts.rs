@@ -5,10 +5,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use signorini_contact::{Contact, Friction};
 use signorini_fem_mesh::FacetTag;
 
-use super::changes::{Acting, spans};
+use super::changes::spans;
 use super::faces::{FaceTable, Known};
 use super::rigid::{FreeLead, Lead, obstacle};
 use super::ties;
+use super::timeline::Acting;
 use crate::error::{DeckError, Fault};
 use crate::lexer::Named;
 use crate::model::{Clearance, Ignored, Law, Model, Names, Pair, Touch};
@@ -78,9 +79,9 @@ pub(super) fn contacts(
             contact = with_gap(contact, (given, takes_gap), (touch, master.is_empty()), ignored)?;
         }
         let during = |[from, until]: Acting| {
-            let begins = |step: Option<usize>| step.and_then(|step| known.timeline.spans.get(step)).map(|s| s.start);
-            let contact = begins(from).map_or(contact.clone(), |time| contact.clone().with_start(time));
-            begins(until).map_or(contact.clone(), |time| contact.with_end(time))
+            let start = |step| known.timeline.span(step).map(|span| span.start);
+            let contact = start(from).map_or(contact.clone(), |time| contact.clone().with_start(time));
+            start(until).map_or(contact.clone(), |time| contact.with_end(time))
         };
         let mut all = spans.into_iter().map(during);
         // one that is gone all the time comes when all is over

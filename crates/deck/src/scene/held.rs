@@ -1,8 +1,7 @@
 //! What the steps say of one component of a node that is held.
 
-use super::changes::Acting;
 use super::history::Track;
-use super::timeline::Timeline;
+use super::timeline::{Acting, Timeline};
 use crate::model::Given;
 
 /// A held component of a node: the target that it is given on first, and what the steps say.
@@ -39,8 +38,8 @@ impl Held {
     /// Whether it begins in a step along a straight line.
     pub(super) fn fades(&self, timeline: &Timeline) -> bool {
         let [from, _] = self.span;
-        let ramp = |step: usize| timeline.spans.get(step).is_some_and(|span| span.ramp);
+        let ramp = timeline.span(from).is_some_and(|span| span.ramp);
         let by_line = |step| self.track.given_in(step).is_some_and(|given| given.amplitude.is_none());
-        from.is_some_and(|step| ramp(step) && by_line(step))
+        ramp && from.is_some_and(by_line)
     }
 }

@@ -12,6 +12,7 @@ use super::history::{Histories, Track};
 use super::pretension::ONE;
 use super::rigid::{FreeLead, Lead, all_components, rigid_components};
 use super::spread::coupled_nodes;
+use super::timeline::Acting;
 use crate::error::{DeckError, Word};
 use crate::model::{COMPONENT, Components, Condition, Ignored, Target};
 
@@ -367,15 +368,7 @@ impl Table {
     ) -> Result<(Vec<Support>, Vec<Owner>), DeckError> {
         let mut histories = Histories::default();
         // by target, axes, first component, history, components, steps and fading: nodes and their displacements
-        type Group = (
-            usize,
-            Option<usize>,
-            usize,
-            Option<usize>,
-            [bool; 3],
-            [Option<usize>; 2],
-            bool,
-        );
+        type Group = (usize, Option<usize>, usize, Option<usize>, [bool; 3], Acting, bool);
         let mut groups: BTreeMap<Group, Vec<(u32, [f64; 3])>> = BTreeMap::new();
         let mut all: Vec<(Key, Held)> = self.held.into_iter().chain(self.released).collect();
         let part = |((node, component), held): &(Key, Held)| (*node, held.span, held.fades(timeline), *component);

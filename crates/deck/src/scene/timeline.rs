@@ -17,6 +17,9 @@ pub(super) struct Span {
     pub(super) ramp: bool,
 }
 
+/// From which step on something acts, if not from the first, and up to which.
+pub(super) type Acting = [Option<usize>; 2];
+
 #[derive(Debug)]
 pub(super) struct Timeline<'a> {
     pub(super) model: &'a Model,
@@ -70,17 +73,18 @@ impl<'a> Timeline<'a> {
         steps.collect()
     }
 
+    /// That of a step, if there is one.
+    pub(super) fn span(&self, step: Option<usize>) -> Option<&Span> {
+        self.spans.get(step?)
+    }
+
     /// A support from a step on, and until another. From where its nodes are then they go, where it `fades`, along a
     /// straight line in the first of these steps to what the steps say; else they jump.
-    pub(super) fn during(
-        &self,
-        support: Support,
-        [from, until]: [Option<usize>; 2],
-        fades: bool,
-    ) -> Result<Support, DeckError> {
-        let span = |step: Option<usize>| step.and_then(|step| self.spans.get(step));
-        let support = span(until).map_or(support.clone(), |span| support.with_end(span.start));
-        let Some(first) = span(from) else {
+    pub(super) fn during(&self, support: Support, [from, until]: Acting, fades: bool) -> Result<Support, DeckError> {
+        let support = self
+            .span(until)
+            .map_or(support.clone(), |span| support.with_end(span.start));
+        let Some(first) = self.span(from) else {
             return Ok(support);
         };
         let line = match fades {
