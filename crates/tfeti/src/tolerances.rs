@@ -133,6 +133,11 @@ pub(crate) const LARGE: usize = 8000;
 pub(crate) const PRODUCT: u64 = 1_500_000;
 pub(crate) const SOLVE_READS: usize = 25_000;
 pub(crate) const OPERATIONS: f64 = 3e5;
+/// Operations from which on a front of a coarse factor is eliminated in parts, numbers of an update from which on it is
+/// added in parts, and columns of a part: whole blocks of six.
+pub(crate) const LARGE_FRONT: f64 = 1e8;
+pub(crate) const LARGE_UPDATE: usize = 1_000_000;
+pub(crate) const PART: usize = 192;
 /// Most parts of a loop over subdomains: bounds work memory and useful threads. Blocks, motions of subdomains and entries of a
 /// part.
 pub(crate) const PARTS: usize = 64;

@@ -1,8 +1,9 @@
 //! Dense kernels. The only file that names the dense part of the linear algebra library.
 //!
-//! Matrices are column-major slices without padding. Everything runs on the calling thread; parallel loops are the
-//! caller's, so that results do not depend on the number of threads.
+//! Matrices are column-major slices without padding. Everything but the elimination of large fronts runs on the calling
+//! thread; these are split by their size alone, so that results do not depend on the number of threads.
 
+use crate::tolerances::PART;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt;
 use faer::linalg::matmul::matmul;
@@ -11,6 +12,7 @@ use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_uppe
 use faer::mat::{MatMut, MatRef};
 use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::{Accum, Par};
+use rayon::prelude::*;
 
 /// `out = a b` for `a` of shape `m x k` and `b` of shape `k x n`.
 pub(crate) fn multiply(out: &mut [f64], a: &[f64], b: &[f64], m: usize, k: usize, n: usize) {
@@ -58,10 +60,18 @@ pub(crate) fn cholesky_columns(a: &mut [f64], height: usize, width: usize, thres
     if width == 0 {
         return Ok(());
     }
-    let params = Default::default();
-    let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(width, Par::Seq, params));
     let columns = MatMut::from_column_major_slice_mut(&mut a[..height * width], height, width);
     let (mut triangle, below) = columns.split_at_row_mut(width);
+    factor(triangle.rb_mut(), threshold)?;
+    if height > width {
+        solve_lower_triangular_in_place(triangle.rb(), below.transpose_mut(), Par::Seq);
+    }
+    Ok(())
+}
+
+fn factor(mut triangle: MatMut<'_, f64>, threshold: f64) -> Result<(), usize> {
+    let (size, params) = (triangle.nrows(), Default::default());
+    let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, params));
     llt::factor::cholesky_in_place(
         triangle.rb_mut(),
         Default::default(),
@@ -72,16 +82,14 @@ pub(crate) fn cholesky_columns(a: &mut [f64], height: usize, width: usize, thres
     .map_err(|error| match error {
         llt::factor::LltError::NonPositivePivot { index } => index,
     })?;
-    for j in 0..width {
-        let pivot = triangle[(j, j)] * triangle[(j, j)];
-        if pivot.is_nan() || pivot <= threshold {
-            return Err(j);
-        }
+    let pivots = (0..size).map(|j| triangle[(j, j)] * triangle[(j, j)]);
+    match pivots
+        .enumerate()
+        .find(|(_, pivot)| pivot.is_nan() || *pivot <= threshold)
+    {
+        Some((j, _)) => Err(j),
+        None => Ok(()),
     }
-    if height > width {
-        solve_lower_triangular_in_place(triangle.rb(), below.transpose_mut(), Par::Seq);
-    }
-    Ok(())
 }
 
 /// Subtracts from the lower triangle of `out` what the elimination of the columns of [`cholesky_columns`] does to the
@@ -104,6 +112,67 @@ pub(crate) fn subtract_columns(out: &mut [f64], a: &[f64], height: usize, width:
         -1.0,
         Par::Seq,
     );
+}
+
+/// [`cholesky_columns`] and [`subtract_columns`] for large matrices: parts of columns on several threads. Above the diagonal
+/// of a part there may be anything.
+pub(crate) fn eliminate_in_parts(
+    a: &mut [f64],
+    out: &mut [f64],
+    [height, width]: [usize; 2],
+    threshold: f64,
+) -> Result<(), usize> {
+    let behind = height - width;
+    for start in (0..width).step_by(PART) {
+        let count = PART.min(width - start);
+        let (own, later) = a[start * height..width * height].split_at_mut(count * height);
+        let columns = MatMut::from_column_major_slice_mut(own, height, count)
+            .split_at_row_mut(start)
+            .1;
+        let (mut triangle, below) = columns.split_at_row_mut(count);
+        factor(triangle.rb_mut(), threshold).map_err(|pivot| start + pivot)?;
+        solve_rows(triangle.rb(), below);
+        let own = MatRef::from_column_major_slice(own, height, count);
+        let parts = later.par_chunks_mut(PART * height).enumerate();
+        parts.for_each(|(k, part)| subtract_part(part, own, height, start + count + k * PART));
+    }
+    let all = MatRef::from_column_major_slice(&a[..height * width], height, width);
+    let below = all.split_at_row(width).1;
+    let parts = out[..behind * behind]
+        .par_chunks_mut((PART * behind).max(1))
+        .enumerate();
+    parts.for_each(|(k, part)| subtract_part(part, below, behind, k * PART));
+    Ok(())
+}
+
+/// Subtracts `a a^T` from some of its columns, from row `first` on, which is that of the first of them.
+fn subtract_part(columns: &mut [f64], a: MatRef<'_, f64>, height: usize, first: usize) {
+    let count = columns.len() / height;
+    let out = MatMut::from_column_major_slice_mut(columns, height, count)
+        .split_at_row_mut(first)
+        .1;
+    let rows = a.split_at_row(first).1;
+    matmul(
+        out,
+        Accum::Add,
+        rows,
+        rows.split_at_row(count).0.transpose(),
+        -1.0,
+        Par::Seq,
+    );
+}
+
+/// `below L^-T`, rows in parts.
+fn solve_rows(triangle: MatRef<'_, f64>, below: MatMut<'_, f64>) {
+    if below.nrows() <= PART {
+        if below.nrows() > 0 {
+            solve_lower_triangular_in_place(triangle, below.transpose_mut(), Par::Seq);
+        }
+        return;
+    }
+    let half = PART * (below.nrows().div_ceil(PART) / 2);
+    let (first, second) = below.split_at_row_mut(half);
+    rayon::join(|| solve_rows(triangle, first), || solve_rows(triangle, second));
 }
 
 /// `L^-1 x` in the rows of the columns that [`cholesky_columns`] left of `L`, less what they do to those behind.
@@ -176,6 +245,48 @@ mod tests {
                 assert!((product[i + j * n] - expected).abs() < 1e-13);
             }
         }
+    }
+
+    /// Elimination in parts is that of the whole, and its numbers are the same on any number of threads.
+    #[test]
+    fn parts_of_a_front_make_the_whole() {
+        for (height, width) in [(700, 500), (450, 450), (900, 193), (130, 100)] {
+            let behind = height - width;
+            let entry = |i: usize, j: usize| ((i * j) as f64).sin() + if i == j { 2.0 * height as f64 } else { 0.0 };
+            let symmetric = |i: usize, j: usize| entry(i.max(j), i.min(j));
+            let matrix = |rows: usize, columns: usize, first: usize| -> Vec<f64> {
+                let places = (0..columns).flat_map(|j| (0..rows).map(move |i| (i, j)));
+                places.map(|(i, j)| symmetric(first + i, first + j)).collect()
+            };
+            let (mut a, mut out) = (matrix(height, width, 0), matrix(behind, behind, width));
+            cholesky_columns(&mut a, height, width, 0.0).unwrap();
+            subtract_columns(&mut out, &a, height, width);
+            let lower = |v: &[f64], rows: usize, columns: usize| -> Vec<f64> {
+                (0..columns)
+                    .flat_map(|j| v[j * rows + j..(j + 1) * rows].to_vec())
+                    .collect()
+            };
+            let in_parts = |threads: usize| {
+                let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+                let (mut a, mut out) = (matrix(height, width, 0), matrix(behind, behind, width));
+                pool.install(|| eliminate_in_parts(&mut a, &mut out, [height, width], 0.0))
+                    .unwrap();
+                [lower(&a, height, width), lower(&out, behind, behind)].concat()
+            };
+            let expected = [lower(&a, height, width), lower(&out, behind, behind)].concat();
+            let parts = in_parts(1);
+            for (e, p) in expected.iter().zip(&parts) {
+                assert!((e - p).abs() < 1e-12 * height as f64, "{e} {p}");
+            }
+            assert_eq!(parts, in_parts(3));
+        }
+        let mut a = vec![1.0; 600 * 600];
+        assert_eq!(eliminate_in_parts(&mut a, &mut [], [600, 600], 1e-9), Err(1));
+        for j in 0..400 {
+            a[601 * j] = 1e4;
+        }
+        a[601 * 400] = -1.0;
+        assert_eq!(eliminate_in_parts(&mut a, &mut [], [600, 600], 1e-9), Err(400));
     }
 
     #[test]

@@ -3,6 +3,8 @@
 use crate::coarse::matrix::Entries;
 use crate::linalg::dense;
 use crate::projector::split::tree::{CoarseTree, Node};
+use crate::tolerances::{LARGE_FRONT, LARGE_UPDATE, PART};
+use rayon::prelude::*;
 
 /// Columns of a node, and what is subtracted from the later unknowns of its border: lower triangles.
 #[derive(Debug, Clone, Default)]
@@ -16,8 +18,12 @@ impl Front {
     /// pivot is not larger than `threshold`.
     pub(crate) fn eliminate(&mut self, node: &Node, threshold: f64) -> Result<(), usize> {
         let (width, height) = (node.width(), node.height());
-        dense::cholesky_columns(&mut self.columns, height, width, threshold)
-            .map_err(|pivot| 6 * node.columns.start + pivot)?;
+        let of_matrix = |pivot| 6 * node.columns.start + pivot;
+        if node.operations() >= LARGE_FRONT {
+            let size = [height, width];
+            return dense::eliminate_in_parts(&mut self.columns, &mut self.update, size, threshold).map_err(of_matrix);
+        }
+        dense::cholesky_columns(&mut self.columns, height, width, threshold).map_err(of_matrix)?;
         dense::subtract_columns(&mut self.update, &self.columns, height, width);
         Ok(())
     }
@@ -48,42 +54,64 @@ pub(crate) fn load_columns(entries: Entries<'_>, tree: &CoarseTree, k: usize, co
 
 /// Adds the update of a child, whose border blocks stand at the places `into`, to a front.
 pub(crate) fn extend(update: &[f64], into: &[u32], front: &mut Front, width: usize, height: usize) {
-    let (size, behind) = (6 * into.len(), height - width);
-    for (j, &column) in into.iter().enumerate() {
-        for c in 0..6 {
-            let source = &update[(6 * j + c) * size..][..size];
-            let start = 6 * column as usize + c;
-            let mut i = j;
-            while i < into.len() {
-                let first = i;
-                i += 1;
-                while i < into.len() && into[i] == into[i - 1] + 1 {
-                    i += 1;
-                }
-                if into[first] < column {
-                    add_above(&source[6 * first..6 * i], into[first], start, front, width, height);
-                    continue;
-                }
-                let row = 6 * into[first] as usize;
-                let target = match start < width {
-                    true => &mut front.columns[start * height + row..],
-                    false => &mut front.update[(start - width) * behind + row - width..],
-                };
-                for (t, s) in target.iter_mut().zip(&source[6 * first..6 * i]) {
-                    *t += s;
-                }
-            }
-        }
-    }
+    let behind = height - width;
+    let child = Child {
+        update,
+        into,
+        is_ascending: into.is_sorted(),
+    };
+    let parts = |own: &mut Vec<f64>, first: usize, rows: usize| {
+        let part = if update.len() < LARGE_UPDATE {
+            own.len()
+        } else {
+            PART * rows
+        };
+        let parts = own.par_chunks_mut(part.max(1)).enumerate();
+        parts.for_each(|(k, part)| child.add_to(part, first + k * PART, first, rows));
+    };
+    parts(&mut front.columns, 0, height);
+    parts(&mut front.update, width, behind);
 }
 
-/// Adds entries of one column whose rows, from block `first` on, stand before it: to these as columns.
-fn add_above(source: &[f64], first: u32, row: usize, front: &mut Front, width: usize, height: usize) {
-    let behind = height - width;
-    for (column, s) in (6 * first as usize..).zip(source) {
-        match column < width {
-            true => front.columns[column * height + row] += s,
-            false => front.update[(column - width) * behind + row - width] += s,
+struct Child<'a> {
+    update: &'a [f64],
+    into: &'a [u32],
+    is_ascending: bool,
+}
+
+impl Child<'_> {
+    /// Adds to columns of a front with so many `rows`, both counted from their firsts on.
+    fn add_to(&self, columns: &mut [f64], first_column: usize, first_row: usize, rows: usize) {
+        let Self { update, into, .. } = *self;
+        let here = first_column..first_column + columns.len().checked_div(rows).unwrap_or(0);
+        let size = 6 * into.len();
+        for (j, &column) in into.iter().enumerate() {
+            let is_here = here.contains(&(6 * column as usize));
+            if !is_here && self.is_ascending {
+                continue;
+            }
+            for c in 0..6 {
+                let source = &update[(6 * j + c) * size..][..size];
+                let start = 6 * column as usize + c;
+                let mut i = j;
+                while i < into.len() {
+                    let first = i;
+                    i += 1;
+                    while i < into.len() && into[i] == into[i - 1] + 1 {
+                        i += 1;
+                    }
+                    let source = &source[6 * first..6 * i];
+                    let row = 6 * into[first] as usize;
+                    if into[first] < column {
+                        // rows that stand before the column: the other triangle
+                        let targets = (row..).zip(source).filter(|(t, _)| here.contains(t));
+                        targets.for_each(|(t, s)| columns[(t - first_column) * rows + start - first_row] += s);
+                    } else if is_here {
+                        let target = &mut columns[(start - first_column) * rows + row - first_row..];
+                        target.iter_mut().zip(source).for_each(|(t, s)| *t += s);
+                    }
+                }
+            }
         }
     }
 }
