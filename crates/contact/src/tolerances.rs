@@ -324,6 +324,10 @@ pub(crate) const LARGE_GAP: f64 = 1.0;
 /// known: with a tenth a ring of 40 on a shaft of 60 cells around has 4 % too much pressure, and up to 70 % at points.
 pub(crate) const FACETED: f64 = 0.1;
 
+/// Overlap of a node over the distance of the hollow facets around it from their curve, up to which they are why it is
+/// there: normals of nodes, which tell the distance, are means.
+pub(crate) const WITHIN_FACETS: f64 = 1.25;
+
 /// Poisson's ratio above which linear tetrahedra lock: at 0.45 a clamped brick of four cells across has lost a tenth of
 /// its deflection. Also that of rubber, which gives way along the surface between points on another side.
 pub(crate) const LOCKING: f64 = 0.45;

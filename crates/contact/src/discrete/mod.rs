@@ -2,7 +2,8 @@
 //!
 //! A node of a contact surface becomes a contact point for each direction in which it meets an obstacle (`points`,
 //! `creases`, `normals`; the scene says the gap) or a node of another body (`partners`, with the gap); in a mesh of
-//! order 2 it is a mean around the node (`means`). Scenes that make no sense are refused here, before any stiffness is
+//! order 2 it is a mean around the node (`means`); bodies that overlap only because their facets are straight touch
+//! (`faceted`). Scenes that make no sense are refused here, before any stiffness is
 //! assembled (`scene`, `overflow`, `penetration`, `turn`). `side` has the nodes and weights of a contact point.
 //!
 //! Rigid couplings are subdomains of their own (`couplings`); `equations` may have some that are points.
@@ -13,6 +14,7 @@ mod couplings;
 mod creases;
 mod equations;
 mod extents;
+mod faceted;
 mod free_points;
 mod means;
 mod normals;
@@ -29,6 +31,7 @@ mod turn;
 pub(crate) use couplings::Couplings;
 pub(crate) use creases::area_vector;
 pub(crate) use extents::Extents;
+pub(crate) use faceted::FacetedOverlap;
 pub(crate) use points::ContactPoint;
 pub(crate) use scene::DiscreteScene;
 pub(crate) use side::mean_place;

@@ -1,11 +1,10 @@
 //! What a scene alone shows of what is hardly meant.
 
-use crate::discrete::{ContactPoint, DiscreteScene, Extents};
+use crate::discrete::{ContactPoint, DiscreteScene, Extents, FacetedOverlap};
 use crate::report::Warning;
-use crate::scene::{Contact, Coupling, Equation, Friction, Gap, Load, Scene, Support};
-use crate::tolerances::{FACETED, LARGE_COEFFICIENT, LARGE_GAP, LOCKING};
-use signorini_fem_mesh::vec3::{add, cross, dot, norm, scale, sub};
-use signorini_fem_mesh::{History, Surface, TetMesh};
+use crate::scene::{Contact, Coupling, Equation, Friction, Load, Scene, Support};
+use crate::tolerances::{LARGE_COEFFICIENT, LARGE_GAP, LOCKING};
+use signorini_fem_mesh::History;
 
 /// Warnings of a scene, each kind once. One pass over the contact points; bodies are measured only where a contact
 /// begins nowhere near its obstacle.
@@ -18,7 +17,7 @@ pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> 
         unused_materials(listed, &present),
         locking(scene, &present),
         large_gap(scene, discrete),
-        faceted_overlap(scene, discrete),
+        faceted_overlap(discrete),
         large_coefficient(scene, points),
     ];
     found.into_iter().flatten().collect()
@@ -106,71 +105,23 @@ fn large_gap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
 }
 
 /// The first contact whose overlap is measured between facets that are too far from the curve that they stand for.
-fn faceted_overlap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
-    discrete.apart.iter().find_map(|&(index, swapped)| {
-        let contact = &scene.contacts[index];
-        let own = discrete.points.iter().filter(|p| p.surface == index);
-        let point = own.min_by(|a, b| a.gap.total_cmp(&b.gap))?;
-        if !matches!(contact.gap, Gap::Measured) || -point.gap <= discrete.rounding {
-            return None;
-        }
-        let other = if swapped { &contact.tags } else { &contact.partner };
-        let other = Surface::new(&scene.mesh, other).ok()?;
-        let nodes: Vec<u32> = point.sides.nodes().map(|n| n.0).collect();
-        let own = &discrete.surfaces[index];
-        let sagitta = [own, &other].map(|s| sagitta(&scene.mesh, s, &nodes));
-        let sagitta = sagitta[0].max(sagitta[1]);
-        if are_over(&scene.mesh, point, own, &other, sagitta) {
-            return None;
-        }
-        (sagitta > FACETED * -point.gap).then(|| Warning::FacetedOverlap {
-            contact: index,
-            node: point.node(),
-            place: point.position,
-            overlap: -point.gap,
-            sagitta,
-        })
+fn faceted_overlap(discrete: &DiscreteScene) -> Option<Warning> {
+    let FacetedOverlap {
+        contact,
+        node,
+        place,
+        overlap,
+        sagitta,
+        closed,
+    } = *discrete.faceted.first()?;
+    Some(Warning::FacetedOverlap {
+        contact,
+        node,
+        place,
+        overlap,
+        sagitta,
+        closed,
     })
-}
-
-/// Whether the nodes around a point have others over them, so that facets are as far from the curve on both sides.
-fn are_over(mesh: &TetMesh, point: &ContactPoint, own: &Surface, other: &Surface, within: f64) -> bool {
-    let place = |node: &u32| mesh.points()[*node as usize];
-    let is_over = |local: &u32| {
-        let (from, normal) = (
-            place(&own.nodes()[*local as usize]),
-            own.frames()[*local as usize].normal,
-        );
-        let across = |to: &u32| norm(cross(sub(place(to), from), normal));
-        other.nodes().iter().any(|to| across(to) <= within)
-    };
-    near(own, &[point.node()]).all(|(_, nodes)| nodes.iter().all(is_over))
-}
-
-/// The facets at some nodes.
-fn near<'a>(surface: &'a Surface, nodes: &'a [u32]) -> impl Iterator<Item = (u32, &'a [u32; 3])> {
-    let facets = surface.facets().iter().copied().zip(surface.triangles());
-    facets.filter(|(_, t)| t.iter().any(|&n| nodes.contains(&surface.nodes()[n as usize])))
-}
-
-/// The largest distance, m, of the middle of an edge from the arc between its ends, of the facets at some nodes; none
-/// where mid-nodes are on it.
-fn sagitta(mesh: &TetMesh, surface: &Surface, nodes: &[u32]) -> f64 {
-    let edges = near(surface, nodes).flat_map(|(facet, t)| {
-        let mids = (mesh.order() == 2).then(|| mesh.facet_mids(facet as usize));
-        (0..3).map(move |k| ([t[k], t[(k + 1) % 3]].map(|n| n as usize), mids.map(|m| m[k])))
-    });
-    let far = edges.map(|([a, b], mid)| {
-        let place = |node: u32| mesh.points()[node as usize];
-        let [from, to] = [a, b].map(|n| place(surface.nodes()[n]));
-        let [m, n] = [a, b].map(|n| surface.frames()[n].normal);
-        let arc = 0.125 * dot(sub(to, from), sub(n, m));
-        let off = mid.map_or([0.0; 3], |mid| sub(place(mid), scale(0.5, add(from, to))));
-        // at rims normals are those of one facet, and an arc seems to be half as high
-        let bent = 0.5 * dot(off, add(m, n)) * arc.signum() > 0.5 * arc.abs();
-        if bent { 0.0 } else { arc }
-    });
-    far.map(f64::abs).fold(0.0, f64::max)
 }
 
 /// The largest coefficient, if it is too large, at whatever slip rate where that is known and else at rest.
