@@ -324,9 +324,12 @@ pub(crate) const LARGE_GAP: f64 = 1.0;
 /// known: with a tenth a ring of 40 on a shaft of 60 cells around has 4 % too much pressure, and up to 70 % at points.
 pub(crate) const FACETED: f64 = 0.1;
 
-/// Overlap of a node over the distance of the hollow facets around it from their curve, up to which they are why it is
-/// there: normals of nodes, which tell the distance, are means.
-pub(crate) const WITHIN_FACETS: f64 = 1.25;
+/// How far sides may be inside one another in the mean, over what facets of a hollow side make of their gaps, so that they
+/// touch but for these; and how deep the deepest point may be over that at the worst place.
+pub(crate) const TOUCHING: f64 = 0.35;
+pub(crate) const DEEP: f64 = 3.0;
+/// Tilt of the normal at one end of an edge over that at the other end, below which the edge is between flat sides.
+pub(crate) const KINK: f64 = 0.3;
 
 /// Poisson's ratio above which linear tetrahedra lock: at 0.45 a clamped brick of four cells across has lost a tenth of
 /// its deflection. Also that of rubber, which gives way along the surface between points on another side.

@@ -1,132 +1,309 @@
 //! Overlaps of bodies that touch, which are there because straight facets stand for a curve.
 //!
-//! Nodes are on the curve. Facets of a hollow side are before it, and nodes of the other side behind them; those of a
-//! convex side are behind it and only open gaps.
+//! Nodes are on the curve, facets of a hollow side before it, those of a convex side behind it. What facets make of gaps
+//! is known in the mean over a facet: a third of the sum of the arcs over its edges, for any curve of second degree. Taken
+//! from the measured gaps, in the mean over all contact of two bodies, it tells whether they touch or are pressed together.
 
 use super::partners::Paired;
 use super::points::ContactPoint;
-use crate::scene::{Gap, Scene};
-use crate::tolerances::{FACETED, WITHIN_FACETS};
+use crate::error::ContactError;
+use crate::scene::{Closing, Gap, Scene};
+use crate::tolerances::{DEEP, FACETED, KINK, TOUCHING};
+use signorini_fem_mesh::internal::DisjointSets;
 use signorini_fem_mesh::vec3::{add, cross, dot, norm, scale, sub};
 use signorini_fem_mesh::{Surface, TetMesh};
+use std::collections::HashMap;
+use std::ops::Range;
 
-/// A contact whose overlap is measured between facets that are too far from the curve that they stand for.
-#[derive(Debug, Clone, PartialEq)]
-pub(crate) struct FacetedOverlap {
+/// An overlap and the largest distance of the facets there from their curve, m.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Overlap {
     pub(crate) contact: usize,
-    /// Where it is deepest.
     pub(crate) node: u32,
     pub(crate) place: [f64; 3],
-    /// Both m.
-    pub(crate) overlap: f64,
+    pub(crate) depth: f64,
     pub(crate) sagitta: f64,
-    /// How many points began within facets and now touch; none where one overlap at least is more than that.
-    pub(crate) closed: usize,
 }
 
-/// Closes the overlaps of a contact if none is deeper than facets of a hollow side are before the curve, and tells which
-/// contacts overlap about as much as facets are beside it. Gaps that are told, and those that a history makes grow, are
-/// meant.
+/// What was made of overlaps about as deep as facets are beside their curve.
+#[derive(Debug, Default)]
+pub(crate) struct FacetedOverlaps {
+    /// The deepest of the first contact that presses all the same.
+    pub(crate) pressing: Option<Overlap>,
+    /// The deepest of those that are closed, and how many points of how many contacts.
+    pub(crate) closed: Option<(Overlap, [usize; 2])>,
+}
+
+/// A contact with measured gaps and its two sides.
+struct Faceted {
+    index: usize,
+    /// Its conditions.
+    range: Range<usize>,
+    /// Whether its overlaps may go; else they are meant.
+    closes: bool,
+    sides: [Side; 2],
+}
+
+struct Side {
+    surface: Surface,
+    bends: HashMap<u32, Bend>,
+}
+
+/// How far the facets at a node are from the curve that they stand for, m.
+#[derive(Debug, Clone, Copy, Default)]
+struct Bend {
+    /// In the mean; negative where they are before it.
+    behind: f64,
+    /// The largest height of an arc over an edge.
+    sagitta: f64,
+}
+
+/// Closes the overlaps of bodies that touch but for their facets, and tells which contacts overlap about as much as
+/// facets are beside the curve. Contacts that share nodes decide as one. Gaps that are told are meant, and so are those
+/// that a history makes grow.
 pub(super) fn close_faceted(
     scene: &Scene,
     paired: &[Paired],
     conditions: &mut [ContactPoint],
     rounding: f64,
-) -> Vec<FacetedOverlap> {
-    let mut out = Vec::new();
-    for (index, paired) in paired.iter().enumerate().filter(|(_, p)| p.is_apart()) {
-        let contact = &scene.contacts[index];
+) -> Result<FacetedOverlaps, ContactError> {
+    let range = |index: usize| {
         let first = conditions.partition_point(|c| c.surface < index);
-        let end = conditions.partition_point(|c| c.surface <= index);
-        let points = &mut conditions[first..end];
-        if !matches!(contact.gap, Gap::Measured) || contact.gap_history.is_some() {
+        first..conditions.partition_point(|c| c.surface <= index)
+    };
+    let is_measured = |(index, paired): &(usize, &Paired)| {
+        let contact = &scene.contacts[*index];
+        paired.is_apart() && !contact.tied && matches!(contact.gap, Gap::Measured)
+    };
+    let measured = || paired.iter().enumerate().filter(is_measured);
+    let is_inside = |c: &ContactPoint| c.gap < -rounding;
+    if !measured().any(|(index, _)| conditions[range(index)].iter().any(is_inside)) {
+        return Ok(FacetedOverlaps::default());
+    }
+    let faceted = measured().map(|(index, paired)| {
+        let contact = &scene.contacts[index];
+        let tags = match paired.swapped {
+            true => &contact.tags,
+            false => &contact.partner,
+        };
+        let sides = [paired.surface.clone(), Surface::new(&scene.mesh, tags)?];
+        Ok::<_, ContactError>(Faceted {
+            index,
+            range: range(index),
+            closes: matches!(contact.closing, Closing::Faceted) && contact.gap_history.is_none(),
+            sides: sides.map(|surface| Side::new(&scene.mesh, surface)),
+        })
+    });
+    let faceted = faceted.collect::<Result<Vec<_>, _>>()?;
+    let mut out = FacetedOverlaps::default();
+    for group in groups(&faceted) {
+        let deepest = group.iter().filter_map(|f| f.deepest(conditions, rounding));
+        let Some(deepest) = deepest.reduce(|a, b| if b.depth > a.depth { b } else { a }) else {
+            continue;
+        };
+        if touch(&group, conditions, deepest.depth) {
+            let (known, mut counts) = out.closed.unwrap_or((deepest, [0; 2]));
+            for faceted in group {
+                let inside = conditions[faceted.range.clone()].iter_mut().filter(|c| is_inside(c));
+                let points = inside.map(|c| c.gap = 0.0).count();
+                counts = [counts[0] + points, counts[1] + usize::from(points > 0)];
+            }
+            let deepest = if deepest.depth > known.depth { deepest } else { known };
+            out.closed = Some((deepest, counts));
             continue;
         }
-        let mut inside = points.iter().enumerate().filter(|(_, p)| p.gap < -rounding).peekable();
-        if inside.peek().is_none() {
-            continue;
+        for faceted in group {
+            let own = faceted.deepest(conditions, rounding);
+            let own = own.filter(|o| o.sagitta > FACETED * o.depth && !faceted.is_over(&scene.mesh, o));
+            out.pressing = out.pressing.or(own);
         }
-        let tags = if paired.swapped {
-            &contact.tags
-        } else {
-            &contact.partner
-        };
-        let Ok(other) = Surface::new(&scene.mesh, tags) else {
-            continue;
-        };
-        let sides = [&paired.surface, &other];
-        let sagittas = sides.map(|side| sagittas(&scene.mesh, side));
-        let of = |point: &ContactPoint| {
-            let nodes = point.sides.nodes().map(|n| n.0);
-            let known = nodes.flat_map(|node| {
-                let at = |k: usize| Some(sagittas[k][sides[k].nodes().binary_search(&node).ok()?]);
-                [at(0), at(1)]
+    }
+    Ok(out)
+}
+
+/// Contacts that share nodes, in their order; those that mean their overlaps alone.
+fn groups(faceted: &[Faceted]) -> Vec<Vec<&Faceted>> {
+    let (mut sets, mut seen) = (DisjointSets::new(faceted.len()), HashMap::new());
+    for (k, one) in faceted.iter().enumerate().filter(|(_, one)| one.closes) {
+        for node in one.sides.iter().flat_map(|side| side.surface.nodes()) {
+            sets.join(*seen.entry(*node).or_insert(k), k);
+        }
+    }
+    let mut out: Vec<Vec<&Faceted>> = Vec::new();
+    for (one, set) in faceted.iter().zip(sets.numbers()) {
+        match out.get_mut(set as usize) {
+            Some(group) => group.push(one),
+            None => out.push(vec![one]),
+        }
+    }
+    out
+}
+
+/// Whether sides touch in the mean once it is taken from their gaps what facets make of them. Points further apart than
+/// facets can bring them are left out.
+fn touch(group: &[&Faceted], conditions: &[ContactPoint], deepest: f64) -> bool {
+    let (mut gap, mut hollow, mut deep) = (0.0, 0.0, 0.0_f64);
+    let bends = group
+        .iter()
+        .flat_map(|f| f.sides.iter().flat_map(|side| side.bends.values()));
+    let reach = bends.map(|bend| bend.sagitta).fold(0.0, f64::max);
+    for faceted in group {
+        for point in conditions[faceted.range.clone()].iter().filter(|c| c.gap <= reach) {
+            let own = point.sides.own.nodes();
+            let partner = point.sides.partner.as_ref().map_or(&[][..], |side| side.nodes());
+            let behind = [(0, own), (1, partner)].map(|(k, nodes)| {
+                let bends = &faceted.sides[k].bends;
+                let at = |(node, weight): &(u32, f64)| bends.get(node).map_or(0.0, |bend| weight * bend.behind);
+                nodes.iter().map(at).sum::<f64>()
             });
-            known.flatten().fold([0.0; 2], larger)
-        };
-        let inside: Vec<(usize, [f64; 2])> = inside.map(|(k, point)| (k, of(point))).collect();
-        let deepest = inside.iter().min_by(|a, b| points[a.0].gap.total_cmp(&points[b.0].gap));
-        let Some(&(deepest, [sagitta, _])) = deepest else { continue };
-        let point = &points[deepest];
-        let overlap = -point.gap;
-        if sagitta <= FACETED * overlap || are_over(&scene.mesh, point, sides, sagitta) {
-            continue;
+            let before = behind.iter().map(|b| (-b).max(0.0)).sum::<f64>();
+            gap += point.area * (point.gap - behind[0] - behind[1]);
+            hollow += point.area * before;
+            deep = deep.max(before);
         }
-        let is_faceted = inside.iter().all(|&(k, [_, hollow])| -points[k].gap <= WITHIN_FACETS * hollow);
-        let found = FacetedOverlap {
-            contact: index,
+    }
+    group.iter().all(|f| f.closes) && hollow > 0.0 && gap >= -TOUCHING * hollow && deepest <= DEEP * deep
+}
+
+impl Faceted {
+    /// The deepest overlap.
+    fn deepest(&self, conditions: &[ContactPoint], rounding: f64) -> Option<Overlap> {
+        let own = conditions[self.range.clone()].iter();
+        let point = own
+            .min_by(|a, b| a.gap.total_cmp(&b.gap))
+            .filter(|p| p.gap < -rounding)?;
+        let nodes = point.sides.nodes().map(|n| n.0);
+        let known = nodes.flat_map(|node| self.sides.iter().filter_map(move |side| side.bends.get(&node)));
+        Some(Overlap {
+            contact: self.index,
             node: point.node(),
             place: point.position,
-            overlap,
-            sagitta,
-            closed: if is_faceted { inside.len() } else { 0 },
+            depth: -point.gap,
+            sagitta: known.map(|bend| bend.sagitta).fold(0.0, f64::max),
+        })
+    }
+
+    /// Whether the nodes around one have others over them, so that facets are as far from the curve on both sides.
+    fn is_over(&self, mesh: &TetMesh, overlap: &Overlap) -> bool {
+        let [own, other] = &self.sides;
+        let place = |node: &u32| mesh.points()[*node as usize];
+        let is_over = |local: &u32| {
+            let node = &own.surface.nodes()[*local as usize];
+            let (from, normal) = (place(node), own.surface.frames()[*local as usize].normal);
+            let across = |to: &u32| norm(cross(sub(place(to), from), normal));
+            other.surface.nodes().iter().any(|to| across(to) <= overlap.sagitta)
         };
-        if is_faceted {
-            inside.iter().for_each(|&(k, _)| points[k].gap = 0.0);
+        let at = |t: &&[u32; 3]| t.iter().any(|&n| own.surface.nodes()[n as usize] == overlap.node);
+        own.surface.triangles().iter().filter(at).flatten().all(is_over)
+    }
+}
+
+fn edges_of(t: &[u32; 3]) -> [[u32; 2]; 3] {
+    [0, 1, 2].map(|k| [t[k], t[(k + 1) % 3]])
+}
+
+impl Side {
+    fn new(mesh: &TetMesh, surface: Surface) -> Self {
+        let chords = Chords::new(mesh, &surface);
+        let mut corners = vec![Bend::default(); surface.nodes().len()];
+        let mut areas = vec![0.0; corners.len()];
+        let mut mids = Vec::new();
+        for (&facet, t) in surface.facets().iter().zip(surface.triangles()) {
+            let own = (mesh.order() == 2).then(|| mesh.facet_mids(facet as usize));
+            let edges = edges_of(t);
+            let arcs = [0, 1, 2].map(|k| chords.arc(edges[k], own.map(|mids| mids[k])));
+            let [a, b, c] = t.map(|n| chords.place(n));
+            let area = 0.5 * norm(cross(sub(b, a), sub(c, a)));
+            for n in t.map(|n| n as usize) {
+                corners[n].behind += area * arcs.iter().sum::<f64>() / 3.0;
+                corners[n].sagitta = arcs.iter().map(|arc| arc.abs()).fold(corners[n].sagitta, f64::max);
+                areas[n] += area;
+            }
+            mids.extend(own.into_iter().flatten().zip(edges));
         }
-        out.push(found);
+        corners
+            .iter_mut()
+            .zip(areas)
+            .for_each(|(bend, area)| bend.behind /= area);
+        let mut bends: HashMap<u32, Bend> = surface.nodes().iter().copied().zip(corners.iter().copied()).collect();
+        bends.extend(mids.into_iter().map(|(mid, ends)| {
+            let [a, b] = ends.map(|end| corners[end as usize]);
+            let bend = Bend {
+                behind: 0.5 * (a.behind + b.behind),
+                sagitta: a.sagitta.max(b.sagitta),
+            };
+            (mid, bend)
+        }));
+        Self { surface, bends }
     }
-    out
 }
 
-/// Whether the nodes around a point have others over them, so that facets are as far from the curve on both sides.
-fn are_over(mesh: &TetMesh, point: &ContactPoint, [own, other]: [&Surface; 2], within: f64) -> bool {
-    let place = |node: &u32| mesh.points()[*node as usize];
-    let is_over = |local: &u32| {
-        let (from, normal) = (
-            place(&own.nodes()[*local as usize]),
-            own.frames()[*local as usize].normal,
-        );
-        let across = |to: &u32| norm(cross(sub(place(to), from), normal));
-        other.nodes().iter().any(|to| across(to) <= within)
-    };
-    let at = |t: &&[u32; 3]| t.iter().any(|&n| own.nodes()[n as usize] == point.node());
-    own.triangles().iter().filter(at).all(|nodes| nodes.iter().all(is_over))
+/// The edges of a surface as chords of arcs.
+struct Chords<'a> {
+    mesh: &'a TetMesh,
+    surface: &'a Surface,
+    /// Nodes at a rim, whose normals are those of facets on one side of them.
+    at_rim: Vec<bool>,
+    /// Ends of edges that are bent.
+    on_arc: Vec<bool>,
 }
 
-fn larger(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0].max(b[0]), a[1].max(b[1])]
-}
-
-/// For each node of a surface the largest distance, m, of the middle of an edge from the arc between its ends, of the
-/// facets at the node; none where mid-nodes are on it. Beside it that of hollow arcs.
-fn sagittas(mesh: &TetMesh, surface: &Surface) -> Vec<[f64; 2]> {
-    let mut out = vec![[0.0; 2]; surface.nodes().len()];
-    for (&facet, t) in surface.facets().iter().zip(surface.triangles()) {
-        let mids = (mesh.order() == 2).then(|| mesh.facet_mids(facet as usize));
-        let far = |k: usize| {
-            let place = |node: u32| mesh.points()[node as usize];
-            let [a, b] = [t[k], t[(k + 1) % 3]].map(|n| n as usize);
-            let [from, to] = [a, b].map(|n| place(surface.nodes()[n]));
-            let [m, n] = [a, b].map(|n| surface.frames()[n].normal);
-            let arc = 0.125 * dot(sub(to, from), sub(n, m));
-            let off = mids.map_or([0.0; 3], |mids| sub(place(mids[k]), scale(0.5, add(from, to))));
-            // at rims normals are those of one facet, and an arc seems to be half as high
-            let bent = 0.5 * dot(off, add(m, n)) * arc.signum() > 0.5 * arc.abs();
-            if bent { [0.0; 2] } else { [arc.abs(), -arc] }
+impl<'a> Chords<'a> {
+    fn new(mesh: &'a TetMesh, surface: &'a Surface) -> Self {
+        let edges = surface.triangles().iter().flat_map(edges_of);
+        let mut edges: Vec<[u32; 2]> = edges.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        edges.sort_unstable();
+        let count = surface.nodes().len();
+        let mut out = Self {
+            mesh,
+            surface,
+            at_rim: vec![false; count],
+            on_arc: vec![false; count],
         };
-        let far = (0..3).map(far).fold([0.0; 2], larger);
-        t.iter().for_each(|&n| out[n as usize] = larger(out[n as usize], far));
+        for same in edges.chunk_by(|a, b| a == b) {
+            let bent = are_bent(out.tilts(same[0]));
+            for node in same[0].map(|n| n as usize) {
+                out.at_rim[node] |= same.len() == 1;
+                out.on_arc[node] |= bent;
+            }
+        }
+        out
     }
-    out
+
+    fn place(&self, node: u32) -> [f64; 3] {
+        self.mesh.points()[self.surface.nodes()[node as usize] as usize]
+    }
+
+    fn normal(&self, node: u32) -> [f64; 3] {
+        self.surface.frames()[node as usize].normal
+    }
+
+    /// How far the normals of the ends of an edge tilt outward over its length, m.
+    fn tilts(&self, [a, b]: [u32; 2]) -> [f64; 2] {
+        let along = sub(self.place(b), self.place(a));
+        [-dot(along, self.normal(a)), dot(along, self.normal(b))]
+    }
+
+    /// Height of the arc over an edge, m, positive if it is convex; none over edges with a mid-node on the arc.
+    fn arc(&self, edge: [u32; 2], mid: Option<u32>) -> f64 {
+        let tilts = self.tilts(edge);
+        let [a, b] = edge.map(|n| n as usize);
+        let ends = |from: usize, to: usize| self.at_rim[from] && !self.at_rim[to] && self.on_arc[to];
+        let arc = match (are_bent(tilts), ends(a, b), ends(b, a)) {
+            (true, ..) => 0.125 * (tilts[0] + tilts[1]),
+            (false, true, _) => 0.25 * tilts[1],
+            (false, _, true) => 0.25 * tilts[0],
+            (false, false, false) => 0.0,
+        };
+        let Some(mid) = mid else { return arc };
+        let chord = scale(0.5, add(self.place(edge[0]), self.place(edge[1])));
+        let outward = add(self.normal(edge[0]), self.normal(edge[1]));
+        let off = 0.5 * dot(sub(self.mesh.points()[mid as usize], chord), outward);
+        if off * arc.signum() > 0.5 * arc.abs() { 0.0 } else { arc }
+    }
+}
+
+/// Whether an edge is the chord of an arc, which bends at both ends. One between flat sides bends at one end.
+fn are_bent([a, b]: [f64; 2]) -> bool {
+    a * b > 0.0 && a.abs().min(b.abs()) >= KINK * a.abs().max(b.abs())
 }

@@ -31,7 +31,7 @@ mod turn;
 pub(crate) use couplings::Couplings;
 pub(crate) use creases::area_vector;
 pub(crate) use extents::Extents;
-pub(crate) use faceted::FacetedOverlap;
+pub(crate) use faceted::FacetedOverlaps;
 pub(crate) use points::ContactPoint;
 pub(crate) use scene::DiscreteScene;
 pub(crate) use side::mean_place;

@@ -2,7 +2,7 @@
 
 use super::couplings::Couplings;
 use super::equations::equations;
-use super::faceted::{FacetedOverlap, close_faceted};
+use super::faceted::{FacetedOverlaps, close_faceted};
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
 use super::partners::Paired;
 use super::penetration::check_penetration;
@@ -49,8 +49,8 @@ pub(crate) struct DiscreteScene {
     pub(crate) rounding: f64,
     /// Contacts whose meshes do not match, and whether the other side than the scene names first has the points.
     pub(crate) apart: Vec<(usize, bool)>,
-    /// Those of them that overlap about as much as facets are beside their curve.
-    pub(crate) faceted: Vec<FacetedOverlap>,
+    /// Their overlaps about as deep as facets are beside their curve.
+    pub(crate) faceted: FacetedOverlaps,
     /// How long it took to find the sides of the contacts.
     pub(crate) search: Duration,
 }
@@ -87,7 +87,7 @@ impl DiscreteScene {
             let bonded: HashSet<u32> = nodes.filter(|n| sides.contains(n)).collect();
             conditions.retain(|c| c.sides.partner.is_none() || !bonded.contains(&c.node()));
         }
-        let faceted = close_faceted(scene, &paired, &mut conditions, rounding);
+        let faceted = close_faceted(scene, &paired, &mut conditions, rounding)?;
         let surfaces: Vec<Surface> = paired.into_iter().map(|p| p.surface).collect();
         let times = scene.analysis.times();
         let poses: Vec<Vec<Pose>> = scene.contacts.iter().map(|c| c.poses(times)).collect();

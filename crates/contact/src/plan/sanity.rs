@@ -1,6 +1,6 @@
 //! What a scene alone shows of what is hardly meant.
 
-use crate::discrete::{ContactPoint, DiscreteScene, Extents, FacetedOverlap};
+use crate::discrete::{ContactPoint, DiscreteScene, Extents, FacetedOverlaps};
 use crate::report::Warning;
 use crate::scene::{Contact, Coupling, Equation, Friction, Load, Scene, Support};
 use crate::tolerances::{LARGE_COEFFICIENT, LARGE_GAP, LOCKING};
@@ -12,12 +12,14 @@ pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> 
     let points = &discrete.points;
     let listed = scene.materials.listed();
     let present = regions(scene, &listed);
+    let [closed, pressing] = faceted_overlaps(discrete);
     let found = [
         idle(scene, discrete),
         unused_materials(listed, &present),
         locking(scene, &present),
         large_gap(scene, discrete),
-        faceted_overlap(discrete),
+        closed,
+        pressing,
         large_coefficient(scene, points),
     ];
     found.into_iter().flatten().collect()
@@ -104,24 +106,25 @@ fn large_gap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
     })
 }
 
-/// The first contact whose overlap is measured between facets that are too far from the curve that they stand for.
-fn faceted_overlap(discrete: &DiscreteScene) -> Option<Warning> {
-    let FacetedOverlap {
-        contact,
-        node,
-        place,
-        overlap,
-        sagitta,
-        closed,
-    } = *discrete.faceted.first()?;
-    Some(Warning::FacetedOverlap {
-        contact,
-        node,
-        place,
-        overlap,
-        sagitta,
-        closed,
-    })
+/// Overlaps about as deep as facets are beside the curve that they stand for: those that are closed, and those that press.
+fn faceted_overlaps(discrete: &DiscreteScene) -> [Option<Warning>; 2] {
+    let FacetedOverlaps { pressing, closed } = &discrete.faceted;
+    let closed = closed.map(|(deepest, [points, contacts])| Warning::ClosedOverlaps {
+        contact: deepest.contact,
+        node: deepest.node,
+        place: deepest.place,
+        overlap: deepest.depth,
+        points,
+        contacts,
+    });
+    let pressing = pressing.map(|deepest| Warning::FacetedOverlap {
+        contact: deepest.contact,
+        node: deepest.node,
+        place: deepest.place,
+        overlap: deepest.depth,
+        sagitta: deepest.sagitta,
+    });
+    [closed, pressing]
 }
 
 /// The largest coefficient, if it is too large, at whatever slip rate where that is known and else at rest.

@@ -51,14 +51,16 @@ signorini_fem_mesh::errors! {
             "contact {contact} begins {:.3e} {} its obstacle even at the nearest node, {node} at {}, and the body is \
             {extent:.3e} long; look at the unit of the gap and at the places of the bodies",
             gap.abs(), if *gap < 0.0 { "inside" } else { "from" }, at(place);
-        FacetedOverlap { contact: usize, node: u32, place: [f64; 3], overlap: f64, sagitta: f64, closed: usize } =
+        FacetedOverlap { contact: usize, node: u32, place: [f64; 3], overlap: f64, sagitta: f64 } =
             "contact {contact} begins {overlap:.3e} inside its partner at node {node}, {}, between facets that are \
-            {sagitta:.3e} beside the curve that they stand for; {}", at(place), match closed {
-                0 => "which is measured with it and presses all the same: tell the gap (with_gap, 0 for sides that \
-                    touch), or take smaller facets, or mid-nodes on the curve".to_owned(),
-                points => format!("{points} points that overlap no more than that count as touching: tell the gap of a \
-                    press fit (with_gap, negative), or take smaller facets, or mid-nodes on the curve"),
-            };
+            {sagitta:.3e} beside the curve that they stand for, which is measured with it and presses all the same: tell \
+            the gap (with_gap, 0 for sides that touch), or take smaller facets, or mid-nodes on the curve",
+            at(place);
+        ClosedOverlaps { contact: usize, node: u32, place: [f64; 3], overlap: f64, points: usize, contacts: usize } =
+            "{points} points of {contacts} contacts begin inside their partner, most by {overlap:.3e} at node {node} of \
+            contact {contact}, {}, because straight facets stand for a hollow side; in the mean the sides touch, and so \
+            do these points: to press, tell the gap (with_gap, negative), or take Contact::with_measured_overlaps",
+            at(place);
         LargeCoefficient { contact: usize, node: u32, place: [f64; 3], coefficient: f64 } =
             "friction of contact {contact}: the coefficient at node {node}, {}, is {coefficient}; hardly any pair of \
             materials has so much: {coefficient} in per cent is {}", at(place), 0.01 * coefficient;
@@ -103,6 +105,7 @@ impl Warning {
             }
             Self::LargeGap { contact, node, .. }
             | Self::FacetedOverlap { contact, node, .. }
+            | Self::ClosedOverlaps { contact, node, .. }
             | Self::LargeCoefficient { contact, node, .. } => {
                 vec![Part::Contact(*contact), Part::Node(*node)]
             }

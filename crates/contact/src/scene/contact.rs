@@ -24,6 +24,16 @@ pub(crate) enum ContactNormal {
     Obstacle,
 }
 
+/// Which measured gaps count as none.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Closing {
+    /// Overlaps that straight facets of a hollow side make.
+    Faceted,
+    Nothing,
+    /// Those up to a length, m.
+    UpTo(f64),
+}
+
 /// A part of the boundary that may touch a rigid obstacle, or another body.
 #[derive(Debug, Clone)]
 #[must_use]
@@ -40,8 +50,7 @@ pub struct Contact {
     pub(crate) crease: f64,
     /// Displacement of the obstacle, m, and its factor in time.
     pub(crate) motion: Option<([f64; 3], History)>,
-    /// Measured gaps up to which sides touch, m.
-    pub(crate) closed: Option<f64>,
+    pub(crate) closing: Closing,
     /// Factor of the gap in time.
     pub(crate) gap_history: Option<History>,
     pub(crate) rotation: Option<Rotation>,
@@ -69,7 +78,7 @@ impl Contact {
             friction_axis: None,
             crease: CREASE,
             motion: None,
-            closed: None,
+            closing: Closing::Faceted,
             gap_history: None,
             rotation: None,
             shape: None,
@@ -112,7 +121,8 @@ impl Contact {
     /// All quantities of a contact point are those of the body of its [node](crate::result::PointState::node): the
     /// outward normal, the force on it, its displacement *relative* to the partner; sums over a contact are those of
     /// the body with `tag`. The gap is measured between the sides, unless [`with_gap`](Self::with_gap) or
-    /// [`with_gap_field`](Self::with_gap_field) prescribes it; sides may coincide. Sliding is small: a node keeps its
+    /// [`with_gap_field`](Self::with_gap_field) prescribes it; sides may coincide, and
+    /// [overlaps press](Self::with_measured_overlaps) unless facets alone make them. Sliding is small: a node keeps its
     /// partner, however far it slides.
     pub fn between(tag: FacetTag, partner: FacetTag) -> Self {
         Self {
@@ -182,12 +192,20 @@ impl Contact {
     /// negative) are closed: there the sides touch without stress, as if nodes had been moved onto each other. Overlaps
     /// are, too. For facets that deviate from the curves that they stand for.
     pub fn with_closed_gaps(mut self, reach: f64) -> Self {
-        self.closed = Some(reach);
+        self.closing = Closing::UpTo(reach);
+        self
+    }
+
+    /// Measured overlaps press as they are. Without it, those of bodies that touch but for straight facets of a hollow
+    /// side, as of a bolt in its bore, are closed, which [`ClosedOverlaps`](crate::Warning::ClosedOverlaps) tells.
+    pub fn with_measured_overlaps(mut self) -> Self {
+        self.closing = Closing::Nothing;
         self
     }
 
     /// The gap changes in time: `history(t)` multiplies the gap given by [`with_gap`](Self::with_gap), a field, a shape
-    /// or the coordinates, but not the opening by motions of the obstacle. A press fit is a negative gap with a ramp.
+    /// or the coordinates, but not the opening by motions of the obstacle. A press fit is a negative gap with a ramp;
+    /// [measured overlaps](Self::with_measured_overlaps) are then meant.
     /// Before the first step the factor is that at time 0. For obstacles and between bodies. The work of the growing
     /// interference is part of [`obstacle_work`](crate::result::ContactSummary::obstacle_work).
     pub fn with_gap_history(mut self, history: History) -> Self {
@@ -391,7 +409,7 @@ impl Contact {
         let value = match (&self.gap, &self.shape) {
             (Gap::Constant(value), _) => *value,
             (Gap::Field(field), _) => field(position),
-            (Gap::Measured, _) if self.closed.is_some_and(|reach| measured <= reach) => 0.0,
+            (Gap::Measured, _) if matches!(self.closing, Closing::UpTo(reach) if measured <= reach) => 0.0,
             (Gap::Measured, _) => measured,
             (Gap::Obstacle, Some(shape)) if self.normal == ContactNormal::Obstacle => shape.distance(position).0,
             (Gap::Obstacle, Some(shape)) => shape.along(position, *normal),

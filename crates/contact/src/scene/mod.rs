@@ -29,7 +29,7 @@ mod time;
 mod validate;
 
 pub use contact::Contact;
-pub(crate) use contact::ContactNormal;
+pub(crate) use contact::{Closing, ContactNormal};
 pub(crate) use coupling::Coupled;
 pub use coupling::Coupling;
 pub use equation::Equation;

@@ -33,7 +33,8 @@ pub struct ContactPair {
     pub bodies: [u32; 2],
     /// Tags of the surface of each. A facet that faces several bodies is in several pairs, by a tag of its own.
     pub tags: [Vec<FacetTag>; 2],
-    /// The smallest and the largest distance along the normals that was found, m; negative in each other.
+    /// The smallest and the largest distance along the normals that was measured, m; negative in each other, also where
+    /// [contact closes overlaps](Contact::with_measured_overlaps).
     pub gaps: [f64; 2],
 }
 

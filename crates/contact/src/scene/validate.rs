@@ -1,6 +1,6 @@
 //! What can be said against a scene without nodes and rows.
 
-use super::contact::{Contact, ContactNormal};
+use super::contact::{Closing, Contact, ContactNormal};
 use super::friction::Friction;
 use super::gap::Gap;
 use super::obstacle::Obstacle;
@@ -158,7 +158,7 @@ impl Scene {
         if let Some(&value) = contact.compliance.iter().find(|c| !(c.is_finite() && **c >= 0.0)) {
             return Err(ContactError::Compliance { contact: index, value });
         }
-        if let Some(reach) = contact.closed {
+        if let Closing::UpTo(reach) = contact.closing {
             let measured = matches!(contact.gap, Gap::Measured) && !contact.tied;
             let good = measured && reach.is_finite() && reach >= 0.0;
             check(

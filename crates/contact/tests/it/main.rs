@@ -26,6 +26,7 @@ mod estimates;
 mod estimates_coupled;
 mod estimates_tied;
 mod explicit;
+mod faceted;
 mod free_bodies;
 mod gap_history;
 mod groups;

@@ -138,7 +138,7 @@ fn with_gap(
             ignored.push(Ignored::new(word, why));
             Ok(contact.with_closed_gaps(*reach))
         }
-        (None, None) => Ok(contact),
+        (None, None) => Ok(contact.with_measured_overlaps()),
     }
 }
 

@@ -1,0 +1,135 @@
+//! Straight facets that stand for a curve: overlaps that they make press nothing, and those that are meant press.
+
+use crate::common::*;
+
+/// A quarter of a ring, in meshes of order 2 with mid-nodes on the circle where it is bent.
+fn arc(radii: [f64; 2], cells: usize, order: usize, bent: bool) -> TetMesh {
+    let place = |[x, y, z]: [f64; 3]| {
+        let (radius, angle) = (radii[0] + x * (radii[1] - radii[0]), 0.5 * std::f64::consts::PI * y);
+        [radius * angle.cos(), radius * angle.sin(), z]
+    };
+    let raised = |mesh: TetMesh| {
+        if order == 2 {
+            mesh.raise_order().expect("order 2")
+        } else {
+            mesh
+        }
+    };
+    let straight = block([1.0; 3], [1, cells, 1]);
+    match bent {
+        true => raised(straight).map_points(place).expect("arc"),
+        false => raised(straight.map_points(place).expect("arc")),
+    }
+}
+
+/// A ring pressed on a shaft by 0.02 m: facets of the shaft are as far within its circle. Not
+/// where the gap is told, where mid-nodes are on the circle, where facets are small against the overlap, and where they
+/// match.
+#[test]
+fn overlaps_of_facets_are_no_interference() {
+    let plan = |cells: [usize; 2], order, bent, overlap: f64, told: bool| {
+        let rings = [([4.0, 10.0], 0), ([if told { 10.0 } else { 10.0 - overlap }, 14.0], 1)];
+        let [shaft, sleeve] = rings.map(|(radii, k)| arc(radii, cells[k], order, bent));
+        let fit = Contact::between(brick::X_MAX, second(brick::X_MIN));
+        let scene = Scene::new(with_second(&shaft, &sleeve), uniform(1e3, 0.3))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_support(Support::fixed(second(brick::X_MAX)))
+            .with_contact(if told { fit.with_gap(-overlap) } else { fit });
+        Plan::new(&scene, &Settings::default())
+            .expect("plan")
+            .warnings()
+            .to_vec()
+    };
+    for order in [1, 2] {
+        let warnings = plan([12, 20], order, false, 0.02, false);
+        let [
+            warning @ Warning::FacetedOverlap {
+                contact: 0,
+                overlap,
+                sagitta,
+                ..
+            },
+        ] = &warnings[..]
+        else {
+            panic!("{warnings:?}");
+        };
+        // at the rim normals are those of one facet, and differ half as much
+        let expected = 10.0 * (1.0 - (std::f64::consts::PI / 48.0).cos());
+        assert!(
+            (0.49..1.01).contains(&(sagitta / expected)) && *overlap > 0.0,
+            "{warning}"
+        );
+        assert!(warning.to_string().contains("with_gap, 0"), "{warning}");
+        assert_eq!(plan([12, 20], order, false, 0.02, true), []);
+        assert_eq!(plan([12, 12], order, false, 0.02, false), []);
+        assert_eq!(plan([12, 20], order, false, 0.4, false), []);
+    }
+    assert_eq!(plan([12, 20], 2, true, 0.02, false), []);
+}
+
+/// Force between a shaft of this radius and a sleeve of radius 10 that are held, and warnings, as `with` changes the contact.
+fn pressed(radius: f64, meshes: [TetMesh; 2], with: impl Fn(Contact) -> Contact) -> (f64, Vec<Warning>) {
+    let [shaft, sleeve] = meshes;
+    let shaft = shaft
+        .map_points(|[x, y, z]| [0.1 * radius * x, 0.1 * radius * y, z])
+        .expect("radius");
+    let fit = Contact::between(brick::X_MAX, second(brick::X_MIN)).with_friction(Friction::coulomb(0.3));
+    let scene = Scene::new(with_second(&shaft, &sleeve), uniform(1e3, 0.3))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_support(Support::fixed(second(brick::X_MAX)))
+        .with_contact(with(fit));
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("simulation");
+    let force = simulation.step().expect("step").summary().normal_force;
+    (force, simulation.plan().warnings().to_vec())
+}
+
+/// A shaft in a sleeve of its own radius, or of one a little smaller: overlaps of straight hollow facets press nothing,
+/// unless they are meant. A fit of half a sagitta presses.
+#[test]
+fn facets_of_a_hollow_side_do_not_press() {
+    let touching = |w: &Warning| matches!(w, Warning::ClosedOverlaps { contacts: 1, .. });
+    for (order, radius, closes) in [(1, 10.0, true), (2, 10.0, true), (1, 10.002, true), (1, 10.011, false)] {
+        let meshes = || [arc([4.0, 10.0], 20, order, false), arc([10.0, 14.0], 12, order, false)];
+        let (force, warnings) = pressed(radius, meshes(), |fit| fit);
+        assert_eq!(force < 1e-9, closes, "{order} {radius}: {force}");
+        let found = warnings.iter().find(|w| touching(w)).map(Warning::to_string);
+        assert_eq!(
+            found.is_some_and(|w| w.contains("because straight facets")),
+            closes,
+            "{warnings:?}"
+        );
+        let grown = |fit: Contact| fit.with_gap_history(History::ramp(1.0, 1.0).expect("ramp"));
+        for (force, warnings) in [
+            pressed(radius, meshes(), Contact::with_measured_overlaps),
+            pressed(radius, meshes(), grown),
+        ] {
+            assert!(force > 1.0 && !warnings.iter().any(touching), "{force} {warnings:?}");
+            assert!(
+                warnings.iter().any(|w| matches!(w, Warning::FacetedOverlap { .. })),
+                "{warnings:?}"
+            );
+        }
+    }
+}
+
+/// Two flats of an octagon, of few cells each, are no curve: their interference presses.
+#[test]
+fn flats_that_meet_in_a_kink_press() {
+    let flat = |mesh: TetMesh| {
+        let place = |[x, y, z]: [f64; 3]| {
+            let eighth = 0.25 * std::f64::consts::PI;
+            let stretch = 1.0 / (y.atan2(x).rem_euclid(eighth) - 0.5 * eighth).cos();
+            [stretch * x, stretch * y, z]
+        };
+        mesh.map_points(place).expect("octagon")
+    };
+    for cells in [[4, 6], [6, 4]] {
+        let meshes = [([4.0, 10.0], 0), ([10.0, 14.0], 1)].map(|(radii, k)| flat(arc(radii, cells[k], 1, false)));
+        let (force, warnings) = pressed(10.02, meshes.clone(), |fit| fit);
+        let (expected, _) = pressed(10.02, meshes, |fit| fit.with_gap(-0.02));
+        assert!(
+            (force / expected - 1.0).abs() < 0.1,
+            "{cells:?}: {force} {expected} {warnings:?}"
+        );
+    }
+}
