@@ -69,6 +69,7 @@ pub(crate) fn cholesky_columns(a: &mut [f64], height: usize, width: usize, thres
     Ok(())
 }
 
+/// Cholesky's factor in place of a lower triangle.
 fn factor(mut triangle: MatMut<'_, f64>, threshold: f64) -> Result<(), usize> {
     let (size, params) = (triangle.nrows(), Default::default());
     let mut memory = MemBuffer::new(llt::factor::cholesky_in_place_scratch::<f64>(size, Par::Seq, params));

@@ -61,18 +61,17 @@ pub(crate) fn extend(update: &[f64], into: &[u32], front: &mut Front, width: usi
         is_ascending: into.is_sorted(),
     };
     let parts = |own: &mut Vec<f64>, first: usize, rows: usize| {
-        let part = if update.len() < LARGE_UPDATE {
-            own.len()
-        } else {
-            PART * rows
-        };
-        let parts = own.par_chunks_mut(part.max(1)).enumerate();
+        if update.len() < LARGE_UPDATE {
+            return child.add_to(own, first, first, rows);
+        }
+        let parts = own.par_chunks_mut((PART * rows).max(1)).enumerate();
         parts.for_each(|(k, part)| child.add_to(part, first + k * PART, first, rows));
     };
     parts(&mut front.columns, 0, height);
     parts(&mut front.update, width, behind);
 }
 
+/// A child of a front, whose border need not stand in the order of the front's.
 struct Child<'a> {
     update: &'a [f64],
     into: &'a [u32],
@@ -110,6 +109,58 @@ impl Child<'_> {
                         let target = &mut columns[(start - first_column) * rows + row - first_row..];
                         target.iter_mut().zip(source).for_each(|(t, s)| *t += s);
                     }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The border of a child in any order: each entry of its lower triangle is added once, to the lower triangle of the front.
+    #[test]
+    fn parts_take_what_belongs_to_their_columns() {
+        let (width, height) = (18, 48);
+        for into in [[5, 0, 3, 4, 7], [0, 1, 3, 4, 7]] {
+            let size = 6 * into.len();
+            let update: Vec<f64> = (0..size * size).map(|k| (k as f64).sin()).collect();
+            let mut expected = vec![0.0; height * height];
+            let at = |i: usize| 6 * into[i / 6] as usize + i % 6;
+            for j in 0..size {
+                for i in j..size {
+                    let (row, column) = (at(i).max(at(j)), at(i).min(at(j)));
+                    expected[row + column * height] = update[i + j * size];
+                }
+            }
+            let child = Child {
+                update: &update,
+                into: &into,
+                is_ascending: into.is_sorted(),
+            };
+            let behind = height - width;
+            let (mut columns, mut rest) = (vec![0.0; width * height], vec![0.0; behind * behind]);
+            for (k, part) in columns.chunks_mut(6 * height).enumerate() {
+                child.add_to(part, 6 * k, 0, height);
+            }
+            for (k, part) in rest.chunks_mut(12 * behind).enumerate() {
+                child.add_to(part, width + 12 * k, width, behind);
+            }
+            let mut whole = Front {
+                columns: vec![0.0; width * height],
+                update: vec![0.0; behind * behind],
+            };
+            extend(&update, &into, &mut whole, width, height);
+            for j in 0..height {
+                for i in j..height {
+                    let found = |columns: &[f64], rest: &[f64]| match j < width {
+                        true => columns[i + j * height],
+                        false => rest[i - width + (j - width) * behind],
+                    };
+                    let expected = expected[i + j * height];
+                    assert_eq!(found(&columns, &rest), expected, "{into:?} {i} {j}");
+                    assert_eq!(found(&whole.columns, &whole.update), expected, "{into:?} {i} {j}");
                 }
             }
         }
