@@ -57,7 +57,7 @@ signorini_fem_mesh::errors! {
             the gap (with_gap, 0 for sides that touch), or take smaller facets, or mid-nodes on the curve",
             at(place);
         ClosedOverlaps { contact: usize, node: u32, place: [f64; 3], overlap: f64, points: usize, contacts: usize } =
-            "{points} points of {contacts} contacts begin inside their partner, most by {overlap:.3e} at node {node} of \
+            "{points} point(s) of {contacts} contact(s) begin inside their partner, most by {overlap:.3e} at node {node} of \
             contact {contact}, {}, because straight facets stand for a hollow side; in the mean the sides touch, and so \
             do these points: to press, tell the gap (with_gap, negative), or take Contact::with_measured_overlaps",
             at(place);
