@@ -325,8 +325,8 @@ pub(crate) const LARGE_GAP: f64 = 1.0;
 pub(crate) const FACETED: f64 = 0.1;
 
 /// How far sides may be inside one another in the mean, over what facets of a hollow side make of their gaps, so that they
-/// touch but for these; and how deep the deepest point may be over that at the worst place. Of 48 touching rings of cells
-/// uneven by 10 to 30 % 47 are closed, and so are bores, cones, tori and sockets as Gmsh meshes them; round fits press from
+/// touch but for these; and how deep the deepest point may be over that at the worst place. Of 72 touching rings of cells
+/// uneven by 10 to 30 % 70 are closed, and so are bores, cones, tori and sockets as Gmsh meshes them; round fits press from
 /// a quarter of a sagitta on.
 pub(crate) const TOUCHING: f64 = 0.35;
 pub(crate) const DEEP: f64 = 3.0;
