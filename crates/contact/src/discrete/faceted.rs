@@ -4,8 +4,10 @@
 //! is known in the mean over a facet: a third of the sum of the arcs over its edges, for any curve of second degree. Taken
 //! from the measured gaps, in the mean over all contact of two bodies, it tells whether they touch or are pressed together.
 
+use super::creases::area_vector;
+use super::means::edges;
 use super::partners::Paired;
-use super::points::ContactPoint;
+use super::points::{ContactPoint, of_contact};
 use crate::error::ContactError;
 use crate::scene::{Closing, Gap, Scene};
 use crate::tolerances::{DEEP, FACETED, KINK, TOUCHING};
@@ -67,17 +69,13 @@ pub(super) fn close_faceted(
     conditions: &mut [ContactPoint],
     rounding: f64,
 ) -> Result<FacetedOverlaps, ContactError> {
-    let range = |index: usize| {
-        let first = conditions.partition_point(|c| c.surface < index);
-        first..conditions.partition_point(|c| c.surface <= index)
-    };
     let is_measured = |(index, paired): &(usize, &Paired)| {
         let contact = &scene.contacts[*index];
         paired.is_apart() && !contact.tied && matches!(contact.gap, Gap::Measured)
     };
     let measured = || paired.iter().enumerate().filter(is_measured);
     let is_inside = |c: &ContactPoint| c.gap < -rounding;
-    if !measured().any(|(index, _)| conditions[range(index)].iter().any(is_inside)) {
+    if !measured().any(|(index, _)| conditions[of_contact(conditions, index)].iter().any(is_inside)) {
         return Ok(FacetedOverlaps::default());
     }
     let faceted = measured().map(|(index, paired)| {
@@ -89,7 +87,7 @@ pub(super) fn close_faceted(
         let sides = [paired.surface.clone(), Surface::new(&scene.mesh, tags)?];
         Ok::<_, ContactError>(Faceted {
             index,
-            range: range(index),
+            range: of_contact(conditions, index),
             closes: matches!(contact.closing, Closing::Faceted) && contact.gap_history.is_none(),
             sides: sides.map(|surface| Side::new(&scene.mesh, surface)),
         })
@@ -97,11 +95,15 @@ pub(super) fn close_faceted(
     let faceted = faceted.collect::<Result<Vec<_>, _>>()?;
     let mut out = FacetedOverlaps::default();
     for group in groups(&faceted) {
-        let deepest = group.iter().filter_map(|f| f.deepest(conditions, rounding));
-        let Some(deepest) = deepest.reduce(|a, b| if b.depth > a.depth { b } else { a }) else {
+        let overlaps = group
+            .iter()
+            .filter_map(|f| Some((*f, f.deepest(conditions, rounding)?)));
+        let overlaps: Vec<(&Faceted, Overlap)> = overlaps.collect();
+        let depths = overlaps.iter().map(|(_, overlap)| *overlap);
+        let Some(deepest) = depths.reduce(|a, b| if b.depth > a.depth { b } else { a }) else {
             continue;
         };
-        if touch(&group, conditions, deepest.depth) {
+        if group[0].closes && touch(&group, conditions, deepest.depth) {
             let (known, mut counts) = out.closed.unwrap_or((deepest, [0; 2]));
             for faceted in group {
                 let inside = conditions[faceted.range.clone()].iter_mut().filter(|c| is_inside(c));
@@ -112,11 +114,9 @@ pub(super) fn close_faceted(
             out.closed = Some((deepest, counts));
             continue;
         }
-        for faceted in group {
-            let own = faceted.deepest(conditions, rounding);
-            let own = own.filter(|o| o.sagitta > FACETED * o.depth && !faceted.is_over(&scene.mesh, o));
-            out.pressing = out.pressing.or(own);
-        }
+        let presses = |(f, o): &(&Faceted, Overlap)| o.sagitta > FACETED * o.depth && !f.is_over(&scene.mesh, o);
+        let first = || overlaps.into_iter().find(presses).map(|(_, overlap)| overlap);
+        out.pressing = out.pressing.or_else(first);
     }
     Ok(out)
 }
@@ -162,7 +162,7 @@ fn touch(group: &[&Faceted], conditions: &[ContactPoint], deepest: f64) -> bool 
             deep = deep.max(before);
         }
     }
-    group.iter().all(|f| f.closes) && hollow > 0.0 && gap >= -TOUCHING * hollow && deepest <= DEEP * deep
+    hollow > 0.0 && gap >= -TOUCHING * hollow && deepest <= DEEP * deep
 }
 
 impl Faceted {
@@ -198,10 +198,6 @@ impl Faceted {
     }
 }
 
-fn edges_of(t: &[u32; 3]) -> [[u32; 2]; 3] {
-    [0, 1, 2].map(|k| [t[k], t[(k + 1) % 3]])
-}
-
 impl Side {
     fn new(mesh: &TetMesh, surface: Surface) -> Self {
         let chords = Chords::new(mesh, &surface);
@@ -210,10 +206,9 @@ impl Side {
         let mut mids = Vec::new();
         for (&facet, t) in surface.facets().iter().zip(surface.triangles()) {
             let own = (mesh.order() == 2).then(|| mesh.facet_mids(facet as usize));
-            let edges = edges_of(t);
+            let edges = edges(*t);
             let arcs = [0, 1, 2].map(|k| chords.arc(edges[k], own.map(|mids| mids[k])));
-            let [a, b, c] = t.map(|n| chords.place(n));
-            let area = 0.5 * norm(cross(sub(b, a), sub(c, a)));
+            let area = norm(area_vector(mesh, &surface, t));
             for n in t.map(|n| n as usize) {
                 corners[n].behind += area * arcs.iter().sum::<f64>() / 3.0;
                 corners[n].sagitta = arcs.iter().map(|arc| arc.abs()).fold(corners[n].sagitta, f64::max);
@@ -250,8 +245,7 @@ struct Chords<'a> {
 
 impl<'a> Chords<'a> {
     fn new(mesh: &'a TetMesh, surface: &'a Surface) -> Self {
-        let edges = surface.triangles().iter().flat_map(edges_of);
-        let mut edges: Vec<[u32; 2]> = edges.map(|[a, b]| [a.min(b), a.max(b)]).collect();
+        let mut edges: Vec<[u32; 2]> = surface.triangles().iter().flat_map(|t| edges(*t)).collect();
         edges.sort_unstable();
         let count = surface.nodes().len();
         let mut out = Self {

@@ -170,6 +170,6 @@ fn all_partners(mesh: &TetMesh, contact: &Contact, surface: &Surface, partners: 
 }
 
 /// The edges 01, 12, 20 with their ends ascending.
-fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+pub(super) fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)])
 }

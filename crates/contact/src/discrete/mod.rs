@@ -32,7 +32,7 @@ pub(crate) use couplings::Couplings;
 pub(crate) use creases::area_vector;
 pub(crate) use extents::Extents;
 pub(crate) use faceted::FacetedOverlaps;
-pub(crate) use points::ContactPoint;
+pub(crate) use points::{ContactPoint, of_contact};
 pub(crate) use scene::DiscreteScene;
 pub(crate) use side::mean_place;
 pub(crate) use supports::Supports;

@@ -22,6 +22,7 @@ use signorini_qp::vector;
 use signorini_tfeti::Side;
 use std::cmp::Ordering;
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// A contact point before any row is made.
 #[derive(Debug, Clone, PartialEq)]
@@ -78,6 +79,12 @@ impl ContactPoint {
     pub(crate) fn is_same(&self, other: &Self) -> bool {
         self.sides.partner == other.sides.partner && self.frame.normal_part(other.frame.normal) > SAME_NORMAL
     }
+}
+
+/// Where the conditions of a contact stand.
+pub(crate) fn of_contact(conditions: &[ContactPoint], contact: usize) -> Range<usize> {
+    let [first, end] = [contact, contact + 1].map(|k| conditions.partition_point(|c| c.surface < k));
+    first..end
 }
 
 /// What the contacts of a scene say: each of their nodes with each of its normals. Contact by contact, nodes ascending.

@@ -6,7 +6,7 @@ use super::faceted::{FacetedOverlaps, close_faceted};
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
 use super::partners::Paired;
 use super::penetration::check_penetration;
-use super::points::{ContactPoint, conditions, points};
+use super::points::{ContactPoint, conditions, of_contact, points};
 use super::springs::Springs;
 use super::supports::Supports;
 use super::turn::check_turn;
@@ -92,9 +92,8 @@ impl DiscreteScene {
         let times = scene.analysis.times();
         let poses: Vec<Vec<Pose>> = scene.contacts.iter().map(|c| c.poses(times)).collect();
         for (index, own) in surfaces.iter().enumerate() {
-            let first = conditions.partition_point(|c| c.surface < index);
-            let end = conditions.partition_point(|c| c.surface <= index);
-            check_turn(scene, index, own, &conditions[first..end], &poses[index])?;
+            let own_conditions = &conditions[of_contact(&conditions, index)];
+            check_turn(scene, index, own, own_conditions, &poses[index])?;
         }
         let (points, stands) = points(scene, &conditions, rounding)?;
         couplings.check_contact(points.iter().chain(&ties), &supports)?;

@@ -4,7 +4,7 @@
 
 use super::points::ContactState;
 use super::recovered::Recovered;
-use crate::discrete::{Extents, beside, mean_place, turned, turned_to};
+use crate::discrete::{Extents, beside, mean_place, of_contact, turned, turned_to};
 use crate::model::Model;
 use crate::report::Warning;
 use crate::scene::ContactNormal;
@@ -221,8 +221,8 @@ fn turned_normal(model: &Model, recovered: &Recovered, u: &[f64], step: usize) -
     });
     let shaped = (0..scene.contacts.len()).filter(|&k| is_shaped(model, k) && scene.acts(scene.contacts[k].span));
     let without = shaped.flat_map(|contact| {
-        let [first, end] = [contact, contact + 1].map(|k| discrete.conditions.partition_point(|c| c.surface < k));
-        let nodes = beside(&discrete.surfaces[contact], &discrete.conditions[first..end]);
+        let own = &discrete.conditions[of_contact(&discrete.conditions, contact)];
+        let nodes = beside(&discrete.surfaces[contact], own);
         nodes.map(move |(node, normal)| (contact, node, normal))
     });
     let reached = without.filter_map(|own @ (contact, node, _)| {
