@@ -81,7 +81,7 @@ impl<T> Lists<T> {
 }
 
 /// The corners of a face, by which it is known however they are listed.
-pub fn ascending(mut nodes: [u32; 3]) -> [u32; 3] {
+pub fn ascending<const N: usize>(mut nodes: [u32; N]) -> [u32; N] {
     nodes.sort_unstable();
     nodes
 }

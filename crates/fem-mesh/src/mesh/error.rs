@@ -1,5 +1,7 @@
 //! What can be wrong with a mesh. Every message names the place and a remedy.
 
+use super::cells::CellShape;
+
 errors! {
     /// A mesh that cannot be used, the place of the fault and its remedy.
     #[derive(Clone, PartialEq)]
@@ -62,6 +64,11 @@ errors! {
             remesh finer around it";
         MixedOrder { first: usize, second: usize } =
             "a mesh of order {first} and one of order {second} cannot be one; raise_order the linear one";
+        CellNodes { cell: usize, shape: CellShape, nodes: usize } =
+            "cell {cell} is a {shape:?} of {nodes} nodes; give its {} corners, and for one of second order a node on each edge, \
+            and then none or one in each face of four corners and in the middle of a hexahedron", shape.corners();
+        CellNode { cell: usize, node: u32, nodes: usize } =
+            "cell {cell} names node {node}, but there are only {nodes} nodes, numbered from 0; look for a table numbered from 1";
         NoCut = "no face lies between tetrahedra of the first side of the cut and of the other; check what tells the sides";
         CutEnds { node: u32 } =
             "the cut ends inside a body, at node {node}, around which both sides are still joined; let it go through to \

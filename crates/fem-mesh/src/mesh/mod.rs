@@ -2,16 +2,19 @@
 //!
 //! `tet_mesh` is the mesh, `check` what its tables must pass, `faces` which tetrahedra meet at which face, `quadratic`
 //! mid-nodes, `curved` the geometry of tetrahedra and facets that have them, `cylindrical` directions about an axis,
-//! `edit` meshes made from meshes, `cut` opens them, `brick` a box of cells, `surface` nodal normals, frames, areas and
+//! `edit` meshes made from meshes, `cut` opens them, `cells` are hexahedra, prisms and pyramids, `division` makes tetrahedra of
+//! them, `brick` a box of cells, `surface` nodal normals, frames, areas and
 //! means, `error` what can be wrong.
 //!
 //! Uses: `tables`, `tolerances`, `vec3`. In: tables of points, tetrahedra and facets. Out: a mesh that has passed all checks.
 
 pub mod brick;
+mod cells;
 mod check;
 mod curved;
 mod cut;
 mod cylindrical;
+mod division;
 mod edit;
 mod error;
 mod faces;
@@ -19,6 +22,8 @@ mod quadratic;
 mod surface;
 mod tet_mesh;
 
+pub use cells::{Cell, CellShape};
+pub use division::{Division, divide_face};
 pub use edit::{drop_unused_nodes, merge_nodes, orient_tets};
 pub use error::MeshError;
 pub use surface::{Surface, SurfaceError, SurfaceFrame};

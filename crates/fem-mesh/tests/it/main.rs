@@ -1,5 +1,6 @@
 //! The promises of this crate, one module each.
 
+mod cells;
 mod compact;
 mod cut;
 mod decomposition;

@@ -1,6 +1,7 @@
 //! Mesh files of Gmsh, format 4.1, text or binary, and edge lengths for its next mesh (feature `gmsh`).
 //!
-//! Triangles become tagged facets, tetrahedra the mesh, of order 2 if they have ten nodes; points and lines are
+//! Triangles become tagged facets, tetrahedra the mesh, of order 2 if they have ten nodes; hexahedra, prisms and
+//! pyramids are [divided](crate::mesh::Division) into tetrahedra, quadrilaterals into triangles. Points and lines are
 //! skipped, and nodes that no tetrahedron uses are dropped. The tag of a facet is the physical group of its surface,
 //! the region of a tetrahedron that of its volume; if the file has no physical groups of that dimension, the numbers of
 //! the geometric entities are used, and surfaces between two volumes are skipped. Entities outside of the groups, if
@@ -18,8 +19,11 @@ use std::path::{Path, PathBuf};
 pub use names::GroupNames;
 pub use sizes::write_sizes;
 
-use crate::mesh::{Facet, FacetTag, MeshError, TetMesh, drop_unused_nodes, orient_tets};
+use crate::mesh::{
+    Cell, Division, Facet, FacetTag, MeshError, TetMesh, divide_face, drop_unused_nodes, orient_tets, quadratic_tets,
+};
 use crate::tables::{ascending, distinct};
+use reader::Kind;
 
 errors! {
     /// A Gmsh file that cannot be read or written.
@@ -42,17 +46,16 @@ errors! {
             before it is partitioned (gmsh.model.mesh.unpartition), and cut it with Decomposition::boxes or \
             from_parts";
         NoTetrahedra =
-            "the Gmsh file has no tetrahedra: mesh in three dimensions (gmsh -3); if that was done, add a physical \
+            "the Gmsh file has no elements of volumes: mesh in three dimensions (gmsh -3); if that was done, add a physical \
             volume, or set Mesh.SaveAll = 1, since Gmsh saves only what is in physical groups as soon as there are \
             some";
         UnknownName { what: &'static str, name: String, known: Vec<String> } =
             "the Gmsh file has no physical {what} named {name:?}; {}", listed(what, known);
-        Unsupported { kind: i32, name: &'static str } =
-            "the Gmsh file has elements of type {kind} ({name}); only triangles and tetrahedra of order 1 or 2 are \
-            read, so mesh with these and without recombination";
+        Unsupported { kind: i32 } =
+            "the Gmsh file has elements of type {kind}; only those of order 1 or 2 are read, so set Mesh.ElementOrder";
         MixedOrder { linear: usize, quadratic: usize } =
-            "the Gmsh file has {linear} tetrahedra of order 1 and {quadratic} of order 2; save all volumes with one \
-            order (Mesh.ElementOrder)";
+            "the Gmsh file has {linear} elements of volumes of order 1 and {quadratic} of order 2; save all volumes with \
+            one order (Mesh.ElementOrder)";
         RepeatedNode { tag: u64 } = "the Gmsh file defines node {tag} twice; export the mesh again";
         UnknownNode { element: u64, node: u64 } =
             "element {element} of the Gmsh file uses node {node}, which the file does not define; export the mesh \
@@ -111,39 +114,59 @@ pub fn parse_gmsh(bytes: &[u8]) -> Result<(TetMesh, GroupNames), GmshError> {
     }
     let surfaces = Tags::new("surface", &file.entities[0])?;
     let volumes = Tags::new("volume", &file.entities[1])?;
-    let (mut linear, mut quadratic, mut facets, mut regions) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut cells, mut facets, mut regions) = (Vec::new(), Vec::new(), Vec::new());
+    let nodes = numbered(&file, &number)?;
     for element in &file.elements {
-        match element.count {
-            4 => linear.push(nodes(element, &number)?),
-            10 => quadratic.push(nodes(element, &number)?),
-            _ => {
-                if let Some(tag) = surfaces.of(element.entity) {
-                    let (nodes, tag) = (nodes(element, &number)?, FacetTag(tag));
-                    facets.push(Facet { nodes, tag });
+        let nodes = &nodes[element.nodes.clone()];
+        match element.kind {
+            Kind::Cell(shape) => {
+                cells.push(Cell { shape, nodes });
+                regions.push(volumes.of(element.entity).unwrap_or(0));
+            }
+            Kind::Face { corners } => {
+                if let Some(tag) = surfaces.of(element.entity).map(FacetTag) {
+                    let triangles = divide_face(&nodes[..corners]);
+                    facets.extend(triangles.map(|nodes| Facet { nodes, tag }));
                 }
-                continue;
             }
         }
-        regions.push(volumes.of(element.entity).unwrap_or(0));
     }
+    let quadratic = cells.iter().filter(|c| c.nodes.len() > c.shape.corners()).count();
+    let linear = cells.len() - quadratic;
+    if linear.min(quadratic) > 0 {
+        return Err(GmshError::MixedOrder { linear, quadratic });
+    }
+    let mut points = file.points;
+    let division = Division::new(&mut points, &cells)?;
     let facets = (facets, surfaces.are_groups());
-    let mesh = match (linear.len(), quadratic.len()) {
+    let mesh = match (linear, quadratic) {
         (0, 0) => return Err(GmshError::NoTetrahedra),
-        (_, 0) => mesh(TetMesh::new, file.points, linear, facets)?,
-        (0, _) => mesh(TetMesh::quadratic, file.points, quadratic, facets)?,
-        (linear, quadratic) => return Err(GmshError::MixedOrder { linear, quadratic }),
+        (_, 0) => mesh(TetMesh::new, points, division.tets, facets)?,
+        _ => mesh(
+            TetMesh::quadratic,
+            points,
+            quadratic_tets(&division.tets, &division.mids),
+            facets,
+        )?,
     };
-    Ok((mesh.with_regions(regions)?, GroupNames::new(file.names)))
+    let of_cells = regions.into_iter().zip(&division.of_cell);
+    let regions = of_cells.flat_map(|(region, tets)| tets.clone().map(move |_| region));
+    Ok((mesh.with_regions(regions.collect())?, GroupNames::new(file.names)))
 }
 
-/// The first nodes of an element by their places in the file.
-fn nodes<const N: usize>(element: &reader::Element, number: &HashMap<u64, u32>) -> Result<[u32; N], GmshError> {
-    let mut out = [0; N];
-    for (place, &node) in out.iter_mut().zip(&element.nodes) {
-        let element = element.tag;
-        *place = *number.get(&node).ok_or(GmshError::UnknownNode { element, node })?;
-    }
-    Ok(out)
+/// The nodes of all elements by their places in the file.
+fn numbered(file: &reader::Contents, number: &HashMap<u64, u32>) -> Result<Vec<u32>, GmshError> {
+    let of = |element: &reader::Element| {
+        let tag = element.tag;
+        let nodes = file.nodes[element.nodes.clone()].iter();
+        nodes.map(move |node| {
+            number.get(node).copied().ok_or(GmshError::UnknownNode {
+                element: tag,
+                node: *node,
+            })
+        })
+    };
+    file.elements.iter().flat_map(of).collect()
 }
 
 /// The mesh of tetrahedra of either order; `grouped`: whether the facets are those of named groups.

@@ -1,28 +1,46 @@
 //! A reader of Gmsh 4.1 files. Every count is checked against the bytes that are there before it is believed.
 
 use super::GmshError;
+use crate::mesh::CellShape;
+use std::ops::Range;
 
-/// Nodes and name of the element types, and whether they are read or skipped; others are refused.
-const TYPES: [(i32, usize, &str, bool); 12] = [
-    (1, 2, "2-node line", true),
-    (2, 3, "3-node triangle", true),
-    (3, 4, "4-node quadrangle", false),
-    (4, 4, "4-node tetrahedron", true),
-    (5, 8, "8-node hexahedron", false),
-    (6, 6, "6-node prism", false),
-    (7, 5, "5-node pyramid", false),
-    (8, 3, "3-node line of second order", true),
-    (9, 6, "6-node triangle of second order", true),
-    (10, 9, "9-node quadrangle of second order", false),
-    (11, 10, "10-node tetrahedron of second order", true),
-    (15, 1, "point", true),
+/// What elements of a type are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Triangles and quadrilaterals.
+    Face {
+        corners: usize,
+    },
+    Cell(CellShape),
+}
+
+/// The element types: number, count of nodes, what they are if they are not skipped, and where the nodes of a [`Cell`](crate::mesh::Cell) behind
+/// its corners stand if Gmsh has another order.
+const TYPES: [(i32, usize, Option<Kind>, &[usize]); 19] = [
+    (1, 2, None, &[]),
+    (2, 3, Some(Kind::Face { corners: 3 }), &[]),
+    (3, 4, Some(Kind::Face { corners: 4 }), &[]),
+    (4, 4, Some(Kind::Cell(CellShape::Tetrahedron)), &[]),
+    (5, 8, Some(Kind::Cell(CellShape::Hexahedron)), &[]),
+    (6, 6, Some(Kind::Cell(CellShape::Prism)), &[]),
+    (7, 5, Some(Kind::Cell(CellShape::Pyramid)), &[]),
+    (8, 3, None, &[]),
+    (9, 6, Some(Kind::Face { corners: 3 }), &[]),
+    (10, 9, Some(Kind::Face { corners: 4 }), &[]),
+    (11, 10, Some(Kind::Cell(CellShape::Tetrahedron)), &[4, 5, 6, 7, 9, 8]),
+    (12, 27, Some(Kind::Cell(CellShape::Hexahedron)), &HEXAHEDRON),
+    (13, 18, Some(Kind::Cell(CellShape::Prism)), &PRISM),
+    (14, 14, Some(Kind::Cell(CellShape::Pyramid)), &PYRAMID),
+    (15, 1, None, &[]),
+    (16, 8, Some(Kind::Face { corners: 4 }), &[]),
+    (17, 20, Some(Kind::Cell(CellShape::Hexahedron)), &HEXAHEDRON),
+    (18, 15, Some(Kind::Cell(CellShape::Prism)), &PRISM),
+    (19, 13, Some(Kind::Cell(CellShape::Pyramid)), &PYRAMID),
 ];
 
-/// Types of the elements that are kept.
-const TRIANGLE_3: i32 = 2;
-const TET_4: i32 = 4;
-const TRIANGLE_6: i32 = 9;
-const TET_10: i32 = 11;
+const HEXAHEDRON: [usize; 19] = [8, 11, 13, 9, 16, 18, 19, 17, 10, 12, 14, 15, 20, 25, 21, 23, 24, 22, 26];
+const PRISM: [usize; 12] = [6, 9, 7, 12, 14, 13, 8, 10, 11, 15, 17, 16];
+const PYRAMID: [usize; 9] = [5, 8, 10, 6, 7, 9, 11, 12, 13];
 
 /// Dimension, number and name of a physical group.
 pub(super) type Name = (i32, i32, String);
@@ -38,20 +56,20 @@ pub(super) struct Contents {
     /// Node numbers and coordinates.
     pub(super) tags: Vec<u64>,
     pub(super) points: Vec<[f64; 3]>,
-    /// Triangles and tetrahedra in the order of the file.
+    /// Faces and cells in the order of the file.
     pub(super) elements: Vec<Element>,
+    /// Numbers of their nodes, those of a cell in its order.
+    pub(super) nodes: Vec<u64>,
 }
 
-/// A triangle or a tetrahedron.
+/// A face or a cell.
 pub(super) struct Element {
     pub(super) tag: u64,
     /// The surface or volume that it belongs to.
     pub(super) entity: i32,
-    /// Numbers of its nodes, corners first, those of a tetrahedron of second order as
-    /// [`TetMesh::quadratic`](crate::TetMesh::quadratic) has them.
-    pub(super) nodes: [u64; 10],
-    /// How many there are.
-    pub(super) count: usize,
+    pub(super) kind: Kind,
+    /// Its nodes among those of all.
+    pub(super) nodes: Range<usize>,
 }
 
 pub(super) fn read(bytes: &[u8]) -> Result<Contents, GmshError> {
@@ -77,7 +95,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Contents, GmshError> {
                 nodes = true;
             }
             b"$Elements" => {
-                out.elements = reader.section("$Elements", Reader::elements)?;
+                (out.elements, out.nodes) = reader.section("$Elements", Reader::elements)?;
                 elements = true;
             }
             b"$PartitionedEntities" => {
@@ -315,36 +333,35 @@ impl<'a> Reader<'a> {
         Ok((tags, points))
     }
 
-    fn elements(&mut self) -> Result<Vec<Element>, GmshError> {
-        let mut out = Vec::new();
+    fn elements(&mut self) -> Result<(Vec<Element>, Vec<u64>), GmshError> {
+        let (mut elements, mut nodes) = (Vec::new(), Vec::new());
         for _ in 0..self.header()? {
-            let (_dimension, entity, kind) = (self.int()?, self.int()?, self.int()?);
-            let name = match TYPES.iter().find(|t| t.0 == kind) {
-                Some(&(_, count, _, true)) => Ok(count),
-                Some(&(_, _, name, false)) => Err(name),
-                None => Err("unknown"),
+            let (_dimension, entity, number) = (self.int()?, self.int()?, self.int()?);
+            let Some(&(_, count, kind, order)) = TYPES.iter().find(|t| t.0 == number) else {
+                return Err(GmshError::Unsupported { kind: number });
             };
-            let count = name.map_err(|name| GmshError::Unsupported { kind, name })?;
             for _ in 0..self.count(1 + count)? {
-                let (tag, mut nodes) = (self.size()?, [0; 10]);
-                for node in &mut nodes[..count] {
-                    *node = self.size()?;
+                let (tag, start) = (self.size()?, nodes.len());
+                for _ in 0..count {
+                    nodes.push(self.size()?);
                 }
-                if kind == TET_10 {
-                    // Gmsh has the edges 23 and 13 in this order
-                    nodes.swap(8, 9);
+                let Some(kind) = kind else {
+                    nodes.truncate(start);
+                    continue;
+                };
+                if let [first, ..] = order {
+                    let given = nodes.split_off(start + first);
+                    nodes.extend(order[..count - first].iter().map(|&k| given[k - first]));
                 }
-                if [TRIANGLE_3, TRIANGLE_6, TET_4, TET_10].contains(&kind) {
-                    out.push(Element {
-                        tag,
-                        entity,
-                        nodes,
-                        count,
-                    });
-                }
+                elements.push(Element {
+                    tag,
+                    entity,
+                    kind,
+                    nodes: start..nodes.len(),
+                });
             }
         }
-        Ok(out)
+        Ok((elements, nodes))
     }
 
     /// Skips a section of another kind, up to and with its end.

@@ -1,0 +1,216 @@
+//! Hexahedra, prisms and pyramids become tetrahedra that fill them and fit together.
+
+use proptest::prelude::*;
+use signorini_fem_mesh::mesh::{Cell, CellShape, Division};
+use signorini_fem_mesh::{MeshError, TetMesh};
+
+/// A box of `n` cells along each side, of hexahedra or each of them as two prisms, whose nodes are numbered as `number`
+/// says; `order` 2 has nodes on edges, 3 also in faces and in the middle.
+fn cells(n: [usize; 3], prisms: bool, order: usize, number: &[u32]) -> (Vec<[f64; 3]>, Vec<(CellShape, Vec<u32>)>) {
+    let step = order.min(2);
+    let size = n.map(|n| 2 * n + 1);
+    let at = |p: [usize; 3]| (p[2] * size[1] + p[1]) * size[0] + p[0];
+    let shape = if prisms {
+        CellShape::Prism
+    } else {
+        CellShape::Hexahedron
+    };
+    let corners: &[&[[usize; 3]]] = match prisms {
+        false => &[&[
+            [0, 0, 0],
+            [2, 0, 0],
+            [2, 2, 0],
+            [0, 2, 0],
+            [0, 0, 2],
+            [2, 0, 2],
+            [2, 2, 2],
+            [0, 2, 2],
+        ]],
+        true => &[
+            &[[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2], [2, 0, 2], [0, 2, 2]],
+            &[[2, 0, 0], [2, 2, 0], [0, 2, 0], [2, 0, 2], [2, 2, 2], [0, 2, 2]],
+        ],
+    };
+    let mut places = Vec::new();
+    let of_box = (0..n[0] * n[1] * n[2]).map(|k| [k % n[0], k / n[0] % n[1], k / n[0] / n[1]]);
+    for cell in of_box {
+        for corners in corners {
+            let corner = |k: usize| [0, 1, 2].map(|i| 2 * cell[i] + corners[k][i]);
+            let middle = |of: &[usize]| [0, 1, 2].map(|i| of.iter().map(|&k| corner(k)[i]).sum::<usize>() / of.len());
+            let mut nodes: Vec<usize> = (0..shape.corners()).map(|k| at(corner(k))).collect();
+            if step == 2 {
+                nodes.extend(shape.edges().iter().map(|e| at(middle(e))));
+            }
+            if order == 3 {
+                nodes.extend(shape.faces().iter().filter(|f| f.len() == 4).map(|f| at(middle(f))));
+                let inside = (shape == CellShape::Hexahedron).then(|| at(middle(&[0, 6])));
+                nodes.extend(inside);
+            }
+            places.push(nodes);
+        }
+    }
+    let mut used: Vec<usize> = places.iter().flatten().copied().collect();
+    used.sort_unstable();
+    used.dedup();
+    // the nodes in the order of the wanted numbers
+    let wish = |place: &usize| (number[*place % number.len()], *place);
+    used.sort_unstable_by_key(wish);
+    let points = used.iter().map(|&p| {
+        let p = [p % size[0], p / size[0] % size[1], p / size[0] / size[1]];
+        [0, 1, 2].map(|i| p[i] as f64 / (size[i] - 1) as f64)
+    });
+    let new = |place: &usize| used.binary_search_by_key(&wish(place), wish).unwrap() as u32;
+    let cells = places.iter().map(|nodes| (shape, nodes.iter().map(new).collect()));
+    (points.collect(), cells.collect())
+}
+
+fn divide(points: &mut Vec<[f64; 3]>, cells: &[(CellShape, Vec<u32>)]) -> Division {
+    let cells: Vec<Cell> = cells
+        .iter()
+        .map(|(shape, nodes)| Cell { shape: *shape, nodes })
+        .collect();
+    Division::new(points, &cells).unwrap()
+}
+
+fn mesh(points: Vec<[f64; 3]>, division: &Division) -> Result<TetMesh, MeshError> {
+    if division.mids.is_empty() {
+        return TetMesh::new(points, division.tets.clone(), Vec::new());
+    }
+    let tets = division.tets.iter().zip(&division.mids);
+    let whole = tets.map(|(tet, mids)| std::array::from_fn(|k| if k < 4 { tet[k] } else { mids[k - 4] }));
+    TetMesh::quadratic(points, whole.collect(), Vec::new())
+}
+
+/// A polynomial of second degree, which elements of second order represent.
+fn bent([x, y, z]: [f64; 3]) -> [f64; 3] {
+    [
+        x + 0.1 * y * z - 0.05 * x * x,
+        y + 0.08 * x * z + 0.06 * z * z,
+        z - 0.07 * x * y + 0.05 * y * y,
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 64, ..ProptestConfig::default() })]
+
+    #[test]
+    fn whatever_the_numbers_of_nodes(
+        n in prop::array::uniform3(1_usize..4),
+        prisms: bool,
+        order in 1_usize..4,
+        number in prop::collection::vec(0_u32..1000, 1..60),
+    ) {
+        let (mut points, cells) = cells(n, prisms, order, &number);
+        let given = points.len();
+        let division = divide(&mut points, &cells);
+        prop_assert_eq!(division.added.is_empty(), order != 2);
+        prop_assert_eq!(points.len(), given + division.added.len());
+        // the checks of a mesh see gaps and overlaps
+        let mesh = mesh(points.clone(), &division).unwrap();
+        prop_assert!((mesh.total_volume() - 1.0).abs() < 1e-12);
+        prop_assert_eq!(mesh.components().into_iter().max(), Some(0));
+        for ((shape, nodes), tets) in cells.iter().zip(&division.of_cell) {
+            prop_assert_eq!(tets.len(), if prisms { 3 } else { 6 });
+            let mut triangles = vec![0; shape.faces().len() + 1];
+            for tet in tets.clone() {
+                let corners = division.tets[tet as usize];
+                for (face, on) in [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]].iter().zip(division.faces[tet as usize]) {
+                    triangles[on as usize] += 1;
+                    let within = |k: &usize| (on as usize).checked_sub(1).is_none_or(|on| {
+                        shape.faces()[on].iter().any(|&c| nodes[c] == corners[*k])
+                    });
+                    prop_assert!(face.iter().all(within));
+                }
+            }
+            for (face, found) in shape.faces().iter().zip(&triangles[1..]) {
+                prop_assert_eq!(*found, face.len() - 2);
+            }
+        }
+        if order > 1 {
+            // new nodes are where the shape functions of the cell have the middle
+            let (mut curved, straight) = (points[..given].iter().map(|p| bent(*p)).collect::<Vec<_>>(), points);
+            divide(&mut curved, &cells);
+            for (curved, straight) in curved.iter().zip(&straight) {
+                let off = (0..3).map(|i| (curved[i] - bent(*straight)[i]).abs()).fold(0.0, f64::max);
+                prop_assert!(off < 1e-14, "{} {:?} {:?}", off, curved, straight);
+            }
+        }
+    }
+}
+
+#[test]
+fn wrong_cells() {
+    let mut points = vec![[0.0; 3]; 8];
+    let nodes = [0, 1, 2, 3, 4, 5, 6, 7];
+    let mut error = |shape, nodes: &[u32]| Division::new(&mut points, &[Cell { shape, nodes }]).unwrap_err();
+    assert!(matches!(
+        error(CellShape::Prism, &nodes),
+        MeshError::CellNodes { cell: 0, nodes: 8, .. }
+    ));
+    assert!(matches!(
+        error(CellShape::Hexahedron, &[1, 2, 3, 4, 5, 6, 7, 8]),
+        MeshError::CellNode {
+            cell: 0,
+            node: 8,
+            nodes: 8
+        }
+    ));
+    let cube = Cell {
+        shape: CellShape::Hexahedron,
+        nodes: &nodes,
+    };
+    let ten = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1];
+    let second = Cell {
+        shape: CellShape::Tetrahedron,
+        nodes: &ten,
+    };
+    let mixed = Division::new(&mut points, &[cube, second]).unwrap_err();
+    assert!(matches!(mixed, MeshError::MixedOrder { first: 1, second: 2 }));
+    assert_eq!(Division::new(&mut points, &[]), Ok(Division::default()));
+}
+
+/// Files of Gmsh 4.15: their volume, area of the boundary with names and order.
+#[cfg(feature = "gmsh")]
+#[test]
+fn files_of_gmsh() {
+    use signorini_fem_mesh::Surface;
+    use signorini_fem_mesh::gmsh::read_gmsh;
+    let ring = std::f64::consts::PI * 0.75;
+    // side faces of the ring: straight quadrilaterals, and arcs
+    let whole = 2.0 * ring + 2.0 + 3.0 * std::f64::consts::FRAC_PI_2;
+    let polygon = 6.0 * (std::f64::consts::PI / 8.0).sin();
+    for (name, order, tets, volume, area, error) in [
+        ("hand_o1", 1, 12, 11.0 / 6.0, 1.935_414_346_693, 1e-11),
+        ("hand_o2", 2, 12, 11.0 / 6.0, 1.935_414_346_693, 1e-11),
+        ("hand_o2inc", 2, 12, 11.0 / 6.0, 1.935_414_346_693, 1e-11),
+        ("mixed_o1", 1, 162, 2.0, 10.0, 1e-12),
+        ("mixed_o2_bin", 2, 162, 2.0, 10.0, 1e-12),
+        ("mixed_o2inc_bin", 2, 162, 2.0, 10.0, 1e-12),
+        ("plate_prism6", 1, 132, 2.0, 10.0, 1e-12),
+        ("plate_prism15", 2, 132, 2.0, 10.0, 1e-12),
+        ("plate_prism18_bin", 2, 132, 2.0, 10.0, 1e-12),
+        ("warped_hexprism_o2inc_bin", 2, 324, 2.0, 10.0, 1e-12),
+        ("ring_hex8", 1, 96, polygon, 11.274_368_916_77, 1e-11),
+        ("ring_hex20", 2, 96, ring, whole, 1e-3),
+        ("ring_hex27_bin", 2, 96, ring, whole, 1e-3),
+    ] {
+        let path = format!("{}/tests/data/{name}.msh", env!("CARGO_MANIFEST_DIR"));
+        let (mesh, names) = read_gmsh(path).unwrap();
+        assert_eq!((mesh.order(), mesh.tets().len()), (order, tets), "{name}");
+        let off = mesh.total_volume() / volume - 1.0;
+        assert!(off.abs() < error, "{name}: volume {} off {off:e}", mesh.total_volume());
+        let tags: Vec<_> = names.surfaces().map(|(_, tag)| tag).collect();
+        let found: f64 = tags
+            .iter()
+            .map(|tag| Surface::new(&mesh, &[*tag]).unwrap().total_area())
+            .sum();
+        assert!((found / area - 1.0).abs() < error, "{name}: area {found} for {area}");
+        assert_eq!(mesh.components().iter().max(), Some(&0), "{name}");
+        if name.starts_with("mixed") {
+            let hexahedra = names.volume("HEXES").unwrap();
+            let inside = (0..tets).filter(|&t| mesh.regions()[t] == hexahedra);
+            let volume: f64 = inside.map(|t| mesh.volume(t)).sum();
+            assert!((volume - 1.0).abs() < 1e-12);
+        }
+    }
+}
