@@ -124,8 +124,8 @@ signorini_fem_mesh::errors! {
         Repeated { first: Location, remedy: &'static str } =
             "defined a second time, first in {first}; {remedy}";
         Volume =
-            "the element has no volume, or is turned inside out; its first three nodes have to be counter-clockwise \
-            seen from the fourth";
+            "the element has no volume, or is turned inside out or far from convex; the nodes of its first face have to be \
+            counter-clockwise seen from its other nodes";
         FaceInside { element: u32, face: u8 } =
             "face {face} of element {element} lies inside the body, against another element; give only faces of the \
             boundary";

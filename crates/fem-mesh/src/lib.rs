@@ -7,7 +7,7 @@
 //!
 //! | you want | you use |
 //! |---|---|
-//! | a mesh | [`Brick`], [`TetMesh::new`], [`gmsh::read_gmsh`](gmsh) (feature `gmsh`) |
+//! | a mesh | [`Brick`], [`TetMesh::new`], [`mesh::Division`] (of hexahedra, prisms, pyramids), [`gmsh::read_gmsh`](gmsh) (feature `gmsh`) |
 //! | a modified mesh | [`TetMesh::raise_order`], [`TetMesh::map_points`], [`TetMesh::append`], [`TetMesh::tag_boundary`] |
 //! | a material | [`Hooke`] (general or isotropic), [`Materials`] by region |
 //! | a stiffness | [`assemble_stiffness`], [`Element`] |
@@ -114,7 +114,7 @@ pub mod internal {
     pub use crate::element::{TetNodes, shape_gradients};
     pub use crate::files::replace_file;
     pub use crate::loads::interpolate;
-    pub use crate::mesh::{EDGES, cylindrical, facet_normals, facet_shape, tag_list};
+    pub use crate::mesh::{EDGES, TET_FACES, cylindrical, facet_normals, facet_shape, tag_list};
     pub use crate::quadrature::triangle;
     pub use crate::tables::{DisjointSets, Lists, ascending, distinct};
 }

@@ -367,13 +367,8 @@ impl Scope<'_> {
         for element in &part.elements {
             let mut element = element.clone();
             element.label = self.sum(element.label)?;
-            for n in element.nodes.iter_mut().chain(&mut element.mids) {
-                // zeros are none
-                *n = if *n == 0 {
-                    0
-                } else {
-                    self.number(*n, "node", &element.location)?
-                };
+            for n in &mut element.nodes {
+                *n = self.number(*n, "node", &element.location)?;
             }
             model.elements.push(element);
         }

@@ -56,7 +56,7 @@ const REFUSED: [(&str, &str); 8] = [
     ("PLASTIC CREEP HYPERELASTIC", "materials are linear and elastic"),
     (
         "SHELLSECTION BEAMSECTION MEMBRANESECTION SPRING MASS",
-        "only solid elements C3D4 and C3D10 are read",
+        "only solid elements are read",
     ),
     ("CHANGEFRICTION", "coefficients of friction hold for all steps"),
     (

@@ -3,41 +3,64 @@
 use super::{Element, Faces, Ignored, Kind, Member, Model, Node, Side, Target};
 use crate::error::{DeckError, Fault, Word};
 use crate::lexer::{Card, Named, label, name};
+use signorini_fem_mesh::mesh::CellShape;
 
 /// Most members of one generated range.
 const RANGE: u64 = 100_000_000;
 
-/// Elements that are read: what they are, the number of their nodes, and what a line of them is.
-const TYPES: [(&str, Kind, usize, &str); 8] = [
-    ("C3D4", Kind::Solid, 4, "an element number and four node numbers"),
-    ("C3D10", Kind::Solid, 10, "an element number and ten node numbers"),
-    ("R3D3", Kind::Triangle, 3, "an element number and three node numbers"),
-    (
-        "R3D4",
-        Kind::Quadrilateral,
-        4,
-        "an element number and four node numbers",
-    ),
-    ("CPS3", Kind::Flat, 3, "an element number and three node numbers"),
-    ("CPS6", Kind::Flat, 6, "an element number and six node numbers"),
-    ("T3D2", Kind::Line, 2, "an element number and two node numbers"),
-    ("T3D3", Kind::Line, 3, "an element number and three node numbers"),
-];
+/// Elements that are read: what they are, the number of their nodes and of those that are kept, and what a line of them is.
+const TYPES: [(&str, Kind, [usize; 2], &str); 15] = {
+    use CellShape::{Hexahedron, Prism, Pyramid, Tetrahedron};
+    use Kind::{Flat, Line, Rigid, Solid};
+    const TWO: &str = "an element number and two node numbers";
+    const THREE: &str = "an element number and three node numbers";
+    const FOUR: &str = "an element number and four node numbers";
+    const EIGHT: &str = "an element number and eight node numbers";
+    [
+        ("C3D4", Solid(Tetrahedron), [4, 4], FOUR),
+        (
+            "C3D10",
+            Solid(Tetrahedron),
+            [10, 10],
+            "an element number and ten node numbers",
+        ),
+        (
+            "C3D5",
+            Solid(Pyramid),
+            [5, 5],
+            "an element number and five node numbers",
+        ),
+        ("C3D6", Solid(Prism), [6, 6], "an element number and six node numbers"),
+        (
+            "C3D15",
+            Solid(Prism),
+            [15, 15],
+            "an element number and fifteen node numbers",
+        ),
+        ("C3D8", Solid(Hexahedron), [8, 8], EIGHT),
+        (
+            "C3D20",
+            Solid(Hexahedron),
+            [20, 20],
+            "an element number and twenty node numbers",
+        ),
+        ("R3D3", Rigid, [3, 3], THREE),
+        ("R3D4", Rigid, [4, 4], FOUR),
+        ("CPS3", Flat, [3, 3], THREE),
+        ("CPS4", Flat, [4, 4], FOUR),
+        // a place between the corners is not looked at
+        ("CPS6", Flat, [6, 3], "an element number and six node numbers"),
+        ("CPS8", Flat, [8, 4], EIGHT),
+        ("T3D2", Line, [2, 2], TWO),
+        ("T3D3", Line, [3, 2], THREE),
+    ]
+};
 
 /// Why a surface is refused whose name is not new.
 pub(super) const TWICE: &str = "a surface of this name is there already; give all its faces at once";
 
-/// Variants of other programs that differ in what is not solved here, and in how they are integrated or locked.
-const VARIANTS: [(&str, &str); 8] = [
-    ("C3D4H", "C3D4"),
-    ("C3D4T", "C3D4"),
-    ("C3D10H", "C3D10"),
-    ("C3D10HS", "C3D10"),
-    ("C3D10I", "C3D10"),
-    ("C3D10M", "C3D10"),
-    ("C3D10MH", "C3D10"),
-    ("C3D10T", "C3D10"),
-];
+/// Endings of the names of variants that differ in what is not solved here, and in how they are integrated or locked.
+const VARIANTS: [&str; 10] = ["H", "HS", "I", "M", "MH", "T", "R", "RH", "IH", "RT"];
 
 const LABEL: &str = "a number from 1 to 2147483647";
 
@@ -67,18 +90,20 @@ pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
 pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["TYPE", "ELSET"])?;
     let kind = card.need("TYPE")?;
-    let variant = VARIANTS.iter().find(|v| v.0 == kind.name);
-    if let Some((_, plain)) = variant {
+    let variants = |plain: &str| kind.name.strip_prefix(plain).is_some_and(|end| VARIANTS.contains(&end));
+    let found = TYPES.iter().find(|t| t.0 == kind.name);
+    let variant = || TYPES.iter().find(|t| matches!(t.1, Kind::Solid(_)) && variants(t.0));
+    let Some(&(plain, of, [nodes, kept], wanted)) = found.or_else(variant) else {
+        return Err(kind.word.fault(Fault::Unsupported(
+            "of solid elements only tetrahedra, hexahedra, prisms and pyramids are read, C3D4, C3D10, C3D8, C3D20, C3D6, C3D15 \
+            and C3D5, R3D3 and R3D4 for rigid surfaces, and CPS3, CPS4, CPS6, CPS8, T3D2 and T3D3 as marks; mesh in these, \
+            and leave out others",
+        )));
+    };
+    if plain != kind.name {
         let why = format!("a variant of another program; the element is {plain} here");
         model.ignored.push(Ignored::new(&kind.word, why));
     }
-    let plain = variant.map_or(kind.name.as_str(), |v| v.1);
-    let Some(&(_, of, nodes, wanted)) = TYPES.iter().find(|k| k.0 == plain) else {
-        return Err(kind.word.fault(Fault::Unsupported(
-            "only tetrahedra C3D4 and C3D10 are read, R3D3 and R3D4 for rigid surfaces, and CPS3, CPS6, T3D2 and T3D3 as \
-            marks; mesh in these, and leave out others",
-        )));
-    };
     if of.is_mark() {
         let why = "triangles and lines have no stiffness here; triangles name faces in *SURFACE";
         model.ignored.push(Ignored::new(&kind.word, why));
@@ -98,20 +123,14 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
             let open = numbers.len() < 1 + nodes && line.text.ends_with(',');
             next = if open { lines.next() } else { None };
         }
-        let (label, nodes, mids) = match (of, &numbers[..]) {
-            (_, &[label, a, b, c]) if nodes == 3 => (label, [a, b, c, c], [0; 6]),
-            (_, &[label, a, b, c, d]) if nodes == 4 => (label, [a, b, c, d], [0; 6]),
-            (Kind::Line, &[label, a, b]) => (label, [a, b, b, b], [0; 6]),
-            // a place between the corners is not looked at
-            (Kind::Flat, &[label, a, b, c, _, _, _]) => (label, [a, b, c, c], [0; 6]),
-            (_, &[label, a, b, c, d, e, f, g, h, i, j]) => (label, [a, b, c, d], [e, f, g, h, i, j]),
+        let (label, numbers) = match numbers.split_first() {
+            Some((label, numbers)) if numbers.len() == nodes => (*label, &numbers[..kept]),
             _ => return Err(line.expected(wanted)),
         };
         model.elements.push(Element {
             label,
             kind: of,
-            nodes,
-            mids,
+            nodes: numbers.to_vec(),
             location: line.location.clone(),
         });
     }
@@ -212,7 +231,7 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     for line in &card.lines {
         let wanted = match of_nodes {
             true => "a node or node set",
-            false => "an element or element set, and a face S1, S2, S3 or S4 (SPOS or SNEG of rigid facets), or none",
+            false => "an element or element set, and a face S1 to S6 (SPOS or SNEG of rigid facets), or none",
         };
         let fields = line.at_most(2, wanted)?;
         let side = match (of_nodes, fields.get(1).map(|f| name(f)).as_deref()) {
@@ -222,6 +241,8 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
             (false, Some("S2")) => Side::Face(2),
             (false, Some("S3")) => Side::Face(3),
             (false, Some("S4")) => Side::Face(4),
+            (false, Some("S5")) => Side::Face(5),
+            (false, Some("S6")) => Side::Face(6),
             (false, Some("SPOS")) => Side::Facet { positive: true },
             (false, Some("SNEG")) => Side::Facet { positive: false },
             _ => return Err(line.entry(&fields, 1).expected(wanted)),

@@ -21,6 +21,7 @@ mod transform;
 
 use crate::error::{DeckError, Location, Word};
 use crate::lexer::Named;
+use signorini_fem_mesh::mesh::CellShape;
 use signorini_fem_mesh::{History, Hooke};
 use std::borrow::Cow;
 
@@ -71,13 +72,10 @@ pub(crate) struct Node {
 /// What an element is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
-    /// C3D4 or C3D10.
-    Solid,
-    /// R3D3, whose last node is there twice.
-    Triangle,
-    /// R3D4.
-    Quadrilateral,
-    /// CPS3 or CPS6, as meshers write the faces of a surface: its corners, the last one twice.
+    Solid(CellShape),
+    /// R3D3 or R3D4.
+    Rigid,
+    /// CPS3, CPS4 and the like, as meshers write the faces of a surface: its corners.
     Flat,
     /// T3D2 or T3D3, likewise.
     Line,
@@ -95,9 +93,8 @@ impl Kind {
 pub(crate) struct Element {
     pub(crate) label: u32,
     pub(crate) kind: Kind,
-    pub(crate) nodes: [u32; 4],
-    /// Of a C3D10 the nodes on its edges; zeros of others.
-    pub(crate) mids: [u32; 6],
+    /// Corners, and of a solid of second order the nodes on its edges.
+    pub(crate) nodes: Vec<u32>,
     pub(crate) location: Location,
 }
 
@@ -105,6 +102,11 @@ impl Element {
     /// Its number, where it is defined.
     pub(crate) fn word(&self) -> Word {
         Word::new(&self.location, self.label.to_string())
+    }
+
+    /// Why a face is refused.
+    pub(crate) fn no_face(&self, number: u8) -> String {
+        format!("element {} has no face {number}", self.label)
     }
 }
 
@@ -119,13 +121,10 @@ pub(crate) enum Member {
 /// A set of nodes or elements: its members, each with its place and word.
 pub(crate) type Set = Vec<(Member, Location)>;
 
-/// Corners of the faces 1 to 4 of a solid element.
-pub(crate) const FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
-
 /// A side of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Side {
-    /// Face 1 to 4 of a solid.
+    /// Face 1 to 6 of a solid.
     Face(u8),
     /// Where the normal of a rigid facet points to, or the other side.
     Facet { positive: bool },

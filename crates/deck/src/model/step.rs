@@ -64,7 +64,7 @@ pub(crate) struct Components {
 /// A pressure, on elements or a surface, or a load of the volume.
 #[derive(Debug, Clone)]
 pub(crate) enum DistributedKind {
-    /// Pressure on face 1 to 4 of elements.
+    /// Pressure on face 1 to 6 of elements.
     Face(u8),
     /// Pressure on a surface.
     Surface,
@@ -395,7 +395,7 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
         let wanted = if on_surface {
             "a surface, P, and a pressure, or TRVEC, a traction, and its direction"
         } else {
-            "an element or element set, one of P1 to P4, GRAV, CENTRIF, BX, BY, BZ, a value, with GRAV a direction, \
+            "an element or element set, one of P1 to P6, GRAV, CENTRIF, BX, BY, BZ, a value, with GRAV a direction, \
             and with CENTRIF, whose value is the square of the angular velocity, a point and the direction of the axis"
         };
         let fields = line.at_most(9, wanted)?;
@@ -407,6 +407,8 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
             (false, "P2") => (DistributedKind::Face(2), 3),
             (false, "P3") => (DistributedKind::Face(3), 3),
             (false, "P4") => (DistributedKind::Face(4), 3),
+            (false, "P5") => (DistributedKind::Face(5), 3),
+            (false, "P6") => (DistributedKind::Face(6), 3),
             (false, "BX") => (DistributedKind::Volume(VolumeLaw::Force(0)), 3),
             (false, "BY") => (DistributedKind::Volume(VolumeLaw::Force(1)), 3),
             (false, "BZ") => (DistributedKind::Volume(VolumeLaw::Force(2)), 3),

@@ -1,10 +1,9 @@
 //! Faces on the boundary, for surfaces that are given by elements or by nodes only.
 
-use signorini_fem_mesh::internal::ascending;
+use signorini_fem_mesh::internal::{TET_FACES, ascending};
 use std::collections::BTreeMap;
 
 use super::mesh::Raw;
-use crate::model::FACES;
 
 /// Tetrahedra and numbers of the faces that no two of them share.
 #[derive(Debug)]
@@ -18,7 +17,7 @@ impl Boundary {
     pub(super) fn new(raw: &Raw) -> Self {
         let mut of_corners: BTreeMap<[u32; 3], Option<(u32, u8)>> = BTreeMap::new();
         for (tet, corners) in (0..).zip(&raw.tets) {
-            for (number, face) in (1..).zip(FACES) {
+            for (number, face) in (1..).zip(TET_FACES) {
                 let corners = ascending(face.map(|i| corners[i]));
                 let first = of_corners.entry(corners).and_modify(|face| *face = None);
                 first.or_insert(Some((tet, number)));
@@ -37,12 +36,12 @@ impl Boundary {
     }
 
     /// Those of some tetrahedra, ascending as these.
-    pub(super) fn of_tets(&self, tets: &[u32]) -> Vec<(u32, u8)> {
-        let of = |&tet: &u32| {
+    pub(super) fn of_tets(&self, tets: impl Iterator<Item = u32>) -> Vec<(u32, u8)> {
+        let of = |tet: u32| {
             let start = self.faces.partition_point(|face| face.0 < tet);
             self.faces[start..].iter().take_while(move |face| face.0 == tet)
         };
-        tets.iter().flat_map(of).copied().collect()
+        tets.flat_map(of).copied().collect()
     }
 
     /// Those whose corners are all among some nodes, ascending, and a node, if there is one, that none of them uses.

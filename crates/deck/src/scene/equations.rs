@@ -1,22 +1,25 @@
 //! Equations between nodes.
 
+use std::collections::BTreeMap;
+
 use signorini_contact::Equation;
 
 use super::faces::Known;
 use super::points::Room;
-use super::supports::Rigid;
+use super::supports::{Key, Supports};
 use crate::error::{DeckError, Word};
 use crate::model::Term;
 
-/// The equations of the scene, each with its place; of sets one for each of their nodes, by ascending numbers. `rigid`
-/// are the couplings of the scene.
-pub(super) fn equations(known: Known, rigid: &[Rigid]) -> Result<Vec<(Equation, Word)>, DeckError> {
-    let model = known.model;
+/// The equations of the scene, each with its place; of sets one for each of their nodes, by ascending numbers.
+pub(super) fn equations(known: Known, supports: &Supports) -> Result<Vec<(Equation, Word)>, DeckError> {
+    let (model, rigid) = (known.model, &supports.rigid);
     let unsorted = model
         .ignored
         .iter()
         .find(|ignored| ignored.word.eq_ignore_ascii_case("UNSORTED"));
     let (mut out, mut room) = (Vec::with_capacity(model.equations.len()), Room::default());
+    // the first of each component of a node
+    let mut named: BTreeMap<Key, &Word> = BTreeMap::new();
     for given in &model.equations {
         let nodes = |term: &Term| {
             let mut nodes = known.sets.nodes.find(&term.target, &term.word)?;
@@ -54,7 +57,10 @@ pub(super) fn equations(known: Known, rigid: &[Rigid]) -> Result<Vec<(Equation, 
                                 .map(|point| (point, unit)),
                         );
                     }
-                    Some(inside) => terms.push((inside, vector(known, term, inside)?)),
+                    Some(inside) => {
+                        terms.push((inside, vector(known, term, inside)?));
+                        named.entry((inside, term.component)).or_insert(&given.word);
+                    }
                 }
             }
             let equation = points
@@ -63,7 +69,32 @@ pub(super) fn equations(known: Known, rigid: &[Rigid]) -> Result<Vec<(Equation, 
             out.push((equation, given.word.clone()));
         }
     }
+    out.extend(between(known, &named, &supports.held));
     Ok(out)
+}
+
+/// Equations that let added nodes follow their neighbours, as they do in the elements of the deck, where these are all
+/// named by equations or held, but not alike.
+fn between(known: Known, named: &BTreeMap<Key, &Word>, held: &BTreeMap<Key, Word>) -> Vec<(Equation, Word)> {
+    let mut out = Vec::new();
+    if named.is_empty() && held.is_empty() {
+        return out;
+    }
+    let word = |key: &Key| named.get(key).copied().or_else(|| held.get(key));
+    let is_plain = |node: &u32| known.transforms.of(*node).is_none();
+    for (node, around) in known.raw.added() {
+        for component in (0..3).filter(|&c| !held.contains_key(&(node, c))) {
+            let words: Option<Vec<&Word>> = around.iter().map(|(other, _)| word(&(*other, component))).collect();
+            if let Some([first, ..]) = words.as_deref()
+                && around.iter().all(|(other, _)| is_plain(other))
+            {
+                let unit = |share: f64| [0, 1, 2].map(|c| if c == component { share } else { 0.0 });
+                let around = around.iter().map(|(other, share)| (*other, unit(-share)));
+                out.push((Equation::new(around.chain([(node, unit(1.0))])), (*first).clone()));
+            }
+        }
+    }
+    out
 }
 
 /// What multiplies the displacement of a node of the mesh in a term.

@@ -6,7 +6,8 @@
 
 use std::collections::HashMap;
 
-use signorini_fem_mesh::internal::{ascending, distinct};
+use signorini_fem_mesh::internal::{TET_FACES, ascending, distinct};
+use signorini_fem_mesh::mesh::divide_face;
 use signorini_fem_mesh::{Facet, FacetTag};
 
 use super::boundary::Boundary;
@@ -15,11 +16,12 @@ use super::mesh::Raw;
 use super::numbers::Sets;
 use super::points::Points;
 use super::pretension::Sections;
-use super::rigid::{RigidBodies, RigidFace};
+use super::rigid::RigidBodies;
+use super::rigid_face::RigidFace;
 use super::timeline::Timeline;
 use super::transforms::Transforms;
 use crate::error::{DeckError, Fault, Word};
-use crate::model::{FACES, Faces, Ignored, Kind, Model, Names, Side, Target};
+use crate::model::{Faces, Ignored, Kind, Model, Names, Side, Target};
 
 #[derive(Debug)]
 pub(super) struct Face {
@@ -85,10 +87,11 @@ impl FaceTable {
     ) -> Result<Vec<u32>, DeckError> {
         let mut faces = Vec::new();
         for element in known.sets.elements.find(target, word)? {
-            let Some(tet) = known.raw.tet(element) else {
+            if known.raw.tets_of(element).is_empty() {
                 return Err(word.cannot("a pressure on what is not elastic acts on nothing; load elastic elements"));
-            };
-            faces.push(self.face(known.raw, tet, number, word));
+            }
+            let own = known.face_of(element, number, word)?;
+            faces.extend(own.map(|(tet, number)| self.face(known.raw, tet, number, word)));
         }
         Ok(faces)
     }
@@ -119,31 +122,38 @@ impl FaceTable {
                 let word = &faces.word;
                 let (mut solids, mut flat) = (Vec::new(), Vec::new());
                 for element in known.sets.elements.find(&faces.target, word)? {
-                    match (known.raw.tet(element), known.bodies.of_element(element)) {
-                        (Some(tet), _) => solids.push(tet),
-                        (None, None) => flat.push(element),
-                        (None, Some(body)) => {
+                    match (known.raw.tets_of(element).is_empty(), known.bodies.of_element(element)) {
+                        (false, _) => solids.push(element),
+                        (true, None) => flat.push(element),
+                        (true, Some(body)) => {
                             rigid.push(RigidFace::new(known.sets, (body, element), faces.side, word)?);
                         }
                     }
                 }
                 let chosen = match faces.side {
-                    Side::Face(number) => solids.into_iter().map(|tet| (tet, number)).collect(),
+                    Side::Face(number) => {
+                        let mut chosen = Vec::with_capacity(solids.len());
+                        for element in solids {
+                            chosen.extend(known.face_of(element, number, word)?);
+                        }
+                        chosen
+                    }
                     _ if solids.is_empty() => Vec::new(),
                     Side::Outside => {
                         let boundary = boundary.get_or_insert_with(|| Boundary::new(known.raw));
                         whole.get_or_insert(word);
-                        boundary.of_tets(&solids)
+                        boundary.of_tets(solids.into_iter().flat_map(|e| known.raw.tets_of(e)))
                     }
-                    Side::Facet { .. } | Side::Nodes => return Err(word.expected("faces S1 to S4 of solid elements")),
+                    Side::Facet { .. } | Side::Nodes => return Err(word.expected("faces S1 to S6 of solid elements")),
                 };
                 for face in chosen {
                     all.extend(self.add(known.raw, face, index, word));
                 }
                 for element in flat {
                     let boundary = boundary.get_or_insert_with(|| Boundary::new(known.raw));
-                    let face = of_triangle(known, boundary, element, (faces.side, word))?;
-                    all.extend(self.add(known.raw, face, index, word));
+                    for face in of_flat(known, boundary, element, (faces.side, word))? {
+                        all.extend(self.add(known.raw, face, index, word));
+                    }
                 }
                 if !all.is_empty() && !rigid.is_empty() {
                     return Err(word.cannot("the surface has rigid and elastic faces; make two surfaces of them"));
@@ -170,7 +180,7 @@ impl FaceTable {
     pub(super) fn check_outside(&self, raw: &Raw) -> Result<(), DeckError> {
         let mut owners = vec![0_u8; self.list.len()];
         for tet in &raw.tets {
-            for face in FACES {
+            for face in TET_FACES {
                 if let Some(&at) = self.places.get(&ascending(face.map(|i| tet[i]))) {
                     owners[at as usize] = owners[at as usize].saturating_add(1);
                 }
@@ -179,7 +189,7 @@ impl FaceTable {
         match self.list.iter().zip(owners).find(|(_, owners)| *owners > 1) {
             Some((face, _)) => Err(face.word.fault(Fault::FaceInside {
                 element: raw.element_labels[face.tet as usize],
-                face: face.number,
+                face: raw.face_of_element(face.tet, face.number),
             })),
             None => Ok(()),
         }
@@ -277,24 +287,38 @@ fn of_nodes(
     Ok(faces)
 }
 
-/// The face of a tetrahedron that a triangle of the deck, by its position, lies on.
-fn of_triangle(
+/// The faces of tetrahedra that a triangle or quadrilateral of the deck, by its position, lies on.
+fn of_flat(
     known: Known,
     boundary: &Boundary,
     element: u32,
     (side, word): (Side, &Word),
-) -> Result<(u32, u8), DeckError> {
+) -> Result<Vec<(u32, u8)>, DeckError> {
     let element = &known.model.elements[element as usize];
     if element.kind != Kind::Flat || side != Side::Outside {
         return Err(word.expected("solid elements, or triangles without a number of a face"));
     }
-    let [a, b, c, _] = known.sets.corners(element)?.map(|n| known.raw.in_mesh(n));
-    let corners = a.zip(b).zip(c).map(|((a, b), c)| [a, b, c]);
-    let face = corners.and_then(|corners| boundary.of_corners(corners));
-    face.ok_or_else(|| {
+    let of_triangle = |corners: [u32; 3]| {
+        let [a, b, c] = corners.map(|n| known.raw.in_mesh(n));
+        boundary.of_corners([a?, b?, c?])
+    };
+    let nodes = known.sets.nodes_of(element)?;
+    let faces: Option<Vec<_>> = divide_face(&nodes).map(of_triangle).collect();
+    faces.ok_or_else(|| {
         let why = "no face of a tetrahedron on the boundary has the corners of triangle";
         word.cannot(format!("{why} {}; leave it out of the surface", element.label))
     })
+}
+
+impl Known<'_> {
+    /// The faces of tetrahedra that a face of an elastic element, by its position, is.
+    fn face_of(&self, element: u32, number: u8, word: &Word) -> Result<impl Iterator<Item = (u32, u8)>, DeckError> {
+        let mut faces = self.raw.faces_of(element, number).peekable();
+        match faces.peek() {
+            Some(_) => Ok(faces),
+            None => Err(word.cannot(self.model.elements[element as usize].no_face(number))),
+        }
+    }
 }
 
 impl Face {

@@ -35,6 +35,23 @@ impl Held {
         Ok(())
     }
 
+    /// What holds both of two components if they move alike: the later one, in the steps in which both are held.
+    pub(super) fn common(&self, other: &Self) -> Option<Self> {
+        let ([from, until], [other_from, other_until]) = (self.span, other.span);
+        let later = if other_from > from { other } else { self };
+        let end = [until, other_until].into_iter().flatten().min();
+        let span = [later.span[0], end];
+        let is_some = end.is_none_or(|end| later.span[0].unwrap_or(0) < end);
+        let alike = is_some && self.track.says_as(&other.track);
+        // a target that both are in is no earlier than the first of each
+        let owner = self.owner.max(other.owner);
+        alike.then(|| Self {
+            owner,
+            span,
+            ..later.clone()
+        })
+    }
+
     /// Whether it begins in a step along a straight line.
     pub(super) fn fades(&self, timeline: &Timeline) -> bool {
         let [from, _] = self.span;

@@ -38,6 +38,13 @@ impl Track {
         }
     }
 
+    /// Whether all steps say the same of both, or that both stay at zero.
+    pub(super) fn says_as(&self, other: &Self) -> bool {
+        let bare = self.course.is_none() && other.course.is_none();
+        let same = bare && self.base == other.base && self.events == other.events;
+        same || self.reference().is_none() && other.reference().is_none()
+    }
+
     /// The same with values of which the rise above `base` counts.
     pub(super) fn above(self, base: f64) -> Self {
         Self { base, ..self }

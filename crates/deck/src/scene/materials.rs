@@ -53,7 +53,7 @@ pub(super) fn sections(raw: &Raw, sets: &Sets) -> Result<Option<Vec<u32>>, DeckE
             )));
         }
         // rigid ones need no material
-        for tet in elements.into_iter().filter_map(|e| raw.tet(e)) {
+        for tet in elements.into_iter().flat_map(|e| raw.tets_of(e)) {
             let before = std::mem::replace(&mut of_element[tet as usize], index as u32);
             if before != NONE {
                 return Err(word.cannot(format!(

@@ -1,17 +1,19 @@
 //! Nodes and elements as a mesh.
 
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::Path;
 
 use signorini_contact::{ContactError, Part};
-use signorini_fem_mesh::internal::EDGES;
+use signorini_fem_mesh::internal::{EDGES, Lists, TET_FACES, distinct};
+use signorini_fem_mesh::mesh::{Cell, CellShape, Division};
 use signorini_fem_mesh::vec3::{add, area_vector, scale, sub, tet_volume};
 use signorini_fem_mesh::{Facet, TetMesh};
 
 use super::numbers::{Numbers, Sets};
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Fault, Word};
-use crate::model::{FACES, Kind, Model};
+use crate::model::{Ignored, Kind, Model};
 
 /// The mesh before its facets are known: elastic tetrahedra, without nodes that none of them uses.
 #[derive(Debug)]
@@ -20,83 +22,199 @@ pub(super) struct Raw {
     pub(super) tets: Vec<[u32; 4]>,
     /// Nodes on the edges of each; empty if they are of first order.
     pub(super) mids: Vec<[u32; 6]>,
-    /// Number in the mesh of each node and element of the deck, by position.
+    /// Of the faces 1 to 4 of each tetrahedron the number of the face of its element; 0 inside.
+    faces: Vec<[u8; 4]>,
+    /// Number in the mesh of each node of the deck, by position, and the tetrahedra of each element.
     of_node: Vec<Option<u32>>,
-    of_element: Vec<Option<u32>>,
-    /// Numbers in the deck of the nodes of the mesh.
+    of_element: Vec<Range<u32>>,
+    /// Numbers in the deck of the nodes of the mesh; those behind them are added between others and have that of the first.
     pub(super) node_labels: Vec<u32>,
+    /// The nodes around each node that is added, with their shares in it, and which these are by the first of them.
+    added: Lists<(u32, f64)>,
+    by_first: Lists<u32>,
     /// Copies of nodes where the mesh is cut; its tetrahedra here do not know of them.
     copies: BTreeMap<u32, Vec<u32>>,
-    /// Positions and numbers in the deck of the tetrahedra.
+    /// Positions and numbers in the deck of the elements of the tetrahedra.
     pub(super) elements: Vec<u32>,
     pub(super) element_labels: Vec<u32>,
 }
 
 impl Raw {
-    pub(super) fn new(path: &Path, sets: &Sets, bodies: &RigidBodies) -> Result<Self, DeckError> {
+    pub(super) fn new(
+        path: &Path,
+        sets: &Sets,
+        bodies: &RigidBodies,
+        notes: &mut Vec<Ignored>,
+    ) -> Result<Self, DeckError> {
         let model = sets.model;
-        let (mut tets, mut mids, mut elements) = (Vec::new(), Vec::new(), Vec::new());
-        let mut of_element = vec![None; model.elements.len()];
-        let mut used = vec![false; model.nodes.len()];
+        let (mut cells, mut positions) = (Vec::new(), Vec::new());
+        // the first element that is no tetrahedron and of first order
+        let mut coarse = None;
         for (position, element) in model.elements.iter().enumerate() {
-            let nodes = sets.corners(element)?;
+            let nodes = sets.nodes_of(element)?;
             if element.kind.is_mark() || bodies.of_element(position as u32).is_some() {
                 continue;
             }
-            if element.kind != Kind::Solid {
+            let Kind::Solid(shape) = element.kind else {
                 let why = "the facet is in no rigid body; put it into the ELSET of a *RIGID BODY";
                 return Err(element.word().cannot(why));
+            };
+            if nodes.len() == shape.corners() && shape != CellShape::Tetrahedron {
+                coarse = coarse.or(Some(element));
             }
-            let volume = tet_volume(&nodes.map(|n| model.nodes[n as usize].point));
-            if !(volume > 0.0 && volume.is_finite()) {
-                return Err(element.word().fault(Fault::Volume));
-            }
-            let own = sets.mids(element)?;
-            if !tets.is_empty() && own.is_some() == mids.is_empty() {
+            let is_other = |other: &(CellShape, Vec<u32>)| {
+                let [own, other] = [(shape, &nodes), (other.0, &other.1)].map(|(shape, n)| n.len() > shape.corners());
+                own != other
+            };
+            if cells.first().is_some_and(is_other) {
                 let why = "the deck has elastic elements of first and of second order; mesh all in one order";
                 return Err(element.word().cannot(why));
             }
-            nodes
-                .iter()
-                .chain(own.iter().flatten())
-                .for_each(|&n| used[n as usize] = true);
-            mids.extend(own);
-            of_element[position] = Some(tets.len() as u32);
-            tets.push(nodes);
-            elements.push(position as u32);
+            cells.push((shape, nodes));
+            positions.push(position as u32);
         }
-        if tets.is_empty() {
+        if cells.is_empty() {
             let path = path.to_owned();
             return Err(DeckError::NoElements { path });
         }
-        bodies.check_apart(sets, &used)?;
-        let (mut points, mut node_labels) = (Vec::new(), Vec::new());
-        let mut of_node = vec![None; used.len()];
-        for ((node, used), number) in model.nodes.iter().zip(used).zip(&mut of_node) {
-            if used {
-                *number = Some(points.len() as u32);
-                points.push(node.point);
-                node_labels.push(node.label);
-            }
+        let mut points: Vec<_> = model.nodes.iter().map(|node| node.point).collect();
+        let whole: Vec<Cell> = cells
+            .iter()
+            .map(|(shape, nodes)| Cell { shape: *shape, nodes })
+            .collect();
+        let division = match coarse {
+            Some(_) => Division::raised(&mut points, &whole),
+            None => Division::new(&mut points, &whole),
+        };
+        let path = path.to_owned();
+        let division = division.map_err(|source| DeckError::Mesh { path, source })?;
+        if let Some(element) = coarse {
+            let why = format!(
+                "the elements of first order become quadratic tetrahedra with {} nodes more on their edges: linear ones would \
+                be far too stiff",
+                division.added().len()
+            );
+            notes.push(Ignored::new(&element.word(), why));
         }
-        let number = |n: u32| of_node[n as usize].unwrap_or(0);
-        let label = |&e: &u32| model.elements[e as usize].label;
-        Ok(Self {
-            points,
-            tets: tets.into_iter().map(|tet: [u32; 4]| tet.map(number)).collect(),
-            mids: mids.into_iter().map(|mids: [u32; 6]| mids.map(number)).collect(),
-            of_node,
-            of_element,
-            node_labels,
+        let mut added = Lists::default();
+        division.added().for_each(|around| added.push(around.iter().copied()));
+        let mut out = Self {
+            points: Vec::new(),
+            tets: division.tets,
+            mids: division.mids,
+            faces: division.faces,
+            of_node: vec![None; model.nodes.len()],
+            of_element: vec![0..0; model.elements.len()],
+            node_labels: Vec::new(),
+            added,
+            by_first: Lists::default(),
             copies: BTreeMap::new(),
-            element_labels: elements.iter().map(label).collect(),
-            elements,
-        })
+            elements: Vec::new(),
+            element_labels: Vec::new(),
+        };
+        for (position, tets) in positions.into_iter().zip(division.of_cell) {
+            let element = &model.elements[position as usize];
+            for tet in tets.clone() {
+                let volume = tet_volume(&out.tets[tet as usize].map(|n| points[n as usize]));
+                if !(volume > 0.0 && volume.is_finite()) {
+                    return Err(element.word().fault(Fault::Volume));
+                }
+                out.elements.push(position);
+                out.element_labels.push(element.label);
+            }
+            out.of_element[position as usize] = tets;
+        }
+        let mut used = vec![false; points.len()];
+        cells
+            .iter()
+            .flat_map(|cell| &cell.1)
+            .for_each(|&n| used[n as usize] = true);
+        bodies.check_apart(sets, &used)?;
+        out.number(model, &points, &used);
+        Ok(out)
     }
 
-    /// The tetrahedron of an element of the deck, by its position; `None` if it is rigid, or a triangle or line.
-    pub(super) fn tet(&self, element: u32) -> Option<u32> {
-        self.of_element[element as usize]
+    /// From positions in the deck to numbers in the mesh: the used nodes, and behind them the added ones.
+    fn number(&mut self, model: &Model, points: &[[f64; 3]], used: &[bool]) {
+        let mut numbers = vec![0; points.len()];
+        for (position, place) in points.iter().enumerate() {
+            let node = model.nodes.get(position);
+            if used[position] || node.is_none() {
+                numbers[position] = self.points.len() as u32;
+                self.points.push(*place);
+            }
+            if let (true, Some(node)) = (used[position], node) {
+                self.of_node[position] = Some(numbers[position]);
+                self.node_labels.push(node.label);
+            }
+        }
+        let number = |n: &mut u32| *n = numbers[*n as usize];
+        self.tets.iter_mut().flatten().for_each(number);
+        self.mids.iter_mut().flatten().for_each(number);
+        let added = std::mem::take(&mut self.added);
+        self.added = added.map(|(node, share)| (numbers[node as usize], share));
+        let first: Vec<u32> = (0..self.added.count()).map(|k| self.added.of(k)[0].0).collect();
+        self.by_first = Lists::by_key(self.node_labels.len(), &first);
+        let labels: Vec<u32> = first.iter().map(|n| self.node_labels[*n as usize]).collect();
+        self.node_labels.extend(labels);
+    }
+
+    /// The tetrahedra of an element of the deck, by its position; none if it is rigid, or a triangle or line.
+    pub(super) fn tets_of(&self, element: u32) -> Range<u32> {
+        self.of_element[element as usize].clone()
+    }
+
+    /// The faces of tetrahedra that a face, from 1, of an element is, with their numbers there.
+    pub(super) fn faces_of(&self, element: u32, number: u8) -> impl Iterator<Item = (u32, u8)> {
+        let of_tet = move |tet: u32| {
+            let faces = (1..).zip(self.faces[tet as usize]);
+            faces
+                .filter(move |face| face.1 == number)
+                .map(move |face| (tet, face.0))
+        };
+        self.tets_of(element).flat_map(of_tet)
+    }
+
+    /// The face of its element that a face of a tetrahedron lies on.
+    pub(super) fn face_of_element(&self, tet: u32, number: u8) -> u8 {
+        self.faces[tet as usize][usize::from(number) - 1]
+    }
+
+    /// Nodes of the mesh, ascending, with the added ones all of whose neighbours are among them.
+    pub(super) fn with_added(&self, nodes: Vec<u32>) -> Vec<u32> {
+        if self.added.count() == 0 {
+            return nodes;
+        }
+        let nodes = distinct(nodes);
+        let known = nodes.iter().filter(|n| (**n as usize) < self.by_first.count());
+        let near = known.flat_map(|&n| self.by_first.of(n as usize));
+        let is_inside = |k: &u32| {
+            self.added
+                .of(*k as usize)
+                .iter()
+                .all(|n| nodes.binary_search(&n.0).is_ok())
+        };
+        let inside: Vec<u32> = near
+            .copied()
+            .filter(is_inside)
+            .map(|k| self.first_added() + k)
+            .collect();
+        distinct(nodes.into_iter().chain(inside))
+    }
+
+    fn first_added(&self) -> u32 {
+        (self.uncut() - self.added.count()) as u32
+    }
+
+    /// The nodes that are added, each with its neighbours and their shares.
+    pub(super) fn added(&self) -> impl Iterator<Item = (u32, &[(u32, f64)])> {
+        let first = self.first_added();
+        (0..self.added.count()).map(move |k| (first + k as u32, self.added.of(k)))
+    }
+
+    /// Nodes of the deck, by position, as nodes of the mesh, those that are in it and those between them.
+    pub(super) fn all_in_mesh(&self, nodes: &[u32]) -> Vec<u32> {
+        self.with_added(nodes.iter().filter_map(|n| self.in_mesh(*n)).collect())
     }
 
     /// Adds copies of nodes behind the others, as cuts make them.
@@ -125,7 +243,7 @@ impl Raw {
 
     /// Nodes of the mesh by their numbers in the deck.
     pub(super) fn mesh_numbers(&self) -> Numbers {
-        let nodes = self.node_labels.iter().copied().take(self.uncut());
+        let nodes = self.node_labels.iter().copied().take(self.first_added() as usize);
         Numbers::new(nodes.zip(0..).collect()).unwrap_or_default()
     }
 
@@ -141,7 +259,7 @@ impl Raw {
     /// The corners of a face (1 to 4) of a tetrahedron.
     pub(super) fn face(&self, tet: u32, number: u8) -> [u32; 3] {
         let corners = self.tets[tet as usize];
-        FACES[usize::from(number) - 1].map(|i| corners[i])
+        TET_FACES[usize::from(number) - 1].map(|i| corners[i])
     }
 
     /// The area of a face of a tetrahedron along the outward normal.

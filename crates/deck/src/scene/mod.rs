@@ -20,6 +20,7 @@ mod parts;
 mod points;
 mod pretension;
 mod rigid;
+mod rigid_face;
 mod spread;
 mod supports;
 mod temperatures;
@@ -62,7 +63,8 @@ pub(crate) struct Translated {
 pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckError> {
     let sets = numbers::Sets::new(model)?;
     let bodies = rigid::RigidBodies::new(&sets)?;
-    let mut raw = mesh::Raw::new(path, &sets, &bodies)?;
+    let mut notes = Vec::new();
+    let mut raw = mesh::Raw::new(path, &sets, &bodies, &mut notes)?;
     let timeline = timeline::Timeline::new(model)?;
     let couplings = couplings::Couplings::new(&sets, &bodies, &raw)?;
     let sections = pretension::Sections::new(&couplings.0, &sets, &raw)?;
@@ -86,7 +88,6 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         sections: &sections,
     };
     let mut faces = faces::FaceTable::default();
-    let mut notes = Vec::new();
     let surfaces = faces.surfaces(known, &mut notes)?;
     let loads = loads::Loads::new(known, &surfaces, &mut faces)?;
     faces.check_outside(&raw)?;
@@ -108,7 +109,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     parts.come_back(contacts.len(), later.iter().map(|own| own.0));
     contacts.extend(later.into_iter().map(|own| own.1));
     let warm = temperatures::temperatures(known, &mut supports.ignored)?;
-    let (equations, words): (Vec<_>, Vec<_>) = equations::equations(known, &supports.rigid)?.into_iter().unzip();
+    let (equations, words): (Vec<_>, Vec<_>) = equations::equations(known, &supports)?.into_iter().unzip();
     parts.equations = words.iter().map(Word::told).collect();
     let loads = loads
         .lower(&faces, &tags, (&supports.rigid, &sections))
@@ -136,8 +137,10 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         mesh,
         scene,
         nodes: raw.mesh_numbers(),
-        node_sets: sets.nodes.named(|n| raw.in_mesh(n)),
-        element_sets: sets.elements.named(|e| raw.tet(e)),
+        node_sets: sets.nodes.named(|set| raw.all_in_mesh(&set)),
+        element_sets: sets
+            .elements
+            .named(|set| set.into_iter().flat_map(|e| raw.tets_of(e)).collect()),
         node_labels: raw.node_labels,
         element_labels: raw.element_labels,
         surfaces,

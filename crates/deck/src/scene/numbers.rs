@@ -151,11 +151,11 @@ impl<'a> Table<'a> {
         Ok(())
     }
 
-    /// The sets by name, with what each position is to be taken for.
-    pub(super) fn named(self, new: impl Fn(u32) -> Option<u32>) -> Names<Vec<u32>> {
+    /// The sets by name, with what the positions in each are to be taken for.
+    pub(super) fn named(self, new: impl Fn(Vec<u32>) -> Vec<u32>) -> Names<Vec<u32>> {
         let mut named = Names::default();
         for (name, set) in self.names.names().into_iter().zip(self.sets) {
-            named.add(name, set.into_iter().filter_map(&new).collect());
+            named.add(name, new(set));
         }
         named
     }
@@ -175,24 +175,13 @@ impl<'a> Sets<'a> {
         Ok(Self { model, nodes, elements })
     }
 
-    /// Positions of the corners of an element.
-    pub(super) fn corners(&self, element: &Element) -> Result<[u32; 4], DeckError> {
-        self.positions(element, element.nodes)
-    }
-
-    /// Positions of the nodes on the edges of an element C3D10; `None` for others.
-    pub(super) fn mids(&self, element: &Element) -> Result<Option<[u32; 6]>, DeckError> {
-        let quadratic = element.mids != [0; 6];
-        quadratic.then(|| self.positions(element, element.mids)).transpose()
-    }
-
-    fn positions<const N: usize>(&self, element: &Element, labels: [u32; N]) -> Result<[u32; N], DeckError> {
-        let mut nodes = [0; N];
-        for (position, label) in nodes.iter_mut().zip(labels) {
+    /// Positions of the nodes of an element.
+    pub(super) fn nodes_of(&self, element: &Element) -> Result<Vec<u32>, DeckError> {
+        let position = |label: &u32| {
             let unknown = || Word::new(&element.location, label.to_string()).fault(Fault::UnknownNumber("node"));
-            *position = self.nodes.numbers.get(label).ok_or_else(unknown)?;
-        }
-        Ok(nodes)
+            self.nodes.numbers.get(*label).ok_or_else(unknown)
+        };
+        element.nodes.iter().map(position).collect()
     }
 
     /// The position of a target that is one node.

@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use signorini_contact::{Contact, Coupling};
-use signorini_fem_mesh::internal::ascending;
+use signorini_fem_mesh::internal::{TET_FACES, ascending};
 use signorini_fem_mesh::vec3::{Vec3, add, centroid, dot, norm, scale};
 use signorini_fem_mesh::{FacetTag, MeshError, SurfaceFrame, TetMesh};
 
@@ -12,7 +12,7 @@ use super::couplings::Coupling as Node;
 use super::mesh::Raw;
 use super::numbers::Sets;
 use crate::error::{DeckError, Word};
-use crate::model::{CouplingLaw, FACES, Side};
+use crate::model::{CouplingLaw, Side};
 use crate::tolerances::ALONG_SECTION;
 
 /// Why other components are refused.
@@ -47,19 +47,25 @@ impl Faces {
         let (mut own, mut area_vector, mut area, mut centre) = (BTreeMap::new(), [0.0; 3], 0.0, [0.0; 3]);
         for faces in sets.model.surfaces.at(surface) {
             let Side::Face(number) = faces.side else {
-                let what = "faces S1 to S4 of solid elements, all on one side of the section";
+                let what = "faces S1 to S6 of solid elements, all on one side of the section";
                 return Err(faces.word.expected(what));
             };
             for element in sets.elements.find(&faces.target, &faces.word)? {
-                let tet = raw.tet(element);
-                let tet = tet.ok_or_else(|| faces.word.cannot("a section is across elastic elements"))?;
-                let nodes = raw.face(tet, number);
-                let out = raw.area_vector(tet, nodes);
-                area_vector = add(area_vector, out);
-                area += norm(out);
-                let middle = centroid(&nodes.map(|n| raw.points[n as usize]));
-                centre = add(centre, scale(norm(out), middle));
-                own.insert(ascending(nodes), tet);
+                let before = own.len();
+                for (tet, number) in raw.faces_of(element, number) {
+                    let nodes = raw.face(tet, number);
+                    let out = raw.area_vector(tet, nodes);
+                    area_vector = add(area_vector, out);
+                    area += norm(out);
+                    let middle = centroid(&nodes.map(|n| raw.points[n as usize]));
+                    centre = add(centre, scale(norm(out), middle));
+                    own.insert(ascending(nodes), tet);
+                }
+                if own.len() == before {
+                    return Err(faces
+                        .word
+                        .cannot("a section is across elastic elements, and on faces that they have"));
+                }
             }
         }
         Ok(Self {
@@ -75,7 +81,7 @@ impl Faces {
         let mut sides: BTreeMap<u32, bool> = self.own.values().map(|tet| (*tet, true)).collect();
         let mut found = 0;
         for (tet, corners) in (0..).zip(&raw.tets) {
-            let keys = FACES.map(|face| ascending(face.map(|i| corners[i])));
+            let keys = TET_FACES.map(|face| ascending(face.map(|i| corners[i])));
             let own = keys.iter().filter_map(|face| self.own.get(face));
             for _ in own.filter(|own| **own != tet) {
                 found += 1;

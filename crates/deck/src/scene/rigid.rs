@@ -6,16 +6,17 @@
 use std::collections::BTreeMap;
 
 use signorini_contact::{Contact, Obstacle};
-use signorini_fem_mesh::internal::{EDGES, distinct};
+use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, area_vector, cross, dot, norm, sub};
 use signorini_fem_mesh::{FacetTag, History};
 
 use super::history::{Histories, Track};
 use super::numbers::Sets;
+use super::rigid_face::RigidFace;
 use super::timeline::Timeline;
 use crate::error::{DeckError, Word};
 use crate::lexer::Named;
-use crate::model::{FACES, Kind, Model, RigidBody, Side, Target};
+use crate::model::{Kind, Model, RigidBody, Target};
 use crate::tolerances::ROUNDING;
 
 /// The nodes that say how a body moves, by position.
@@ -32,15 +33,6 @@ struct Body {
 pub(super) struct RigidBodies {
     list: Vec<Body>,
     of_element: Vec<Option<u32>>,
-}
-
-/// A side of a rigid element: corners, counter-clockwise seen from outside.
-#[derive(Debug)]
-pub(super) struct RigidFace {
-    corners: Vec<Vec3>,
-    /// The same between neighbouring nodes.
-    triangles: Vec<[Vec3; 3]>,
-    body: u32,
 }
 
 /// A vector and its history; `None` if it is zero at all times.
@@ -196,8 +188,7 @@ impl RigidBodies {
                         let why = format!("element {} is in another rigid body; keep one of them", element.label);
                         return Err(elset.word.cannot(why));
                     }
-                    nodes.extend(sets.corners(element)?);
-                    nodes.extend(sets.mids(element)?.into_iter().flatten());
+                    nodes.extend(sets.nodes_of(element)?);
                 }
             }
             if let Some(Named { name, word }) = &body.nset {
@@ -213,7 +204,7 @@ impl RigidBodies {
         // solid elements of what is free or loaded are elastic ones whose nodes are coupled
         let free = are_free(sets, &list)?;
         for (element, of) in model.elements.iter().zip(&mut of_element) {
-            *of = of.filter(|body| !(element.kind == Kind::Solid && free[*body as usize]));
+            *of = of.filter(|body| !(matches!(element.kind, Kind::Solid(_)) && free[*body as usize]));
         }
         let references: Vec<u32> = list.iter().map(|body| body.reference).collect();
         for (body, said) in list.iter().zip(&model.rigid) {
@@ -327,53 +318,6 @@ impl RigidBodies {
             }
         };
         self.list.iter().zip(&model.rigid).map(lead).collect()
-    }
-}
-
-impl RigidFace {
-    /// A side of an element of a body, both by position.
-    pub(super) fn new(sets: &Sets, (body, element): (u32, u32), side: Side, word: &Word) -> Result<Self, DeckError> {
-        let element = &sets.model.elements[element as usize];
-        let nodes = sets.corners(element)?;
-        let p = nodes.map(|n| sets.model.nodes[n as usize].point);
-        let mut triangles = Vec::new();
-        let mut corners = match (element.kind, side) {
-            (Kind::Solid, Side::Face(number)) => {
-                let [a, b, c] = FACES[usize::from(number) - 1];
-                if let Some(mids) = sets.mids(element)? {
-                    let mut between = [[0; 4]; 4];
-                    for ([i, j], mid) in EDGES.into_iter().zip(mids) {
-                        between[i][j] = mid;
-                        between[j][i] = mid;
-                    }
-                    let mid = |i: usize, j: usize| sets.model.nodes[between[i][j] as usize].point;
-                    let [ab, bc, ca] = [mid(a, b), mid(b, c), mid(c, a)];
-                    triangles = vec![[p[a], ca, ab], [ab, bc, p[b]], [ca, p[c], bc], [ab, ca, bc]];
-                }
-                // these faces are numbered counter-clockwise seen from inside
-                vec![p[a], p[c], p[b]]
-            }
-            (Kind::Solid, _) => return Err(word.expected("faces S1 to S4 of solid elements")),
-            (_, Side::Face(_) | Side::Outside | Side::Nodes) => {
-                return Err(word.expected("SPOS or SNEG of rigid facets"));
-            }
-            (Kind::Line, _) => return Err(word.expected("facets: lines have no sides")),
-            (Kind::Triangle | Kind::Flat, _) => p[..3].to_vec(),
-            (Kind::Quadrilateral, _) => p.to_vec(),
-        };
-        if side == (Side::Facet { positive: false }) {
-            corners.reverse();
-        }
-        if triangles.is_empty() {
-            let fan = (1..corners.len() - 1).map(|i| [corners[0], corners[i], corners[i + 1]]);
-            // a quadrilateral whose last corner is there twice is a triangle
-            triangles.extend(fan.filter(|t| t[1] != t[2]));
-        }
-        Ok(RigidFace {
-            corners,
-            triangles,
-            body,
-        })
     }
 }
 

@@ -23,7 +23,7 @@ const SINGLE: &str = "nodes";
 type Owner = (String, Word);
 
 /// A node of the mesh, or the position of one, and a component.
-type Key = (u32, usize);
+pub(super) type Key = (u32, usize);
 
 /// Held components by node of the mesh and component, and by position of nodes of rigid bodies and couplings.
 #[derive(Default)]
@@ -50,6 +50,8 @@ pub(super) struct Rigid {
 pub(super) struct Supports {
     pub(super) list: Vec<Support>,
     pub(super) names: Vec<Owner>,
+    /// What is held in all steps, with the word that says so.
+    pub(super) held: BTreeMap<Key, Word>,
     pub(super) leads: Vec<Result<Lead, FreeLead>>,
     pub(super) rigid: Vec<Rigid>,
     /// Rotations that are held where there are none.
@@ -107,10 +109,14 @@ pub(super) fn supports(
     let held = held.into_iter().map(|(key, held)| (key, held.track)).collect();
     let leads = known.bodies.leads(known.model, &held);
     let ignored = std::mem::take(&mut table.ignored);
+    table.hold_between(known);
+    let always = table.held.iter().filter(|(_, held)| held.span == [None; 2]);
+    let held = always.map(|(key, held)| (*key, held.track.word.clone())).collect();
     let (list, names) = table.lower(known)?;
     Ok(Supports {
         list,
         names,
+        held,
         leads,
         rigid,
         ignored,
@@ -260,7 +266,7 @@ impl Table {
             (0..6).for_each(|c| drop(self.rigid.remove(&(coupling.node, c))));
         }
         for ((nodes, reference, rotation), said) in known.bodies.nodes().zip(&known.model.rigid) {
-            let elastic = nodes.iter().filter_map(|n| known.raw.in_mesh(*n));
+            let elastic = known.raw.all_in_mesh(nodes).into_iter();
             let elastic: Vec<u32> = elastic.flat_map(|n| known.raw.with_copies(n)).collect();
             if !elastic.is_empty() {
                 let leads = (reference, rotation);
@@ -358,6 +364,37 @@ impl Table {
             }
         }
         Ok(None)
+    }
+
+    /// Holds added nodes all of whose neighbours are held alike.
+    fn hold_between(&mut self, known: Known) {
+        let mut of_node: BTreeMap<u32, Vec<(usize, &Held)>> = BTreeMap::new();
+        let released = self.released.iter().map(|(key, held)| (key, held));
+        for ((node, component), held) in self.held.iter().chain(released) {
+            of_node.entry(*node).or_default().push((*component, held));
+        }
+        let all = |node: u32| of_node.get(&node).into_iter().flatten();
+        let mut new = Vec::new();
+        for (node, around) in known.raw.added() {
+            let axes = known.transforms.of(node);
+            for (component, held) in all(around[0].0) {
+                let own = |node: u32| all(node).filter(|other| other.0 == *component);
+                let both = |held: Held, &(other, _): &(u32, f64)| {
+                    let mut common = own(other).filter_map(|other| held.common(other.1));
+                    common.next().filter(|_| known.transforms.of(other) == axes)
+                };
+                if let Some(held) = around.iter().try_fold((*held).clone(), both) {
+                    let copies = known.raw.with_copies(node);
+                    new.extend(copies.map(|node| ((node, *component), held.clone())));
+                }
+            }
+        }
+        for (key, held) in new {
+            match held.span[1] {
+                None => drop(self.held.entry(key).or_insert(held)),
+                Some(_) => self.released.push((key, held)),
+            }
+        }
     }
 
     fn lower(

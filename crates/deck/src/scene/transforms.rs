@@ -51,6 +51,13 @@ impl Transforms {
             }
             out.axes.push(transform.axes);
         }
+        let between = |(node, around): (u32, &[(u32, f64)])| {
+            let axes = out.of(around[0].0)?;
+            let same = around.iter().all(|other| out.of(other.0) == Some(axes));
+            same.then(|| raw.with_copies(node).map(move |node| (node, axes)))
+        };
+        let new: Vec<_> = raw.added().filter_map(between).flatten().collect();
+        out.of_node.extend(new);
         Ok(out)
     }
 

@@ -133,7 +133,7 @@ impl Volume {
             let Known { sets, raw, .. } = known;
             let elements = sets.elements.find(&target, &track.word)?;
             // rigid ones are held, whatever pulls them
-            let elements: Vec<u32> = elements.into_iter().filter_map(|e| raw.tet(e)).collect();
+            let elements: Vec<u32> = elements.into_iter().flat_map(|e| raw.tets_of(e)).collect();
             if elements.is_empty() {
                 continue;
             }

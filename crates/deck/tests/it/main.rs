@@ -2,6 +2,7 @@
 
 mod assembly;
 mod broken;
+mod cells;
 mod couplings;
 mod equation;
 mod gaps;

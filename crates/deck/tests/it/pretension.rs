@@ -136,7 +136,7 @@ fn what_is_no_section_is_refused() {
     refused(whole.replace("NODE=9000\n", "NODE=9000\n0., 0., 0.\n"), "no normal");
     refused(
         whole.replace("*SURFACE, NAME=CUT\n", "*SURFACE, NAME=CUT\nALL\n"),
-        "faces S1 to S4",
+        "faces S1 to S6",
     );
     let twice = "*PRE-TENSION SECTION, SURFACE=CUT, NODE=9000\n";
     refused(

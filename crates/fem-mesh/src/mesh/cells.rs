@@ -1,6 +1,10 @@
 //! Shapes of cells of other meshes: their edges and faces.
 
-use super::curved::EDGES;
+/// Ends of the edges of a tetrahedron on which its mid-nodes lie.
+pub const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
+
+/// Corners of the faces of a tetrahedron, counter-clockwise seen from inside.
+pub const TET_FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
 
 /// What a cell is. Its corners, edges and faces are in the order of Abaqus and CalculiX.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]

@@ -7,10 +7,8 @@ use crate::tables::distinct;
 use crate::tolerances::{CURVED, MID_OFF, PLANE_FACET};
 use crate::vec3::{Vec3, add, cross, norm, scale, sub, tet_volume, unit};
 
+use super::cells::EDGES;
 use super::error::MeshError;
-
-/// Ends of the edges of a tetrahedron on which its mid-nodes lie.
-pub const EDGES: [[usize; 2]; 6] = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
 
 /// Barycentric coordinates of the ten nodes.
 pub(crate) const NODES: [[f64; 4]; 10] = {

@@ -7,11 +7,10 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use crate::tables::ascending;
+use crate::tables::{Lists, ascending};
 use crate::vec3::{Vec3, add, scale};
 
-use super::cells::{Cell, CellShape};
-use super::curved::EDGES;
+use super::cells::{Cell, CellShape, EDGES, TET_FACES};
 use super::error::MeshError;
 
 /// Cells divided into tetrahedra.
@@ -28,7 +27,7 @@ use super::error::MeshError;
 /// assert_eq!((mesh.tets().len(), mesh.total_volume()), (6, 1.0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Default)]
 pub struct Division {
     /// Corners of the tetrahedra, cell by cell; a tetrahedron stays as it is.
     pub tets: Vec<[u32; 4]>,
@@ -39,13 +38,8 @@ pub struct Division {
     pub faces: Vec<[u8; 4]>,
     /// Tetrahedra of each cell.
     pub of_cell: Vec<Range<u32>>,
-    /// Nodes that are added behind all others, in faces and in the middle of hexahedra that have nodes on their edges only:
-    /// the nodes of the face or the cell, between which their place is interpolated.
-    pub added: Vec<Vec<u32>>,
+    added: Lists<(u32, f64)>,
 }
-
-/// Corners of the faces of a tetrahedron, as [`Division::faces`] counts them.
-const TET_FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
 
 impl Division {
     /// Divides cells all of which have nodes on their edges, or none; new nodes are added to the points.
@@ -55,6 +49,19 @@ impl Division {
     /// there is not, [`MeshError::MixedOrder`] for cells with and without nodes on their edges, [`MeshError::TooLarge`]
     /// for more nodes or tetrahedra than can be numbered.
     pub fn new(points: &mut Vec<[f64; 3]>, cells: &[Cell<'_>]) -> Result<Self, MeshError> {
+        Self::of(points, cells, false)
+    }
+
+    /// The same into quadratic tetrahedra: cells without nodes on their edges get them, and those inside. Linear
+    /// tetrahedra are far stiffer in bending than the cells that they fill, quadratic ones softer.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    pub fn raised(points: &mut Vec<[f64; 3]>, cells: &[Cell<'_>]) -> Result<Self, MeshError> {
+        Self::of(points, cells, true)
+    }
+
+    fn of(points: &mut Vec<[f64; 3]>, cells: &[Cell<'_>], raised: bool) -> Result<Self, MeshError> {
         let order = |cell: &Cell| 1 + usize::from(cell.nodes.len() > cell.shape.corners());
         let first = cells.first().map_or(1, order);
         for (number, cell) in cells.iter().enumerate() {
@@ -85,22 +92,29 @@ impl Division {
             known: HashMap::new(),
         };
         for cell in cells {
-            out.add(cell, &mut inside);
-            super::check::numbered("nodes", points.len() + out.added.len())?;
+            out.add(cell, raised || first == 2, &mut inside);
+            super::check::numbered("nodes", points.len() + out.added.count())?;
             super::check::numbered("tetrahedra", out.tets.len())?;
         }
-        let new: Vec<_> = out.added.iter().map(|nodes| middle(points, nodes)).collect();
+        let new: Vec<_> = out.added().map(|between| middle(points, between)).collect();
         points.extend(new);
         Ok(out)
     }
 
-    fn add(&mut self, cell: &Cell, inside: &mut Inside) {
+    /// Nodes that are added behind all others, on edges, in faces and in the middle of hexahedra that have none there: the
+    /// given nodes of the edge, the face or the cell, and the shares of their places in that of the middle by the shape
+    /// functions there.
+    pub fn added(&self) -> impl ExactSizeIterator<Item = &[(u32, f64)]> {
+        (0..self.added.count()).map(|k| self.added.of(k))
+    }
+
+    fn add(&mut self, cell: &Cell, quadratic: bool, inside: &mut Inside) {
         let start = self.tets.len() as u32;
         for tet in cell.tetrahedra() {
             self.tets.push(tet.map(|k| cell.nodes[k]));
             self.faces
                 .push(TET_FACES.map(|face| cell.face_of(face.map(|k| tet[k]))));
-            if cell.nodes.len() > cell.shape.corners() {
+            if quadratic {
                 let edges = EDGES.map(|edge| edge.map(|k| tet[k]));
                 self.mids
                     .push(edges.map(|edge| cell.on_edge(edge, inside, &mut self.added)));
@@ -110,11 +124,11 @@ impl Division {
     }
 }
 
-/// Nodes in faces and in the middle of cells.
+/// Nodes that are added.
 struct Inside {
     /// The number of the first that is added.
     first: u32,
-    /// By the corners of the diagonal.
+    /// By the ends of the edge of the tetrahedra that they are on.
     known: HashMap<[u32; 2], u32>,
 }
 
@@ -138,29 +152,36 @@ impl Cell<'_> {
     }
 
     /// Node in the middle of an edge of a tetrahedron.
-    fn on_edge(&self, edge: [usize; 2], inside: &mut Inside, added: &mut Vec<Vec<u32>>) -> u32 {
+    fn on_edge(&self, edge: [usize; 2], inside: &mut Inside, added: &mut Lists<(u32, f64)>) -> u32 {
         let (corners, edges) = (self.shape.corners(), self.shape.edges());
         let is_between = |corners: &[usize]| edge.iter().all(|k| corners.contains(k));
-        if let Some(own) = edges.iter().position(|ends| is_between(ends)) {
-            return self.nodes[corners + own];
-        }
+        let own = edges.iter().position(|ends| is_between(ends));
         let face = self.shape.quadrilaterals().position(is_between);
-        let given = &self.nodes[corners + edges.len()..];
-        if let Some(&node) = face.map_or_else(|| given.last(), |face| given.get(face)) {
+        let inner = self.nodes.get(corners + edges.len()..).unwrap_or(&[]);
+        let given = match (own, face) {
+            (Some(own), _) => self.nodes.get(corners + own),
+            (None, Some(face)) => inner.get(face),
+            (None, None) => inner.last(),
+        };
+        if let Some(&node) = given {
             return node;
         }
-        *inside
-            .known
-            .entry(ascending(edge.map(|k| self.nodes[k])))
-            .or_insert_with(|| {
-                let around = face.and_then(|face| self.shape.quadrilaterals().nth(face));
-                let on = |ends: &[usize]| around.is_none_or(|face| ends.iter().all(|k| face.contains(k)));
-                let all = (0..corners)
-                    .filter(|&k| on(&[k]))
-                    .chain((corners..).zip(edges).filter(|e| on(e.1)).map(|e| e.0));
-                added.push(all.map(|k| self.nodes[k]).collect());
-                inside.first + added.len() as u32 - 1
-            })
+        let ends = edge.map(|k| self.nodes[k]);
+        *inside.known.entry(ascending(ends)).or_insert_with(|| {
+            let around = match (own, face) {
+                (Some(own), _) => Some(&edges[own][..]),
+                (None, Some(face)) => self.shape.quadrilaterals().nth(face),
+                (None, None) => None,
+            };
+            let is_on = |ends: &[usize]| around.is_none_or(|around| ends.iter().all(|k| around.contains(k)));
+            let on_corners: Vec<usize> = (0..corners).filter(|&k| is_on(&[k])).collect();
+            let on_edges = (corners..).zip(edges).filter(|e| is_on(e.1)).map(|e| e.0);
+            let mids: Vec<u32> = on_edges.filter_map(|k| self.nodes.get(k)).copied().collect();
+            let [corner, mid] = shares(on_corners.len(), mids.len());
+            let corners = on_corners.into_iter().map(|k| (self.nodes[k], corner));
+            added.push(corners.chain(mids.into_iter().map(|n| (n, mid))));
+            inside.first + added.count() as u32 - 1
+        })
     }
 }
 
@@ -178,11 +199,17 @@ pub fn divide_face(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     triangles(corners, |n| n)
 }
 
-/// The middle of a face of eight nodes, or of a hexahedron of twenty, by its shape functions.
-fn middle(points: &[[f64; 3]], nodes: &[u32]) -> Vec3 {
-    let sum = |nodes: &[u32]| nodes.iter().fold([0.0; 3], |sum, &n| add(sum, points[n as usize]));
-    let (corners, mids) = nodes.split_at(if nodes.len() == 8 { 4 } else { 8 });
-    // shape functions of serendipity elements: -1/4 at corners; those of the nodes on edges have the rest
-    let rest = (1.0 + 0.25 * corners.len() as f64) / mids.len() as f64;
-    add(scale(-0.25, sum(corners)), scale(rest, sum(mids)))
+/// Shape functions in the middle of an edge, a face or a hexahedron: at its corners, and at the nodes on its edges.
+fn shares(corners: usize, mids: usize) -> [f64; 2] {
+    let corners = corners as f64;
+    match mids {
+        0 => [1.0 / corners, 0.0],
+        // serendipity elements
+        mids => [-0.25, (1.0 + 0.25 * corners) / mids as f64],
+    }
+}
+
+fn middle(points: &[[f64; 3]], between: &[(u32, f64)]) -> Vec3 {
+    let shares = between.iter().map(|&(node, share)| scale(share, points[node as usize]));
+    shares.fold([0.0; 3], add)
 }

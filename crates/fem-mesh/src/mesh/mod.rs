@@ -23,6 +23,8 @@ mod surface;
 mod tet_mesh;
 
 pub use cells::{Cell, CellShape};
+#[doc(hidden)]
+pub use cells::{EDGES, TET_FACES};
 pub use division::{Division, divide_face};
 pub use edit::{drop_unused_nodes, merge_nodes, orient_tets};
 pub use error::MeshError;
@@ -30,9 +32,9 @@ pub use surface::{Surface, SurfaceError, SurfaceFrame};
 pub use tet_mesh::{BoundaryFacet, Facet, FacetTag, TetMesh};
 
 pub(crate) use check::extent;
-#[doc(hidden)]
-pub use curved::{EDGES, facet_normals, facet_shape};
 pub(crate) use curved::{NODES, curved_facet, shape, tangents};
+#[doc(hidden)]
+pub use curved::{facet_normals, facet_shape};
 #[doc(hidden)]
 pub use cylindrical::cylindrical;
 pub(crate) use faces::{NONE, connected_sets};

@@ -3,7 +3,7 @@
 use crate::tables::distinct;
 use crate::vec3::{add, scale};
 
-use super::curved::EDGES;
+use super::cells::EDGES;
 use super::error::MeshError;
 use super::tet_mesh::{Facet, TetMesh};
 

@@ -4,9 +4,12 @@ use proptest::prelude::*;
 use signorini_fem_mesh::mesh::{Cell, CellShape, Division};
 use signorini_fem_mesh::{MeshError, TetMesh};
 
+/// A cell that owns its nodes.
+type OwnCell = (CellShape, Vec<u32>);
+
 /// A box of `n` cells along each side, of hexahedra or each of them as two prisms, whose nodes are numbered as `number`
 /// says; `order` 2 has nodes on edges, 3 also in faces and in the middle.
-fn cells(n: [usize; 3], prisms: bool, order: usize, number: &[u32]) -> (Vec<[f64; 3]>, Vec<(CellShape, Vec<u32>)>) {
+fn cells(n: [usize; 3], prisms: bool, order: usize, number: &[u32]) -> (Vec<[f64; 3]>, Vec<OwnCell>) {
     let step = order.min(2);
     let size = n.map(|n| 2 * n + 1);
     let at = |p: [usize; 3]| (p[2] * size[1] + p[1]) * size[0] + p[0];
@@ -64,7 +67,7 @@ fn cells(n: [usize; 3], prisms: bool, order: usize, number: &[u32]) -> (Vec<[f64
     (points.collect(), cells.collect())
 }
 
-fn divide(points: &mut Vec<[f64; 3]>, cells: &[(CellShape, Vec<u32>)]) -> Division {
+fn divide(points: &mut Vec<[f64; 3]>, cells: &[OwnCell]) -> Division {
     let cells: Vec<Cell> = cells
         .iter()
         .map(|(shape, nodes)| Cell { shape: *shape, nodes })
@@ -103,8 +106,8 @@ proptest! {
         let (mut points, cells) = cells(n, prisms, order, &number);
         let given = points.len();
         let division = divide(&mut points, &cells);
-        prop_assert_eq!(division.added.is_empty(), order != 2);
-        prop_assert_eq!(points.len(), given + division.added.len());
+        prop_assert_eq!(division.added().len() == 0, order != 2);
+        prop_assert_eq!(points.len(), given + division.added().len());
         // the checks of a mesh see gaps and overlaps
         let mesh = mesh(points.clone(), &division).unwrap();
         prop_assert!((mesh.total_volume() - 1.0).abs() < 1e-12);
@@ -125,6 +128,21 @@ proptest! {
             for (face, found) in shape.faces().iter().zip(&triangles[1..]) {
                 prop_assert_eq!(*found, face.len() - 2);
             }
+        }
+        if order == 1 {
+            let mut points = points[..given].to_vec();
+            let cells: Vec<Cell> = cells.iter().map(|(shape, nodes)| Cell { shape: *shape, nodes }).collect();
+            let raised = Division::raised(&mut points, &cells).unwrap();
+            prop_assert_eq!(&raised.tets, &division.tets);
+            // all cells are straight, so that the middle of an edge is that of what it lies in
+            let straight = mesh.raise_order().unwrap();
+            let same = |a: &[f64; 3], b: &[f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-14);
+            let mids = raised.mids.iter().zip(straight.mids()).flat_map(|(a, b)| a.iter().zip(b));
+            for (a, b) in mids {
+                prop_assert!(same(&points[*a as usize], &straight.points()[*b as usize]));
+            }
+            let whole = self::mesh(points, &raised).unwrap();
+            prop_assert_eq!(whole.points().len(), straight.points().len());
         }
         if order > 1 {
             // new nodes are where the shape functions of the cell have the middle
@@ -166,7 +184,7 @@ fn wrong_cells() {
     };
     let mixed = Division::new(&mut points, &[cube, second]).unwrap_err();
     assert!(matches!(mixed, MeshError::MixedOrder { first: 1, second: 2 }));
-    assert_eq!(Division::new(&mut points, &[]), Ok(Division::default()));
+    assert!(Division::new(&mut points, &[]).is_ok_and(|none| none.tets.is_empty() && none.added().len() == 0));
 }
 
 /// Files of Gmsh 4.15: their volume, area of the boundary with names and order.

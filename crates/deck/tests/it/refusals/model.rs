@@ -16,7 +16,7 @@ fn parameters_of_contact_that_cannot_be_had() {
 
 #[test]
 fn mesh() {
-    for kind in ["C3D20", "C3D8", "S3", "R2D2"] {
+    for kind in ["C3D27", "C3D8V", "S3", "R2D2"] {
         let line = format!("*ELEMENT, TYPE={kind}");
         behind(&format!("{line}\n"), &line, &format!("TYPE={kind}"), "C3D4");
     }
@@ -122,7 +122,13 @@ fn sets_and_surfaces() {
         "IN",
         "at the boundary",
     );
-    behind("*SURFACE, NAME=A\nALL, S5\n", "ALL, S5", "S5", "S1, S2, S3 or S4");
+    behind("*SURFACE, NAME=A\nALL, S7\n", "ALL, S7", "S7", "S1 to S6");
+    behind(
+        "*SURFACE, NAME=A\nALL, S5\n",
+        "ALL, S5",
+        "ALL",
+        "element 1 has no face 5",
+    );
     behind("*SURFACE, NAME=A\nPART, S1\n", "PART, S1", "PART", "there are: ALL");
     behind("*SURFACE, NAME=A\nALL, S1\n", "ALL, S1", "ALL", "inside the body");
     behind("*SURFACE, NAME=A\n", "*SURFACE, NAME=A", "*SURFACE", "no faces");
@@ -307,7 +313,7 @@ fn rigid_bodies() {
         "1",
         "rigid and elastic faces",
     );
-    behind("*SURFACE, NAME=B\n1, SPOS\n", "1, SPOS", "1", "S1 to S4");
+    behind("*SURFACE, NAME=B\n1, SPOS\n", "1, SPOS", "1", "S1 to S6");
     let other = "*ELSET, ELSET=MORE\n900\n*RIGID BODY, ELSET=MORE, REF NODE=1\n";
     let line = "*RIGID BODY, ELSET=MORE, REF NODE=1";
     try_one(

@@ -32,7 +32,8 @@ fn loads() {
     inside("*CLOAD\nN6, 4, 1.\n", "N6, 4, 1.", "4", "a component 1, 2 or 3");
     inside("*CLOAD\nN6, 1\n", "N6, 1", "N6, 1", "and a force");
     inside("*CLOAD\nN7, 1, 1.\n", "N7, 1, 1.", "N7", "there are: N1");
-    inside("*DLOAD\nALL, P5, 1.\n", "ALL, P5, 1.", "P5", "P1 to P4");
+    inside("*DLOAD\nALL, P7, 1.\n", "ALL, P7, 1.", "P7", "P1 to P6");
+    inside("*DLOAD\nALL, P5, 1.\n", "ALL, P5, 1.", "ALL", "element 1 has no face 5");
     let turning = "ALL, CORIO, 1., 0., 0., 0., 0., 0., 1.";
     inside(&format!("*DLOAD\n{turning}\n"), turning, "CORIO", "GRAV");
     for (turning, word, part) in [

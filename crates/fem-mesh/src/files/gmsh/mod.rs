@@ -1,11 +1,12 @@
 //! Mesh files of Gmsh, format 4.1, text or binary, and edge lengths for its next mesh (feature `gmsh`).
 //!
 //! Triangles become tagged facets, tetrahedra the mesh, of order 2 if they have ten nodes; hexahedra, prisms and
-//! pyramids are [divided](crate::mesh::Division) into tetrahedra, quadrilaterals into triangles. Points and lines are
-//! skipped, and nodes that no tetrahedron uses are dropped. The tag of a facet is the physical group of its surface,
-//! the region of a tetrahedron that of its volume; if the file has no physical groups of that dimension, the numbers of
-//! the geometric entities are used, and surfaces between two volumes are skipped. Entities outside of the groups, if
-//! there are any groups, leave triangles untagged and give region 0.
+//! pyramids are [divided](crate::mesh::Division) into tetrahedra, quadrilaterals into triangles; those of order 1 need
+//! [`TetMesh::raise_order`] afterwards to bend as they did. Points and lines are skipped, and nodes that no tetrahedron
+//! uses are dropped. The tag of a facet is the physical group of its surface, the region of a tetrahedron that of its
+//! volume; if the file has no physical groups of that dimension, the numbers of the geometric entities are used, and
+//! surfaces between two volumes are skipped. Entities outside of the groups, if there are any groups, leave triangles
+//! untagged and give region 0.
 //!
 //! `reader` takes the file apart, `names` has the names of the groups, `sizes` writes.
 

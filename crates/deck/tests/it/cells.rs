@@ -1,0 +1,453 @@
+//! Hexahedra, prisms and pyramids: their faces, what is between their nodes, and what they are worth.
+
+use std::collections::BTreeSet;
+use std::fmt::Write as _;
+
+use signorini_contact::{Settings, Simulation, StepResult};
+use signorini_deck::Deck;
+use signorini_fem_mesh::mesh::CellShape;
+
+use crate::refusals::refused;
+use crate::write::{STEEL, read};
+
+/// Young's modulus and Poisson's ratio of [`STEEL`].
+const E: f64 = 2.1e5;
+const NU: f64 = 0.3;
+
+/// A box cut into cells of one kind.
+struct Grid {
+    kind: &'static str,
+    shape: CellShape,
+    /// Numbers of the deck and places.
+    points: Vec<(usize, [f64; 3])>,
+    /// Numbers of the nodes.
+    cells: Vec<Vec<usize>>,
+}
+
+const KINDS: [&str; 5] = ["C3D8", "C3D20", "C3D6", "C3D15", "C3D5"];
+
+impl Grid {
+    fn new(kind: &'static str, n: [usize; 3], size: [f64; 3]) -> Self {
+        let (shape, order) = match kind {
+            "C3D6" => (CellShape::Prism, 1),
+            "C3D15" => (CellShape::Prism, 2),
+            "C3D20" => (CellShape::Hexahedron, 2),
+            "C3D5" => (CellShape::Pyramid, 1),
+            _ => (CellShape::Hexahedron, 1),
+        };
+        let cube = [
+            [0, 0, 0],
+            [2, 0, 0],
+            [2, 2, 0],
+            [0, 2, 0],
+            [0, 0, 2],
+            [2, 0, 2],
+            [2, 2, 2],
+            [0, 2, 2],
+        ];
+        let corners: Vec<Vec<[usize; 3]>> = match shape {
+            CellShape::Prism => [[0, 1, 3, 4, 5, 7], [1, 2, 3, 5, 6, 7]]
+                .map(|cell| cell.map(|k| cube[k]).to_vec())
+                .to_vec(),
+            // between the middle and the sides
+            CellShape::Pyramid => {
+                let side = |face: &&[usize]| face.iter().map(|&k| cube[k]).chain([[1, 1, 1]]).collect();
+                CellShape::Hexahedron.faces().iter().map(side).collect()
+            }
+            _ => vec![cube.to_vec()],
+        };
+        let points_along = n.map(|n| 2 * n + 1);
+        let number = |p: [usize; 3]| 1 + (p[2] * points_along[1] + p[1]) * points_along[0] + p[0];
+        let mut cells = Vec::new();
+        for box_ in 0..n[0] * n[1] * n[2] {
+            let at = [box_ % n[0], box_ / n[0] % n[1], box_ / n[0] / n[1]];
+            for corners in &corners {
+                let corner = |k: usize| [0, 1, 2].map(|i| 2 * at[i] + corners[k][i]);
+                let mut nodes: Vec<usize> = (0..corners.len()).map(|k| number(corner(k))).collect();
+                if order == 2 {
+                    let middle = |&[a, b]: &[usize; 2]| number([0, 1, 2].map(|i| (corner(a)[i] + corner(b)[i]) / 2));
+                    nodes.extend(shape.edges().iter().map(middle));
+                }
+                cells.push(nodes);
+            }
+        }
+        let used: BTreeSet<usize> = cells.iter().flatten().copied().collect();
+        let place = |&number: &usize| {
+            let k = number - 1;
+            let p = [
+                k % points_along[0],
+                k / points_along[0] % points_along[1],
+                k / points_along[0] / points_along[1],
+            ];
+            (
+                number,
+                [0, 1, 2].map(|i| p[i] as f64 / (points_along[i] - 1) as f64 * size[i]),
+            )
+        };
+        let points = used.iter().map(place).collect();
+        Self {
+            kind,
+            shape,
+            points,
+            cells,
+        }
+    }
+
+    /// Nodes, elements in `ALL`, material and section.
+    fn text(&self) -> String {
+        let mut text = String::from("*NODE\n");
+        for (number, [x, y, z]) in &self.points {
+            writeln!(text, "{number}, {x:?}, {y:?}, {z:?}").expect("text");
+        }
+        writeln!(text, "*ELEMENT, TYPE={}, ELSET=ALL", self.kind).expect("text");
+        for (element, nodes) in (1..).zip(&self.cells) {
+            let nodes: Vec<String> = nodes.iter().map(usize::to_string).collect();
+            let lines: Vec<String> = nodes.chunks(12).map(|line| line.join(", ")).collect();
+            writeln!(text, "{element}, {}", lines.join(",\n")).expect("text");
+        }
+        text + STEEL
+    }
+
+    fn nodes(&self, on: impl Fn([f64; 3]) -> bool) -> Vec<usize> {
+        self.points.iter().filter(|p| on(p.1)).map(|p| p.0).collect()
+    }
+
+    /// A set of nodes.
+    fn nset(&self, name: &str, on: impl Fn([f64; 3]) -> bool) -> String {
+        let nodes: Vec<String> = self.nodes(on).iter().map(|n| format!("{n},\n")).collect();
+        format!("*NSET, NSET={name}\n{}", nodes.concat())
+    }
+
+    /// Elements and numbers of the faces whose corners are all at places.
+    fn faces(&self, on: impl Fn([f64; 3]) -> bool) -> Vec<(usize, usize)> {
+        let at = self.nodes(on);
+        let mut out = Vec::new();
+        for (element, nodes) in (1..).zip(&self.cells) {
+            for (number, face) in (1..).zip(self.shape.faces()) {
+                if face.iter().all(|&k| at.contains(&nodes[k])) {
+                    out.push((element, number));
+                }
+            }
+        }
+        out
+    }
+
+    fn surface(&self, name: &str, on: impl Fn([f64; 3]) -> bool) -> String {
+        let faces = self.faces(on).into_iter().map(|(e, n)| format!("{e}, S{n}\n"));
+        format!("*SURFACE, NAME={name}\n{}", faces.collect::<String>())
+    }
+}
+
+fn step(lines: &str) -> String {
+    format!("*STEP\n*STATIC\n1., 1.\n{lines}*END STEP\n")
+}
+
+fn at(value: f64, axis: usize) -> impl Fn([f64; 3]) -> bool + Copy {
+    move |x| (x[axis] - value).abs() < 1e-9
+}
+
+/// Runs a deck and looks at each step.
+fn run(text: &str, mut look: impl FnMut(&Deck, &StepResult)) {
+    let deck = read(text).expect("deck");
+    let mut simulation = Simulation::new(deck.scene().expect("scene"), Settings::default()).expect("simulation");
+    while !simulation.is_finished() {
+        let result = simulation.step().expect("solved");
+        result.require_converged().expect("converged");
+        look(&deck, &result);
+    }
+}
+
+/// All nodes, those between the nodes of the deck too, have the displacement that is exact.
+fn is_exact(deck: &Deck, result: &StepResult, exact: impl Fn([f64; 3]) -> [f64; 3], what: &str) {
+    let pairs = deck.mesh().points().iter().zip(result.displacement());
+    let largest = pairs
+        .clone()
+        .flat_map(|(x, _)| exact(*x))
+        .fold(0.0, |m: f64, u| m.max(u.abs()));
+    for (x, u) in pairs {
+        let off = exact(*x).iter().zip(u).fold(0.0, |m: f64, (e, u)| m.max((e - u).abs()));
+        assert!(
+            off < 2e-6 * largest,
+            "{what}: {x:?} moves by {u:?}, not {:?}",
+            exact(*x)
+        );
+    }
+}
+
+/// No rigid motion, for what needs no more.
+fn pinned(grid: &Grid, size: [f64; 3]) -> String {
+    let corner = |p: [f64; 3]| grid.nodes(move |x| (0..3).all(|i| (x[i] - p[i]).abs() < 1e-9))[0];
+    let [o, x, y] = [[0.0; 3], [size[0], 0.0, 0.0], [0.0, size[1], 0.0]].map(corner);
+    format!("*BOUNDARY\n{o}, 1, 3\n{x}, 2, 3\n{y}, 3, 3\n")
+}
+
+#[test]
+fn pressure_acts_on_each_face_by_its_number() {
+    let size = [2.0, 1.0, 1.5];
+    for kind in KINDS {
+        let grid = Grid::new(kind, [2, 1, 2], size);
+        let outside = (0..3).flat_map(|i| [(0.0, i), (size[i], i)]);
+        let faces: Vec<_> = outside.flat_map(|(value, axis)| grid.faces(at(value, axis))).collect();
+        let (mut surface, mut pressures) = (String::from("*SURFACE, NAME=SKIN\n"), String::from("*DLOAD\n"));
+        for (element, number) in faces {
+            writeln!(surface, "{element}, S{number}").expect("text");
+            writeln!(pressures, "{element}, P{number}, 40.").expect("text");
+        }
+        let by_surface = step("*DSLOAD\nSKIN, P, 40.\n");
+        for load in [by_surface, step(&pressures)] {
+            let text = grid.text() + &surface + &pinned(&grid, size) + &load;
+            let factor = -40.0 * (1.0 - 2.0 * NU) / E;
+            run(&text, |deck, result| {
+                is_exact(deck, result, |x| x.map(|x| factor * x), kind)
+            });
+        }
+    }
+}
+
+/// Faces are held as a whole, from the step on from which all of their nodes are.
+#[test]
+fn what_is_between_held_nodes_is_held() {
+    for kind in KINDS {
+        let grid = Grid::new(kind, [2, 2, 2], [1.0; 3]);
+        let sets = grid.nset("NALL", |_| true) + &grid.nset("TOP", at(1.0, 2)) + &grid.nset("BOTTOM", at(0.0, 2));
+        let warm = "*EXPANSION\n1e-5\n*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 0.\n";
+        let text = grid.text().replace("*SOLID SECTION", &format!("{warm}*SOLID SECTION"));
+        let (before, after) = text.split_once("*INITIAL").expect("a part");
+        let (initial, section) = after.split_once("*SOLID").expect("a part");
+        let text = format!("{before}*SOLID{section}{sets}*INITIAL{initial}");
+        let text = text
+            + &pinned(&grid, [1.0; 3])
+            + &step("*TEMPERATURE\nNALL, 100.\n")
+            + &step("*BOUNDARY\nTOP, 3\nBOTTOM, 3\n");
+        let mut steps = 0;
+        run(&text, |deck, result| {
+            let along = if steps == 0 { [1e-3; 3] } else { [1.3e-3, 1.3e-3, 0.0] };
+            is_exact(deck, result, |x| [0, 1, 2].map(|i| along[i] * x[i]), kind);
+            assert_eq!(deck.node_set("TOP").expect("a set"), top_nodes(deck), "{kind}");
+            steps += 1;
+        });
+        assert_eq!(steps, 2);
+    }
+}
+
+fn top_nodes(deck: &Deck) -> Vec<u32> {
+    let points = (0..).zip(deck.mesh().points());
+    points
+        .filter(|(_, x)| (x[2] - 1.0).abs() < 1e-9)
+        .map(|(n, _)| n)
+        .collect()
+}
+
+/// Displacements given node by node, and faces that follow one another.
+#[test]
+fn what_is_between_moved_nodes_moves_along() {
+    let affine = |[x, y, z]: [f64; 3]| [1e-3 * x + 2e-3 * y, 5e-4 * z - 1e-3 * y, 3e-3 * x - 2e-3 * z];
+    for kind in KINDS {
+        let grid = Grid::new(kind, [2, 2, 2], [1.0; 3]);
+        let mut moves = String::from("*BOUNDARY\n");
+        for (number, x) in grid
+            .points
+            .iter()
+            .filter(|p| p.1.iter().any(|x| *x == 0.0 || *x == 1.0))
+        {
+            for (component, value) in (1..).zip(affine(*x)) {
+                writeln!(moves, "{number}, {component}, {component}, {value:?}").expect("text");
+            }
+        }
+        let text = grid.text() + &step(&moves);
+        run(&text, |deck, result| is_exact(deck, result, affine, kind));
+
+        let mut text = grid.text() + "*NODE\n9001, 5.\n";
+        let (left, right) = (grid.nodes(at(0.0, 0)), grid.nodes(at(1.0, 0)));
+        for (a, b) in left.iter().zip(&right) {
+            for c in 1..=3 {
+                writeln!(text, "*EQUATION\n3\n{b}, {c}, 1., {a}, {c}, -1., 9001, {c}, -1.").expect("text");
+            }
+        }
+        // the corner, and what turns about x
+        let middle = grid.nodes(|x| x == [0.0, 0.0, 1.0])[0];
+        text += &format!("*BOUNDARY\n{}, 1, 3\n{middle}, 2\n", left[0]);
+        text += &step("*BOUNDARY\n9001, 1, 1, 1e-3\n9001, 2, 2, 4e-4\n9001, 3, 3, -6e-4\n");
+        // without shear
+        let exact = |[x, y, z]: [f64; 3]| {
+            [
+                1e-3 * x - 4e-4 * y + 6e-4 * z,
+                4e-4 * x - NU * 1e-3 * y,
+                -6e-4 * x - NU * 1e-3 * z,
+            ]
+        };
+        run(&text, |deck, result| is_exact(deck, result, exact, kind));
+    }
+}
+
+/// The tip of a beam under a force: cells of second order are what CalculiX has, those of first order are worth as much.
+#[test]
+fn cells_bend_as_those_of_second_order() {
+    // CalculiX with these elements; with fine ones -0.190475
+    for (kind, reference, error) in [
+        ("C3D20", -0.188_063, 6e-3),
+        ("C3D15", -0.188_050, 8e-3),
+        ("C3D8", -0.190_475, 0.02),
+        ("C3D6", -0.190_475, 0.02),
+        ("C3D5", -0.190_475, 0.02),
+    ] {
+        let grid = Grid::new(kind, [10, 1, 1], [10.0, 1.0, 1.0]);
+        let text = grid.text() + &grid.nset("FIX", at(0.0, 0)) + &grid.surface("TIP", at(10.0, 0));
+        let text = text + "*BOUNDARY\nFIX, 1, 3\n" + &step("*DSLOAD\nTIP, TRVEC, 10., 0., 0., -1.\n");
+        run(&text, |deck, result| {
+            let tip = grid
+                .nodes(at(10.0, 0))
+                .into_iter()
+                .map(|n| deck.node(n as u32).expect("a node") as usize);
+            let found: Vec<f64> = tip.map(|n| result.displacement()[n][2]).collect();
+            let found = found.iter().sum::<f64>() / found.len() as f64;
+            assert!((found / reference - 1.0).abs() < error, "{kind}: {found}");
+            assert_eq!(deck.mesh().order(), 2);
+        });
+    }
+}
+
+/// A bolt is cut at faces of cells, and the nodes between these too.
+#[test]
+fn sections_cut_between_cells() {
+    for kind in ["C3D8", "C3D20", "C3D6", "C3D15"] {
+        let grid = Grid::new(kind, [1, 1, 4], [1.0, 1.0, 4.0]);
+        let below = grid
+            .faces(at(2.0, 2))
+            .into_iter()
+            .filter(|f| f.0 <= grid.cells.len() / 2);
+        let cut: String = below.map(|(e, n)| format!("{e}, S{n}\n")).collect();
+        let text = grid.text()
+            + "*NODE\n9001, 5.\n"
+            + &grid.nset("ENDS", |x| x[2] == 0.0 || x[2] == 4.0)
+            + &grid.nset("X0", at(0.0, 0))
+            + &grid.nset("Y0", at(0.0, 1))
+            + &format!("*SURFACE, NAME=CUT\n{cut}*PRE-TENSION SECTION, SURFACE=CUT, NODE=9001\n")
+            + "*BOUNDARY\nENDS, 3\nX0, 1\nY0, 2\n"
+            + &step("*CLOAD\n9001, 1, 1000.\n");
+        run(&text, |deck, result| {
+            let moved = result.couplings()[0].displacement[2].abs();
+            assert!((moved / (1000.0 * 4.0 / E) - 1.0).abs() < 1e-6, "{kind}: {moved}");
+            let half = |x: [f64; 3], u: &[f64; 3]| {
+                let strain = 1000.0 / E;
+                let is_below = x[2] < 2.0 || x[2] == 2.0 && u[2] > 0.0;
+                let side = if is_below { x[2] } else { x[2] - 4.0 };
+                (u[0] + NU * strain * x[0]).abs() + (u[2] - strain * side).abs()
+            };
+            let off = deck
+                .mesh()
+                .points()
+                .iter()
+                .zip(result.displacement())
+                .map(|(x, u)| half(*x, &u));
+            let off = off.fold(0.0, f64::max);
+            assert!(off < 1e-7, "{kind}: {off:e}");
+        });
+    }
+}
+
+/// A rigid plate of cells: its side presses back as an elastic one would that is stiff.
+#[test]
+fn rigid_cells_are_obstacles() {
+    for (kind, plate) in [("C3D20", "C3D8"), ("C3D8", "C3D20"), ("C3D15", "C3D6")] {
+        let grid = Grid::new(kind, [2, 2, 1], [1.0; 3]);
+        let below = Grid::new(plate, [1, 1, 1], [3.0, 3.0, 1.0]);
+        let mut text = grid.text() + &grid.surface("FOOT", at(0.0, 2)) + &grid.surface("HEAD", at(1.0, 2)) + "*NODE\n";
+        for (number, [x, y, z]) in &below.points {
+            writeln!(text, "{}, {:?}, {:?}, {:?}", number + 1000, x - 1.0, y - 1.0, z - 1.0).expect("text");
+        }
+        writeln!(text, "*ELEMENT, TYPE={plate}, ELSET=PLATE").expect("text");
+        for (element, nodes) in (1001..).zip(&below.cells) {
+            let nodes: Vec<String> = nodes.iter().map(|n| (n + 1000).to_string()).collect();
+            let lines: Vec<String> = nodes.chunks(12).map(|line| line.join(", ")).collect();
+            writeln!(text, "{element}, {}", lines.join(",\n")).expect("text");
+        }
+        let top = below
+            .faces(at(1.0, 2))
+            .into_iter()
+            .map(|(e, n)| format!("{}, S{n}\n", e + 1000));
+        text += &format!(
+            "*SURFACE, NAME=TABLE\n{}*NODE\n9001, 0., 0., -9.\n",
+            top.collect::<String>()
+        );
+        text += "*RIGID BODY, ELSET=PLATE, REF NODE=9001\n*BOUNDARY\n9001, 1, 6\n";
+        text += "*SURFACE INTERACTION, NAME=I\n*FRICTION\n0.5,\n*CONTACT PAIR, INTERACTION=I\nFOOT, TABLE\n";
+        text += &step("*DSLOAD\nHEAD, P, 50.\n");
+        run(&text, |_, result| {
+            let force = result.reactions().contacts[0].force;
+            assert!((force[2] - 50.0).abs() < 1e-5, "{kind} on {plate}: {force:?}");
+        });
+    }
+}
+
+/// Sets, numbers and marks are those of the deck.
+#[test]
+fn names_and_numbers_stay() {
+    let grid = Grid::new("C3D20", [2, 1, 1], [2.0, 1.0, 1.0]);
+    let corners = |nodes: &[usize]| {
+        grid.shape.faces()[1]
+            .iter()
+            .map(|&k| nodes[k].to_string())
+            .collect::<Vec<_>>()
+    };
+    let mark = corners(&grid.cells[0]).join(", ");
+    let text = grid.text()
+        + &format!("*ELEMENT, TYPE=CPS4, ELSET=LID\n501, {mark}\n*SURFACE, NAME=BY_MARK\nLID\n")
+        + "*SURFACE, NAME=BY_NUMBER\n1, S2\n*ELSET, ELSET=SECOND\n2\n*SURFACE, NAME=WHOLE\nSECOND\n"
+        + &grid.nset("ABOVE", |x| x[2] == 1.0 && x[0] <= 1.0)
+        + "*SURFACE, NAME=BY_NODES, TYPE=NODE\nABOVE\n";
+    let deck = read(&text).expect("deck");
+    let facets = |name: &str| {
+        let tags = deck.surface(name).expect("a surface");
+        deck.mesh().facets().iter().filter(|f| tags.contains(&f.tag)).count()
+    };
+    assert_eq!(["BY_MARK", "BY_NUMBER", "BY_NODES", "WHOLE"].map(facets), [2, 2, 2, 10]);
+    assert_eq!(
+        deck.surface("BY_MARK").expect("a surface"),
+        deck.surface("BY_NODES").expect("a surface")
+    );
+    assert_eq!(deck.element_set("SECOND").expect("a set"), [6, 7, 8, 9, 10, 11]);
+    assert_eq!(deck.element_numbers(), [[1; 6], [2; 6]].concat());
+    assert_eq!(deck.mesh().points().len(), 45);
+    // the middle of the face above is in its set, and has the number of a neighbour
+    let above = deck.node_set("ABOVE").expect("a set");
+    assert_eq!(above.len(), 9);
+    let added = above[8] as usize;
+    assert_eq!(deck.mesh().points()[added], [0.5, 0.5, 1.0]);
+    assert_ne!(deck.node(deck.node_numbers()[added]), Some(added as u32));
+    assert!(deck.ignored().iter().all(|ignored| !ignored.why.contains("too stiff")));
+
+    let coarse = read(&Grid::new("C3D8", [1; 3], [1.0; 3]).text()).expect("deck");
+    assert!(
+        coarse.ignored()[0].why.contains("19 nodes more"),
+        "{}",
+        coarse.ignored()[0]
+    );
+}
+
+#[test]
+fn wrong_cells_are_refused() {
+    let hexahedron = Grid::new("C3D8", [1; 3], [1.0; 3]).text();
+    let prism = Grid::new("C3D6", [1; 3], [1.0; 3]).text();
+    let try_one = |text: String, line: &str, word: &str, part: &str| refused(&text, line, word, part);
+    let element = "1, 1, 3, 9, 7, 19, 21, 27, 25";
+    let turned = hexahedron.replace(element, "1, 19, 21, 27, 25, 1, 3, 9, 7");
+    try_one(turned, "1, 19, 21, 27, 25, 1, 3, 9, 7", "1", "turned inside out");
+    let short = hexahedron.replace(element, "1, 1, 3, 9, 7, 19, 21, 27");
+    try_one(
+        short,
+        "1, 1, 3, 9, 7, 19, 21, 27",
+        "1, 1, 3, 9, 7, 19, 21, 27",
+        "eight node numbers",
+    );
+    let face = "*SURFACE, NAME=A\nALL, S6\n";
+    try_one(prism + face, "ALL, S6", "ALL", "element 1 has no face 6");
+    assert!(read(&(hexahedron.clone() + face)).is_ok());
+    let second = "*ELEMENT, TYPE=C3D10\n9, 1, 3, 9, 19, 1, 1, 1, 1, 1, 1\n";
+    try_one(
+        hexahedron + second,
+        "9, 1, 3, 9, 19, 1, 1, 1, 1, 1, 1",
+        "9",
+        "in one order",
+    );
+}
