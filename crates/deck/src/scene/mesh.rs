@@ -8,7 +8,7 @@ use signorini_contact::{ContactError, Part};
 use signorini_fem_mesh::internal::{EDGES, Lists, TET_FACES, distinct};
 use signorini_fem_mesh::mesh::{Cell, CellShape, Division};
 use signorini_fem_mesh::vec3::{add, area_vector, scale, sub, tet_volume};
-use signorini_fem_mesh::{Facet, TetMesh};
+use signorini_fem_mesh::{Facet, MeshError, TetMesh};
 
 use super::numbers::{Numbers, Sets};
 use super::rigid::RigidBodies;
@@ -86,8 +86,13 @@ impl Raw {
             Some(_) => Division::raised(&mut points, &whole),
             None => Division::new(&mut points, &whole),
         };
-        let path = path.to_owned();
-        let division = division.map_err(|source| DeckError::Mesh { path, source })?;
+        let division = division.map_err(|source| match source {
+            MeshError::CellFlat { cell } => model.elements[positions[cell] as usize].word().fault(Fault::Volume),
+            source => DeckError::Mesh {
+                path: path.to_owned(),
+                source,
+            },
+        })?;
         if let Some(element) = coarse {
             let why = format!(
                 "the elements of first order become quadratic tetrahedra with {} nodes more on their edges: linear ones would \

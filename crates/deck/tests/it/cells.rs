@@ -433,6 +433,8 @@ fn wrong_cells_are_refused() {
     let element = "1, 1, 3, 9, 7, 19, 21, 27, 25";
     let turned = hexahedron.replace(element, "1, 19, 21, 27, 25, 1, 3, 9, 7");
     try_one(turned, "1, 19, 21, 27, 25, 1, 3, 9, 7", "1", "turned inside out");
+    let flat = "1, 1, 3, 9, 9, 1, 3, 9, 9";
+    try_one(hexahedron.replace(element, flat), flat, "1", "no volume");
     let short = hexahedron.replace(element, "1, 1, 3, 9, 7, 19, 21, 27");
     try_one(
         short,

@@ -10,10 +10,10 @@ use std::ops::Range;
 use crate::tables::{Lists, ascending};
 use crate::vec3::{Vec3, add, scale};
 
-use super::cells::{Cell, CellShape, EDGES, TET_FACES};
+use super::cells::{Cell, EDGES, TET_FACES};
 use super::error::MeshError;
 
-/// Cells divided into tetrahedra.
+/// Cells divided into tetrahedra. Corners of a cell may be one node, as those of a hexahedron that stands for a prism.
 ///
 /// ```
 /// use signorini_fem_mesh::TetMesh;
@@ -46,14 +46,14 @@ impl Division {
     ///
     /// # Errors
     /// [`MeshError::CellNodes`] for a number of nodes that a cell does not take, [`MeshError::CellNode`] for a node that
-    /// there is not, [`MeshError::MixedOrder`] for cells with and without nodes on their edges, [`MeshError::TooLarge`]
-    /// for more nodes or tetrahedra than can be numbered.
+    /// there is not, [`MeshError::CellFlat`] for too many corners that are one, [`MeshError::MixedOrder`] for cells with and
+    /// without nodes on their edges, [`MeshError::TooLarge`] for more nodes or tetrahedra than can be numbered.
     pub fn new(points: &mut Vec<[f64; 3]>, cells: &[Cell<'_>]) -> Result<Self, MeshError> {
         Self::of(points, cells, false)
     }
 
     /// The same into quadratic tetrahedra: cells without nodes on their edges get them, and those inside. Linear
-    /// tetrahedra are far stiffer in bending than the cells that they fill, quadratic ones softer.
+    /// tetrahedra are far stiffer in bending than the cells that they fill; quadratic ones are not.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -91,8 +91,11 @@ impl Division {
             first: points.len() as u32,
             known: HashMap::new(),
         };
-        for cell in cells {
+        for (number, cell) in cells.iter().enumerate() {
             out.add(cell, raised || first == 2, &mut inside);
+            if out.of_cell[number].is_empty() {
+                return Err(MeshError::CellFlat { cell: number });
+            }
             super::check::numbered("nodes", points.len() + out.added.count())?;
             super::check::numbered("tetrahedra", out.tets.len())?;
         }
@@ -111,7 +114,7 @@ impl Division {
     fn add(&mut self, cell: &Cell, quadratic: bool, inside: &mut Inside) {
         let start = self.tets.len() as u32;
         for tet in cell.tetrahedra() {
-            self.tets.push(tet.map(|k| cell.nodes[k]));
+            self.tets.push(tet);
             self.faces
                 .push(TET_FACES.map(|face| cell.face_of(face.map(|k| tet[k]))));
             if quadratic {
@@ -133,28 +136,39 @@ struct Inside {
 }
 
 impl Cell<'_> {
-    /// Corners of its tetrahedra.
-    fn tetrahedra(&self) -> Vec<[usize; 4]> {
-        if self.shape == CellShape::Tetrahedron {
-            return vec![[0, 1, 2, 3]];
+    /// Corners of its tetrahedra; a corner that is there more than once makes them fewer.
+    fn tetrahedra(&self) -> Vec<[u32; 4]> {
+        let corners = &self.nodes[..self.shape.corners()];
+        if let &[a, b, c, d] = corners {
+            return vec![[a, b, c, d]];
         }
-        let tip = (0..self.shape.corners()).min_by_key(|&k| self.nodes[k]).unwrap_or(0);
-        let far = self.shape.faces().iter().filter(|face| !face.contains(&tip));
-        let triangles = far.flat_map(|face| triangles(face, |k| self.nodes[k]));
-        triangles.map(|[a, b, c]| [a, b, c, tip]).collect()
+        let tip = corners.iter().copied().min().unwrap_or(0);
+        let far = self.shape.faces().iter().filter(|face| !self.has(face, tip));
+        let triangles = far.flat_map(|face| divide_face(&self.corners(face)).collect::<Vec<_>>());
+        let is_whole = |[a, b, c]: &[u32; 3]| a != b && b != c && c != a;
+        triangles.filter(is_whole).map(|[a, b, c]| [a, b, c, tip]).collect()
+    }
+
+    fn corners(&self, of: &[usize]) -> Vec<u32> {
+        of.iter().map(|&k| self.nodes[k]).collect()
+    }
+
+    /// Whether a node is among some corners.
+    fn has(&self, corners: &[usize], node: u32) -> bool {
+        corners.iter().any(|&k| self.nodes[k] == node)
     }
 
     /// The face, from 1, that has three corners; 0 if there is none.
-    fn face_of(&self, corners: [usize; 3]) -> u8 {
-        let has = |face: &&[usize]| corners.iter().all(|k| face.contains(k));
+    fn face_of(&self, corners: [u32; 3]) -> u8 {
+        let has = |face: &&[usize]| corners.iter().all(|node| self.has(face, *node));
         let found = self.shape.faces().iter().position(has);
         found.map_or(0, |face| face as u8 + 1)
     }
 
     /// Node in the middle of an edge of a tetrahedron.
-    fn on_edge(&self, edge: [usize; 2], inside: &mut Inside, added: &mut Lists<(u32, f64)>) -> u32 {
+    fn on_edge(&self, edge: [u32; 2], inside: &mut Inside, added: &mut Lists<(u32, f64)>) -> u32 {
         let (corners, edges) = (self.shape.corners(), self.shape.edges());
-        let is_between = |corners: &[usize]| edge.iter().all(|k| corners.contains(k));
+        let is_between = |corners: &[usize]| edge.iter().all(|node| self.has(corners, *node));
         let own = edges.iter().position(|ends| is_between(ends));
         let face = self.shape.quadrilaterals().position(is_between);
         let inner = self.nodes.get(corners + edges.len()..).unwrap_or(&[]);
@@ -166,8 +180,7 @@ impl Cell<'_> {
         if let Some(&node) = given {
             return node;
         }
-        let ends = edge.map(|k| self.nodes[k]);
-        *inside.known.entry(ascending(ends)).or_insert_with(|| {
+        *inside.known.entry(ascending(edge)).or_insert_with(|| {
             let around = match (own, face) {
                 (Some(own), _) => Some(&edges[own][..]),
                 (None, Some(face)) => self.shape.quadrilaterals().nth(face),
@@ -185,18 +198,14 @@ impl Cell<'_> {
     }
 }
 
-/// A face as triangles of the same orientation, one of four corners cut from that of the smallest number.
-fn triangles<T: Copy, K: Ord>(face: &[T], number: impl Fn(T) -> K) -> impl Iterator<Item = [T; 3]> {
-    let smallest = (0..face.len()).min_by_key(|&k| number(face[k]));
-    // a triangle stays as it is
-    let first = smallest.filter(|_| face.len() > 3).unwrap_or(0);
-    let at = move |k: usize| face[(first + k) % face.len()];
-    (2..face.len()).map(move |k| [at(0), at(k - 1), at(k)])
-}
-
-/// The triangles, of the same orientation, into which a division cuts a face, given by its corners.
+/// The triangles, of the same orientation, into which a division cuts a face, given by its corners: a quadrilateral is cut
+/// from that of the smallest number.
 pub fn divide_face(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
-    triangles(corners, |n| n)
+    let smallest = (0..corners.len()).min_by_key(|&k| corners[k]);
+    // a triangle stays as it is
+    let first = smallest.filter(|_| corners.len() > 3).unwrap_or(0);
+    let at = move |k: usize| corners[(first + k) % corners.len()];
+    (2..corners.len()).map(move |k| [at(0), at(k - 1), at(k)])
 }
 
 /// Shape functions in the middle of an edge, a face or a hexahedron: at its corners, and at the nodes on its edges.

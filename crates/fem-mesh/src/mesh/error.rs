@@ -67,6 +67,8 @@ errors! {
         CellNodes { cell: usize, shape: CellShape, nodes: usize } =
             "cell {cell} is a {shape:?} of {nodes} nodes; give its {} corners, and for one of second order a node on each edge, \
             and then none or one in each face of four corners and in the middle of a hexahedron", shape.corners();
+        CellFlat { cell: usize } =
+            "cell {cell} has no volume: too many of its corners are one node; remove it, or repair its connectivity";
         CellNode { cell: usize, node: u32, nodes: usize } =
             "cell {cell} names node {node}, but there are only {nodes} nodes, numbered from 0; look for a table numbered from 1";
         NoCut = "no face lies between tetrahedra of the first side of the cut and of the other; check what tells the sides";

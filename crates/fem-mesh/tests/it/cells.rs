@@ -156,6 +156,46 @@ proptest! {
     }
 }
 
+/// Hexahedra with corners that are one node are the prisms that they look like.
+#[test]
+fn collapsed_hexahedra() {
+    const CORNERS: [usize; 8] = [0, 1, 2, 2, 3, 4, 5, 5];
+    for order in [1, 2] {
+        let (points, prisms) = cells([2, 2, 2], true, order, &[5, 1, 7, 3, 3, 8]);
+        let collapsed = |nodes: &Vec<u32>| {
+            let mut out: Vec<u32> = CORNERS.iter().map(|&k| nodes[k]).collect();
+            if order == 2 {
+                let mid = |ends: &[usize; 2]| {
+                    let ends = ends.map(|k| CORNERS[k]);
+                    let is = |edge: &[usize; 2]| edge.iter().all(|k| ends.contains(k));
+                    let edge = CellShape::Prism.edges().iter().position(is);
+                    edge.map_or(nodes[ends[0]], |edge| nodes[6 + edge])
+                };
+                out.extend(CellShape::Hexahedron.edges().iter().map(mid));
+            }
+            (CellShape::Hexahedron, out)
+        };
+        let hexahedra: Vec<OwnCell> = prisms.iter().map(|(_, nodes)| collapsed(nodes)).collect();
+        let [mut first, mut second] = [points.clone(), points];
+        let [plain, other] = [divide(&mut first, &prisms), divide(&mut second, &hexahedra)];
+        let sorted = |division: &Division| {
+            let mut tets = division.tets.clone();
+            tets.iter_mut().for_each(|tet| tet.sort_unstable());
+            tets.sort_unstable();
+            tets
+        };
+        assert_eq!((sorted(&plain), first.len()), (sorted(&other), second.len()));
+        let [plain, other] = [(first, plain), (second, other)].map(|(points, own)| mesh(points, &own).unwrap());
+        let sorted = |mesh: &TetMesh| {
+            let mut points = mesh.points().to_vec();
+            points.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            points
+        };
+        assert_eq!(sorted(&plain), sorted(&other));
+        assert!((other.total_volume() - 1.0).abs() < 1e-12);
+    }
+}
+
 #[test]
 fn wrong_cells() {
     let mut points = vec![[0.0; 3]; 8];
@@ -177,6 +217,10 @@ fn wrong_cells() {
         shape: CellShape::Hexahedron,
         nodes: &nodes,
     };
+    assert!(matches!(
+        error(CellShape::Hexahedron, &[0, 1, 2, 2, 0, 1, 2, 2]),
+        MeshError::CellFlat { cell: 0 }
+    ));
     let ten = [0, 1, 2, 3, 4, 5, 6, 7, 0, 1];
     let second = Cell {
         shape: CellShape::Tetrahedron,
