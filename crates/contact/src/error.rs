@@ -37,6 +37,10 @@ impl ContactError {
         let error = Self::Setting { name, value, range };
         good.then_some(()).ok_or(error)
     }
+
+    pub(crate) fn coupling(coupling: usize, node: Option<u32>, reason: &'static str) -> Self {
+        Self::Coupling { coupling, node, reason }
+    }
 }
 
 signorini_fem_mesh::errors! {

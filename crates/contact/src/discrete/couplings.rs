@@ -63,10 +63,7 @@ impl Couplings {
                 // not far from them, wherever it is said to be
                 true => scale(1.0 / places.len() as f64, places.iter().copied().fold([0.0; 3], add)),
             };
-            let refuse = |node, reason| {
-                let coupling = index;
-                Err(ContactError::Coupling { coupling, node, reason })
-            };
+            let refuse = |node, reason| Err(ContactError::coupling(index, node, reason));
             let motions = || coupling.motions.iter().flat_map(|m| m.0.iter().zip(&coupling.held));
             let Some(axes) = axes(coupling) else {
                 return refuse(
@@ -181,7 +178,7 @@ impl Couplings {
     /// Nodes of a coupling, ascending; of a relative one those of both sides, of a point any that are not on a line.
     fn nodes_of(&mut self, scene: &Scene, coupling: usize) -> Result<Vec<u32>, ContactError> {
         let count = scene.mesh.points().len();
-        let refuse = |node, reason| ContactError::Coupling { coupling, node, reason };
+        let refuse = |node, reason| ContactError::coupling(coupling, node, reason);
         match &scene.couplings[coupling].coupled {
             Coupled::Nodes(Place::Tag(tag)) => match scene.mesh.nodes_on(*tag) {
                 nodes if nodes.is_empty() => Err(scene.unknown_tag("coupling", coupling, *tag)),
@@ -259,11 +256,7 @@ impl Couplings {
             {
                 let reason = "what it could touch is rigid or held, too, so that no contact force is determined; leave \
                     the nodes that may touch out of the coupling";
-                return Err(ContactError::Coupling {
-                    coupling,
-                    node: Some(node),
-                    reason,
-                });
+                return Err(ContactError::coupling(coupling, Some(node), reason));
             }
         }
         Ok(())
@@ -297,11 +290,7 @@ impl Couplings {
             if let (Some(node), Some(_)) = (rubs(&tied.side), rubs(partner)) {
                 let reason = "both sides of the cut touch obstacles with friction there, and how they share the force is not \
                     determined; cut the body where it touches nothing, or leave one side out of the contact";
-                return Err(ContactError::Coupling {
-                    coupling,
-                    node: Some(node),
-                    reason,
-                });
+                return Err(ContactError::coupling(coupling, Some(node), reason));
             }
         }
         let nodes = scene.mesh.points().len();
@@ -315,11 +304,7 @@ impl Couplings {
             if !stays(scene, (coupling, &self.axes[index]), (node, extent), direction) {
                 let reason = "supports hold both sides in a direction in which they may move relative to each other; \
                     leave the nodes of one side out of the supports, or let the coupling hold this motion at zero";
-                return Err(ContactError::Coupling {
-                    coupling: index,
-                    node: Some(node),
-                    reason,
-                });
+                return Err(ContactError::coupling(index, Some(node), reason));
             }
         }
         Ok(())

@@ -18,11 +18,11 @@ pub(super) fn check_point(scene: &Scene, index: usize) -> Result<(), ContactErro
     });
     match turned || moments {
         false => Ok(()),
-        true => Err(ContactError::Coupling {
-            coupling: index,
-            node: None,
-            reason: "a point has no rotations, and takes no moments; give it displacements and forces",
-        }),
+        true => Err(ContactError::coupling(
+            index,
+            None,
+            "a point has no rotations, and takes no moments; give it displacements and forces",
+        )),
     }
 }
 
@@ -104,11 +104,11 @@ pub(super) fn idle(scene: &Scene, index: usize, axes: &[Vec3; 3]) -> Result<Vec<
     });
     match pushed {
         false => Ok(idle),
-        true => Err(ContactError::Coupling {
-            coupling: index,
-            node: None,
-            reason: "a load pushes the point in a direction of which no equation says anything, so that it acts on \
+        true => Err(ContactError::coupling(
+            index,
+            None,
+            "a load pushes the point in a direction of which no equation says anything, so that it acts on \
                 nothing; give it an equation, or leave the load out",
-        }),
+        )),
     }
 }

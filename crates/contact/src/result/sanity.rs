@@ -90,22 +90,20 @@ pub(crate) fn warnings(
     let mesh = &model.scene.mesh;
     let u = model.tfeti.nodal_mean(&recovered.torn);
     let mut out = Vec::new();
-    if !known
-        .iter()
-        .any(|w| matches!(w.plain(), Warning::LargeDisplacement { .. }))
-    {
+    let is_new = |kind: fn(&Warning) -> bool| !known.iter().any(|w| kind(w.plain()));
+    if is_new(|w| matches!(w, Warning::LargeDisplacement { .. })) {
         out.extend(large_displacement(mesh, lengths, &u, step));
     }
-    if !known.iter().any(|w| matches!(w.plain(), Warning::LargeRotation { .. })) {
+    if is_new(|w| matches!(w, Warning::LargeRotation { .. })) {
         out.extend(large_rotation(mesh, lengths, &u, step));
     }
-    if !known.iter().any(|w| matches!(w.plain(), Warning::LargeStrain { .. })) {
+    if is_new(|w| matches!(w, Warning::LargeStrain { .. })) {
         out.extend(large_strain(mesh, lengths, &u, step));
     }
-    if !known.iter().any(|w| matches!(w.plain(), Warning::LongSlip { .. })) {
+    if is_new(|w| matches!(w, Warning::LongSlip { .. })) {
         out.extend(long_slip(model, lengths, recovered, step));
     }
-    if !known.iter().any(|w| matches!(w.plain(), Warning::TurnedNormal { .. })) {
+    if is_new(|w| matches!(w, Warning::TurnedNormal { .. })) {
         out.extend(turned_normal(model, recovered, &u, step));
     }
     out
