@@ -8,7 +8,7 @@
 //! | `brick` | the benchmark of the paper's section 6: table beside the paper's, pictures, files |
 //! | `frictionless` | the same brick, static and without friction, product by product |
 //! | `bodies` | two elastic bodies: a pad pressed on a rail and pulled along it |
-//! | `calculix` | the static brick as a deck, beside CalculiX where it is installed |
+//! | `calculix` | the static brick and a beam of all elements as decks, beside CalculiX where it is installed |
 //! | `cases` | published problems with known answers, on meshes that do not match |
 //! | `parts` | real parts on meshes of Gmsh, cut by the library |
 //! | `accuracy` | error against products and time |

@@ -7,7 +7,7 @@ mod accuracy;
 mod bodies;
 #[path = "../../examples/brick/main.rs"]
 mod brick;
-#[path = "../../examples/calculix.rs"]
+#[path = "../../examples/calculix/main.rs"]
 mod calculix;
 #[path = "../../examples/cases/main.rs"]
 mod cases;

@@ -5,6 +5,7 @@ use signorini_studies::brick::LIMITS;
 use signorini_studies::record::RunRecord;
 
 use crate::bodies::{self, BodiesOptions, COEFFICIENT};
+use crate::calculix::beam::LIMIT;
 use crate::calculix::{self, CalculixOptions};
 use crate::frictionless::{self, FrictionlessOptions};
 use crate::order::{self, OrderOptions};
@@ -216,11 +217,12 @@ fn a_bracket_of_wanted_sizes_moves_as_it_must() {
 #[test]
 fn decks_beside_calculix_are_the_static_brick() {
     let line = format!(
-        "calculix --linear 4 --quadratic 2 --ccx no-such-program --out {}",
+        "calculix --linear 4 --quadratic 2 --beam 1 --ccx no-such-program --out {}",
         folder("calculix").display()
     );
     let mut out = Vec::new();
-    let rows = calculix::execute(&options::<CalculixOptions>(&line), &mut out).expect("run");
+    let (rows, beams) = calculix::execute(&options::<CalculixOptions>(&line), &mut out).expect("run");
+    assert!(beams.iter().all(|beam| beam.calculix.is_none()));
     assert!(
         String::from_utf8(out)
             .expect("text")
@@ -241,8 +243,18 @@ fn decks_beside_calculix_are_the_static_brick() {
 /// The only other code that is run here; nothing is tested where it is not installed.
 #[test]
 fn calculix_finds_the_same_forces_for_the_same_law() {
-    let line = format!("calculix --linear 4 --quadratic 2 --out {}", folder("ccx").display());
-    let rows = calculix::execute(&options::<CalculixOptions>(&line), &mut Vec::new()).expect("run");
+    let line = format!(
+        "calculix --linear 4 --quadratic 2 --beam 2 --out {}",
+        folder("ccx").display()
+    );
+    let (rows, beams) = calculix::execute(&options::<CalculixOptions>(&line), &mut Vec::new()).expect("run");
+    for beam in &beams {
+        assert_close(beam.own, LIMIT, 0.01);
+        // elements of second order are worth the same in both
+        if let (Some(other), "C3D20" | "C3D15") = (beam.calculix, beam.kind) {
+            assert_close(beam.own, other, 0.003);
+        }
+    }
     let find = |own: bool, name: &str| rows.iter().find(|r| r.own == own && r.law.name == name && r.order == 1);
     for (own, other) in [
         ("exact", "mortar"),

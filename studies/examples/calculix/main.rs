@@ -1,6 +1,9 @@
-//! The static brick on its floor beside CalculiX: the same decks for both codes; `--help` lists the options.
+//! The static brick on its floor, and a beam of all kinds of elements, beside CalculiX: the same decks for both codes;
+//! `--help` lists the options.
 //!
 //! Needs `ccx` (Debian: `apt-get install calculix-ccx`); without it only this library runs.
+
+pub mod beam;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -9,6 +12,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode, Stdio};
 use std::time::{Duration, Instant};
 
+use beam::Beam;
 use clap::Parser;
 use signorini::deck::Deck;
 use signorini::fem_mesh::vec3::{area_vector, norm};
@@ -30,7 +34,7 @@ const MEGAPASCALS: f64 = 1e-6;
 #[derive(Debug, Clone, PartialEq, Parser)]
 #[command(
     name = "calculix",
-    about = "The static brick beside CalculiX: the same decks, forces and times"
+    about = "The static brick and a beam beside CalculiX: the same decks, forces and times"
 )]
 pub struct CalculixOptions {
     /// Meshes of linear tetrahedra, cells a metre.
@@ -39,6 +43,9 @@ pub struct CalculixOptions {
     /// Meshes of quadratic tetrahedra, cells a metre.
     #[arg(long, value_delimiter = ',', default_value = "2,4", value_parser = positive)]
     pub quadratic: Vec<usize>,
+    /// Beams of hexahedra and prisms, cells across.
+    #[arg(long, value_delimiter = ',', default_value = "1,2,4", value_parser = positive)]
+    pub beam: Vec<usize>,
     /// Program of CalculiX.
     #[arg(long, default_value = "ccx")]
     pub ccx: PathBuf,
@@ -130,7 +137,7 @@ fn main() -> ExitCode {
 }
 
 /// Writes the decks, runs both codes and prints the table.
-pub fn execute(options: &CalculixOptions, out: &mut impl Write) -> Result<Vec<Row>, Failure> {
+pub fn execute(options: &CalculixOptions, out: &mut impl Write) -> Result<(Vec<Row>, Vec<Beam>), Failure> {
     let pool = pool(options.threads)?;
     let found = Command::new(&options.ccx)
         .arg("-v")
@@ -186,6 +193,7 @@ pub fn execute(options: &CalculixOptions, out: &mut impl Write) -> Result<Vec<Ro
             }
         }
     }
+    let beams = beams(options, found)?;
     write!(out, "{}", table(&rows))?;
     let [normal, friction] = LIMITS;
     writeln!(
@@ -193,6 +201,31 @@ pub fn execute(options: &CalculixOptions, out: &mut impl Write) -> Result<Vec<Ro
         "errors beside the limits {normal:e} and {friction:e} N of fine meshes; decks: {}",
         options.out.display()
     )?;
+    write!(out, "\n{}", beam::table(&beams))?;
+    writeln!(
+        out,
+        "errors of the end of a beam beside {} mm of fine meshes",
+        beam::LIMIT
+    )?;
+    Ok((rows, beams))
+}
+
+fn beams(options: &CalculixOptions, found: bool) -> Result<Vec<Beam>, Failure> {
+    let mut rows = Vec::new();
+    for &cells in &options.beam {
+        for (kind, shape, order) in beam::KINDS {
+            let beam = beam::Cells::new((shape, order), cells);
+            let path = options.out.join(format!("beam-{cells}-{kind}.inp"));
+            save(&path, &beam.deck(kind)?)?;
+            let printed = if found { run(options, &path)? } else { None };
+            rows.push(Beam {
+                kind,
+                cells,
+                own: beam.solve(&path)?,
+                calculix: printed.and_then(|text| beam.printed(&text)),
+            });
+        }
+    }
     Ok(rows)
 }
 
@@ -241,8 +274,8 @@ fn solve(path: &Path) -> Result<Force, Failure> {
     Ok(Some([x, y, sum.normal_force]))
 }
 
-/// Force of the floor by CalculiX, in balance with loads and reactions; `None` if it does not converge in time.
-fn calculix(options: &CalculixOptions, path: &Path, loads: &[(u32, [f64; 3])]) -> Result<Force, Failure> {
+/// What CalculiX prints for a deck; `None` if it does not converge in time.
+fn run(options: &CalculixOptions, path: &Path) -> Result<Option<String>, Failure> {
     let job = path.with_extension("");
     let name = job.file_name().ok_or("a deck has no name")?;
     let log = std::fs::File::create(job.with_extension("log"))?;
@@ -265,13 +298,21 @@ fn calculix(options: &CalculixOptions, path: &Path, loads: &[(u32, [f64; 3])]) -
         std::thread::sleep(Duration::from_millis(5));
     };
     let printed = std::fs::read_to_string(job.with_extension("dat")).unwrap_or_default();
+    Ok(status.success().then_some(printed))
+}
+
+/// Force of the floor by CalculiX, in balance with loads and reactions; `None` if it does not converge in time.
+fn calculix(options: &CalculixOptions, path: &Path, loads: &[(u32, [f64; 3])]) -> Result<Force, Failure> {
+    let Some(printed) = run(options, path)? else {
+        return Ok(None);
+    };
     let mut lines = printed.lines().skip_while(|line| !line.contains("total force"));
     let total = lines.find(|line| !line.trim().is_empty() && !line.contains("total"));
     let total: Option<Vec<f64>> = total
         .map(|line| line.split_whitespace().map(str::parse).collect::<Result<_, _>>())
         .transpose()?;
     let balance = |reaction: Vec<f64>| [0, 1, 2].map(|d| -reaction[d] - loads.iter().map(|(_, f)| f[d]).sum::<f64>());
-    Ok(total.filter(|total| status.success() && total.len() == 3).map(balance))
+    Ok(total.filter(|total| total.len() == 3).map(balance))
 }
 
 /// The brick above a rigid floor, clamped at x = 0, with half of the benchmark's tractions in one static increment.
