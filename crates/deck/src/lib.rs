@@ -106,8 +106,8 @@
 //! # Hexahedra, prisms and pyramids
 //!
 //! Each is [divided](signorini_fem_mesh::mesh::Division) into tetrahedra with its number. Those of second order become
-//! quadratic tetrahedra; those of first order, and tetrahedra beside them, too, which is noted as ignored: linear ones are
-//! far too stiff. A slender beam then bends as with `C3D20`; docs/reports/calculix.md has figures.
+//! quadratic tetrahedra; those of first order, and tetrahedra beside them or beside others, too, which is noted as ignored:
+//! linear ones are far too stiff. A slender beam then bends as with `C3D20`; docs/reports/calculix.md has figures.
 //!
 //! Nodes that this adds are in a set, held, turned or coupled if all nodes around them are, and where these are moved or
 //! named by equations each in its own way, they have the mean displacement that the element has there. They have no

@@ -72,6 +72,7 @@ pub(crate) struct Node {
 /// What an element is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
+    /// C3D4, C3D8 and the like.
     Solid(CellShape),
     /// R3D3 or R3D4.
     Rigid,

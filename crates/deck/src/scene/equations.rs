@@ -81,7 +81,8 @@ fn between(known: Known, named: &BTreeMap<Key, &Word>, held: &BTreeMap<Key, Word
         return out;
     }
     let word = |key: &Key| named.get(key).copied().or_else(|| held.get(key));
-    let is_plain = |node: &u32| known.transforms.of(*node).is_none();
+    // along x, y and z, and not on both sides of a cut
+    let is_plain = |node: &u32| known.transforms.of(*node).is_none() && known.raw.with_copies(*node).nth(1).is_none();
     for (node, around) in known.raw.added() {
         for component in (0..3).filter(|&c| !held.contains_key(&(node, c))) {
             let words: Option<Vec<&Word>> = around.iter().map(|(other, _)| word(&(*other, component))).collect();

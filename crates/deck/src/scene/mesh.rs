@@ -6,7 +6,7 @@ use std::path::Path;
 
 use signorini_contact::{ContactError, Part};
 use signorini_fem_mesh::internal::{EDGES, Lists, TET_FACES, distinct};
-use signorini_fem_mesh::mesh::{Cell, CellShape, Division};
+use signorini_fem_mesh::mesh::{Cell, Division};
 use signorini_fem_mesh::vec3::{add, area_vector, scale, sub, tet_volume};
 use signorini_fem_mesh::{Facet, MeshError, TetMesh};
 
@@ -48,8 +48,8 @@ impl Raw {
     ) -> Result<Self, DeckError> {
         let model = sets.model;
         let (mut cells, mut positions) = (Vec::new(), Vec::new());
-        // the first element that is no tetrahedron and of first order
-        let mut coarse = None;
+        // the first element of first order, and whether there are others than linear tetrahedra
+        let (mut coarse, mut others) = (None, false);
         for (position, element) in model.elements.iter().enumerate() {
             let nodes = sets.nodes_of(element)?;
             if element.kind.is_mark() || bodies.of_element(position as u32).is_some() {
@@ -59,17 +59,10 @@ impl Raw {
                 let why = "the facet is in no rigid body; put it into the ELSET of a *RIGID BODY";
                 return Err(element.word().cannot(why));
             };
-            if nodes.len() == shape.corners() && shape != CellShape::Tetrahedron {
+            if nodes.len() == shape.corners() {
                 coarse = coarse.or(Some(element));
             }
-            let is_other = |other: &(CellShape, Vec<u32>)| {
-                let [own, other] = [(shape, &nodes), (other.0, &other.1)].map(|(shape, n)| n.len() > shape.corners());
-                own != other
-            };
-            if cells.first().is_some_and(is_other) {
-                let why = "the deck has elastic elements of first and of second order; mesh all in one order";
-                return Err(element.word().cannot(why));
-            }
+            others |= nodes.len() != 4;
             cells.push((shape, nodes));
             positions.push(position as u32);
         }
@@ -82,6 +75,7 @@ impl Raw {
             .iter()
             .map(|(shape, nodes)| Cell { shape: *shape, nodes })
             .collect();
+        let coarse = coarse.filter(|_| others);
         let division = match coarse {
             Some(_) => Division::raised(&mut points, &whole),
             None => Division::new(&mut points, &whole),
@@ -130,10 +124,8 @@ impl Raw {
             out.of_element[position as usize] = tets;
         }
         let mut used = vec![false; points.len()];
-        cells
-            .iter()
-            .flat_map(|cell| &cell.1)
-            .for_each(|&n| used[n as usize] = true);
+        let nodes = out.tets.iter().flatten().chain(out.mids.iter().flatten());
+        nodes.for_each(|&n| used[n as usize] = true);
         bodies.check_apart(sets, &used)?;
         out.number(model, &points, &used);
         Ok(out)

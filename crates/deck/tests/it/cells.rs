@@ -445,11 +445,27 @@ fn wrong_cells_are_refused() {
     let face = "*SURFACE, NAME=A\nALL, S6\n";
     try_one(prism + face, "ALL, S6", "ALL", "element 1 has no face 6");
     assert!(read(&(hexahedron.clone() + face)).is_ok());
-    let second = "*ELEMENT, TYPE=C3D10\n9, 1, 3, 9, 19, 1, 1, 1, 1, 1, 1\n";
-    try_one(
-        hexahedron + second,
-        "9, 1, 3, 9, 19, 1, 1, 1, 1, 1, 1",
-        "9",
-        "in one order",
-    );
+}
+
+/// Elements of first order beside those of second order, which have nodes on the edges that they share.
+#[test]
+fn orders_are_mixed() {
+    let size = [2.0, 1.0, 1.0];
+    let mut grid = Grid::new("C3D20", [2, 1, 1], size);
+    let second = grid.cells.pop().expect("an element");
+    let corners: Vec<String> = second[..8].iter().map(usize::to_string).collect();
+    let more = format!("*ELEMENT, TYPE=C3D8, ELSET=ALL\n2, {}\n", corners.join(", "));
+    let text = grid.text().replace("*MATERIAL", &format!("{more}*MATERIAL"));
+    let left = grid.nset("LEFT", at(0.0, 0));
+    let text = text + &left + &pinned(&grid, size) + "*BOUNDARY\nLEFT, 1\n" + &step("*DLOAD\n2, P4, -210.\n");
+    run(&text, |deck, result| {
+        is_exact(
+            deck,
+            result,
+            |[x, y, z]| [1e-3 * x, -NU * 1e-3 * y, -NU * 1e-3 * z],
+            "mixed",
+        );
+        // the corners and mid-nodes of two hexahedra, their faces and their middles
+        assert_eq!(deck.mesh().points().len(), 12 + 20 + 11 + 2);
+    });
 }

@@ -52,7 +52,7 @@ impl Division {
         Self::of(points, cells, false)
     }
 
-    /// The same into quadratic tetrahedra: cells without nodes on their edges get them, and those inside. Linear
+    /// The same into quadratic tetrahedra: cells without nodes on their edges get those of others there, or new ones. Linear
     /// tetrahedra are far stiffer in bending than the cells that they fill; quadratic ones are not.
     ///
     /// # Errors
@@ -82,7 +82,7 @@ impl Division {
                 });
             }
             let second = order(cell);
-            if first != second {
+            if first != second && !raised {
                 return Err(MeshError::MixedOrder { first, second });
             }
         }
@@ -91,6 +91,12 @@ impl Division {
             first: points.len() as u32,
             known: HashMap::new(),
         };
+        // what cells of second order have there is known to those of first order
+        for cell in cells.iter().filter(|cell| raised && order(cell) == 2) {
+            for (ends, &node) in cell.shape.edges().iter().zip(&cell.nodes[cell.shape.corners()..]) {
+                inside.known.insert(ascending(ends.map(|k| cell.nodes[k])), node);
+            }
+        }
         for (number, cell) in cells.iter().enumerate() {
             out.add(cell, raised || first == 2, &mut inside);
             if out.of_cell[number].is_empty() {
