@@ -6,7 +6,7 @@ use std::path::Path;
 
 use signorini_contact::{ContactError, Part};
 use signorini_fem_mesh::internal::{EDGES, Lists, TET_FACES, distinct};
-use signorini_fem_mesh::mesh::{Cell, Division};
+use signorini_fem_mesh::mesh::{Cell, CellShape, Division};
 use signorini_fem_mesh::vec3::{add, area_vector, scale, sub, tet_volume};
 use signorini_fem_mesh::{Facet, MeshError, TetMesh};
 
@@ -39,6 +39,23 @@ pub(super) struct Raw {
     pub(super) element_labels: Vec<u32>,
 }
 
+/// Elastic elements: position in the deck, shape, positions of the nodes.
+fn elastic_cells(sets: &Sets, bodies: &RigidBodies) -> Result<Vec<(u32, CellShape, Vec<u32>)>, DeckError> {
+    let mut cells = Vec::new();
+    for (position, element) in (0..).zip(&sets.model.elements) {
+        let nodes = sets.nodes_of(element)?;
+        if element.kind.is_mark() || bodies.of_element(position).is_some() {
+            continue;
+        }
+        let Kind::Solid(shape) = element.kind else {
+            let why = "the facet is in no rigid body; put it into the ELSET of a *RIGID BODY";
+            return Err(element.word().cannot(why));
+        };
+        cells.push((position, shape, nodes));
+    }
+    Ok(cells)
+}
+
 impl Raw {
     pub(super) fn new(
         path: &Path,
@@ -47,53 +64,35 @@ impl Raw {
         notes: &mut Vec<Ignored>,
     ) -> Result<Self, DeckError> {
         let model = sets.model;
-        let (mut cells, mut positions) = (Vec::new(), Vec::new());
-        // the first element of first order, and whether there are others than linear tetrahedra
-        let (mut coarse, mut others) = (None, false);
-        for (position, element) in model.elements.iter().enumerate() {
-            let nodes = sets.nodes_of(element)?;
-            if element.kind.is_mark() || bodies.of_element(position as u32).is_some() {
-                continue;
-            }
-            let Kind::Solid(shape) = element.kind else {
-                let why = "the facet is in no rigid body; put it into the ELSET of a *RIGID BODY";
-                return Err(element.word().cannot(why));
-            };
-            if nodes.len() == shape.corners() {
-                coarse = coarse.or(Some(element));
-            }
-            others |= nodes.len() != 4;
-            cells.push((shape, nodes));
-            positions.push(position as u32);
-        }
+        let cells = elastic_cells(sets, bodies)?;
         if cells.is_empty() {
             let path = path.to_owned();
             return Err(DeckError::NoElements { path });
         }
+        let element = |cell: usize| &model.elements[cells[cell].0 as usize];
+        let whole: Vec<Cell> = (cells.iter().map(|(_, shape, nodes)| Cell { shape: *shape, nodes })).collect();
+        // linear tetrahedra among themselves stay what they are
+        let coarse = whole.iter().position(|cell| cell.nodes.len() == cell.shape.corners());
+        let coarse = coarse.filter(|_| whole.iter().any(|cell| cell.nodes.len() != 4));
         let mut points: Vec<_> = model.nodes.iter().map(|node| node.point).collect();
-        let whole: Vec<Cell> = cells
-            .iter()
-            .map(|(shape, nodes)| Cell { shape: *shape, nodes })
-            .collect();
-        let coarse = coarse.filter(|_| others);
         let division = match coarse {
             Some(_) => Division::raised(&mut points, &whole),
             None => Division::new(&mut points, &whole),
         };
         let division = division.map_err(|source| match source {
-            MeshError::CellFlat { cell } => model.elements[positions[cell] as usize].word().fault(Fault::Volume),
+            MeshError::CellFlat { cell } => element(cell).word().fault(Fault::Volume),
             source => DeckError::Mesh {
                 path: path.to_owned(),
                 source,
             },
         })?;
-        if let Some(element) = coarse {
+        if let Some(cell) = coarse {
             let why = format!(
                 "the elements of first order become quadratic tetrahedra with {} nodes more on their edges: linear ones would \
                 be far too stiff",
                 division.added().len()
             );
-            notes.push(Ignored::new(&element.word(), why));
+            notes.push(Ignored::new(&element(cell).word(), why));
         }
         let mut added = Lists::default();
         division.added().for_each(|around| added.push(around.iter().copied()));
@@ -111,17 +110,17 @@ impl Raw {
             elements: Vec::new(),
             element_labels: Vec::new(),
         };
-        for (position, tets) in positions.into_iter().zip(division.of_cell) {
-            let element = &model.elements[position as usize];
+        for ((position, ..), tets) in cells.iter().zip(division.of_cell) {
+            let element = &model.elements[*position as usize];
             for tet in tets.clone() {
                 let volume = tet_volume(&out.tets[tet as usize].map(|n| points[n as usize]));
                 if !(volume > 0.0 && volume.is_finite()) {
                     return Err(element.word().fault(Fault::Volume));
                 }
-                out.elements.push(position);
+                out.elements.push(*position);
                 out.element_labels.push(element.label);
             }
-            out.of_element[position as usize] = tets;
+            out.of_element[*position as usize] = tets;
         }
         let mut used = vec![false; points.len()];
         let nodes = out.tets.iter().flatten().chain(out.mids.iter().flatten());
