@@ -126,6 +126,9 @@ signorini_fem_mesh::errors! {
         Volume =
             "the element has no volume, or is turned inside out or far from convex; the nodes of its first face have to be \
             counter-clockwise seen from its other nodes";
+        Distorted { source: MeshError } =
+            "the element is too far from convex or too distorted to be divided into tetrahedra; move its nodes, or remesh around \
+            it (of its tetrahedra: {source})";
         FaceInside { element: u32, face: u8 } =
             "face {face} of element {element} lies inside the body, against another element; give only faces of the \
             boundary";

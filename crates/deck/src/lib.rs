@@ -62,7 +62,7 @@
 //! | `*PART`, `*END PART` | `NAME` | nodes, elements, sets, surfaces and sections of a part |
 //! | `*ASSEMBLY`, `*INSTANCE` and their ends | `NAME`, `PART` | where parts are, see below |
 //! | `*NODE` | `NSET` | any numbers; nodes that no element and no equation uses are dropped |
-//! | `*ELEMENT` | `TYPE=C3D4`, `C3D10`, `C3D8`, `C3D20`, `C3D6`, `C3D15`, `C3D5`, `ELSET` | tetrahedra, hexahedra, prisms and pyramids, see below, and as these their variants (`C3D10M`, `C3D8R`, `C3D8I`); `R3D3` and `R3D4` for rigid surfaces; `CPS3`, `CPS4`, `CPS6`, `CPS8`, `T3D2`, `T3D3`, which Gmsh writes, have no stiffness, and the flat ones name the faces on which they lie; other types are refused |
+//! | `*ELEMENT` | `TYPE=C3D4`, `C3D10`, `C3D8`, `C3D20`, `C3D6`, `C3D15`, `C3D5`, `C3D13`, `ELSET` | tetrahedra, hexahedra, prisms and pyramids, see below, and as these their variants (`C3D10M`, `C3D8R`, `C3D8I`); `R3D3` and `R3D4` for rigid surfaces; `CPS3`, `CPS4`, `CPS6`, `CPS8`, `T3D2`, `T3D3`, which Gmsh writes, have no stiffness, and the flat ones name the faces on which they lie; other types are refused |
 //! | `*NSET`, `*ELSET` | `NSET` or `ELSET`, `GENERATE`, `INTERNAL`, `INSTANCE` | numbers and sets defined before; cards of one name add up |
 //! | `*SURFACE` | `NAME`, `TYPE=ELEMENT`, `INTERNAL` | faces `S1` to `S6` of elements or sets, on the boundary, or without a number all that are there, or those of triangles; `SPOS`, `SNEG` of rigid facets |
 //! | | `TYPE=NODE` | the faces on the boundary whose corners are all among these nodes and sets; a node on none of them is refused |
@@ -106,12 +106,14 @@
 //! # Hexahedra, prisms and pyramids
 //!
 //! Each is [divided](signorini_fem_mesh::mesh::Division) into tetrahedra with its number. Those of second order become
-//! quadratic tetrahedra; those of first order, and tetrahedra beside them or beside others, too, which is noted as ignored:
-//! linear ones are far too stiff. A slender beam then bends as with `C3D20`; docs/reports/calculix.md has figures.
+//! quadratic tetrahedra; those of first order, and tetrahedra beside them or beside others, too, which is noted as
+//! ignored: linear ones are far too stiff. A slender beam then bends as with `C3D20`; docs/reports/calculix.md has
+//! figures. A mesh of `C3D8` gets about eight times its nodes.
 //!
-//! Nodes that this adds are in a set, held, turned or coupled if all nodes around them are, and where these are moved or
-//! named by equations each in its own way, they have the mean displacement that the element has there. They have no
-//! number of their own; [`Deck::node_numbers`] gives that of a neighbour.
+//! Where all nodes around one that is added are in a set, held, moved, coupled or named by equations, it is, too, with
+//! the displacement that the element of the deck has there. Where they are in no common set, their reaction is that
+//! `between` their sets. Not so where some are held and the others belong to a coupling that is free or loaded. Added
+//! nodes have no number of their own; [`Deck::node_numbers`] gives that of a neighbour.
 //!
 //! # What steps mean
 //!

@@ -9,7 +9,7 @@ use signorini_fem_mesh::mesh::CellShape;
 const RANGE: u64 = 100_000_000;
 
 /// Elements that are read: what they are, the number of their nodes and of those that are kept, and what a line of them is.
-const TYPES: [(&str, Kind, [usize; 2], &str); 15] = {
+const TYPES: [(&str, Kind, [usize; 2], &str); 16] = {
     use CellShape::{Hexahedron, Prism, Pyramid, Tetrahedron};
     use Kind::{Flat, Line, Rigid, Solid};
     const TWO: &str = "an element number and two node numbers";
@@ -23,6 +23,12 @@ const TYPES: [(&str, Kind, [usize; 2], &str); 15] = {
             Solid(Tetrahedron),
             [10, 10],
             "an element number and ten node numbers",
+        ),
+        (
+            "C3D13",
+            Solid(Pyramid),
+            [13, 13],
+            "an element number and thirteen node numbers",
         ),
         (
             "C3D5",
@@ -95,17 +101,16 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
     let variant = || TYPES.iter().find(|t| matches!(t.1, Kind::Solid(_)) && variants(t.0));
     let Some(&(plain, of, [nodes, kept], wanted)) = found.or_else(variant) else {
         return Err(kind.word.fault(Fault::Unsupported(
-            "of solid elements only tetrahedra, hexahedra, prisms and pyramids are read, C3D4, C3D10, C3D8, C3D20, C3D6, C3D15 \
-            and C3D5, R3D3 and R3D4 for rigid surfaces, and CPS3, CPS4, CPS6, CPS8, T3D2 and T3D3 as marks; mesh in these, \
-            and leave out others",
+            "only C3D4, C3D10, C3D8, C3D20, C3D6, C3D15, C3D5, C3D13, R3D3 and R3D4 for rigid surfaces, and CPS3, CPS4, CPS6, \
+            CPS8, T3D2, T3D3 as marks are read; mesh in these (Gmsh: SecondOrderIncomplete = 1), and leave out others",
         )));
     };
     if plain != kind.name {
-        let why = format!("a variant of another program; the element is {plain} here");
+        let why = format!("a variant; the element is {plain} here");
         model.ignored.push(Ignored::new(&kind.word, why));
     }
     if of.is_mark() {
-        let why = "triangles and lines have no stiffness here; triangles name faces in *SURFACE";
+        let why = "flat elements and lines have no stiffness here; flat ones name faces in *SURFACE";
         model.ignored.push(Ignored::new(&kind.word, why));
     }
     let set = card.value("ELSET")?;

@@ -13,7 +13,7 @@ pub(crate) struct Transform {
     pub(crate) axes: Axes,
 }
 
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Axes {
     /// A point on the first axis and one in the plane of the first two.
     Rectangular([[f64; 3]; 2]),

@@ -47,10 +47,12 @@ impl Boundary {
     /// Those whose corners are all among some nodes, ascending, and a node, if there is one, that none of them uses.
     pub(super) fn of_nodes(&self, raw: &Raw, nodes: &[u32]) -> (Vec<(u32, u8)>, Option<u32>) {
         let among = |node: &u32| nodes.binary_search(node).is_ok();
-        let all = self.faces.iter().copied();
-        let faces: Vec<_> = all
-            .filter(|&(tet, number)| raw.face(tet, number).iter().all(among))
-            .collect();
+        // a face of an element as a whole
+        let is_among = |&(tet, number): &(u32, u8)| {
+            let mut parts = raw.parts_of_face(tet, number);
+            parts.all(|(tet, number)| raw.face(tet, number).iter().all(among))
+        };
+        let faces: Vec<_> = self.faces.iter().copied().filter(is_among).collect();
         let mut used: Vec<u32> = Vec::new();
         for &(tet, number) in &faces {
             let corners = raw.face(tet, number);

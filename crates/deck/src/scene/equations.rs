@@ -3,7 +3,9 @@
 use std::collections::BTreeMap;
 
 use signorini_contact::Equation;
+use signorini_fem_mesh::vec3::scale;
 
+use super::between::shares;
 use super::faces::Known;
 use super::points::Room;
 use super::supports::{Key, Supports};
@@ -69,30 +71,54 @@ pub(super) fn equations(known: Known, supports: &Supports) -> Result<Vec<(Equati
             out.push((equation, given.word.clone()));
         }
     }
-    out.extend(between(known, &named, &supports.held));
+    out.extend(follow(known, &named, &supports.held));
     Ok(out)
 }
 
-/// Equations that let added nodes follow their neighbours, as they do in the elements of the deck, where these are all
-/// named by equations or held, but not alike.
-fn between(known: Known, named: &BTreeMap<Key, &Word>, held: &BTreeMap<Key, Word>) -> Vec<(Equation, Word)> {
+/// Equations that let added nodes follow those around them, as they do in the elements of the deck, where equations name
+/// some of these, and supports hold the others: along x, y and z, or along axes that all have.
+fn follow(known: Known, named: &BTreeMap<Key, &Word>, held: &BTreeMap<Key, Word>) -> Vec<(Equation, Word)> {
     let mut out = Vec::new();
-    if named.is_empty() && held.is_empty() {
-        return out;
-    }
-    let word = |key: &Key| named.get(key).copied().or_else(|| held.get(key));
-    // along x, y and z, and not on both sides of a cut
-    let is_plain = |node: &u32| known.transforms.of(*node).is_none() && known.raw.with_copies(*node).nth(1).is_none();
-    for (node, around) in known.raw.added() {
-        for component in (0..3).filter(|&c| !held.contains_key(&(node, c))) {
-            let words: Option<Vec<&Word>> = around.iter().map(|(other, _)| word(&(*other, component))).collect();
-            if let Some([first, ..]) = words.as_deref()
-                && around.iter().all(|(other, _)| is_plain(other))
-            {
-                let unit = |share: f64| [0, 1, 2].map(|c| if c == component { share } else { 0.0 });
-                let around = around.iter().map(|(other, share)| (*other, unit(-share)));
-                out.push((Equation::new(around.chain([(node, unit(1.0))])), (*first).clone()));
-            }
+    let axis = |node: u32, c: usize| {
+        let frame = known.transforms.frame(node, known.raw.points[node as usize]).ok();
+        frame.map(|frame| frame[c])
+    };
+    for added in known.raw.added().filter(|_| !named.is_empty()) {
+        let (node, around) = added;
+        // a node on both sides of a cut has two displacements
+        if around
+            .iter()
+            .any(|(other, _)| known.raw.with_copies(*other).nth(1).is_some())
+        {
+            continue;
+        }
+        let word = |component: usize, turned: bool| {
+            let parts = shares(known, added, component, turned)?;
+            let is_said = |(key, _): &(Key, f64)| named.contains_key(key) || held.contains_key(key);
+            let first = parts.iter().find_map(|(key, _)| named.get(key));
+            first.filter(|_| parts.iter().all(is_said)).map(|word| (*word).clone())
+        };
+        let unit = |c: usize| [0, 1, 2].map(|k| if k == c { 1.0 } else { 0.0 });
+        let straight = (0..3).filter_map(|c| Some((c, false, word(c, false)?)));
+        let mut ways: Vec<(usize, bool, Word)> = straight.collect();
+        if ways.is_empty() && known.transforms.of(node).is_some() {
+            ways.extend((0..3).filter_map(|c| Some((c, true, word(c, true)?))));
+        }
+        for (component, turned, word) in ways {
+            let vector = |n: u32| {
+                if turned {
+                    axis(n, component)
+                } else {
+                    Some(unit(component))
+                }
+            };
+            let term = |(n, share): (u32, f64)| Some((n, scale(share, vector(n)?)));
+            let around = around
+                .iter()
+                .filter(|part| part.1 != 0.0)
+                .map(|(other, share)| (*other, -share));
+            let terms: Option<Vec<_>> = around.chain([(node, 1.0)]).map(term).collect();
+            out.extend(terms.map(|terms| (Equation::new(terms), word)));
         }
     }
     out

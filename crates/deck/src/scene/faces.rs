@@ -305,7 +305,7 @@ fn of_flat(
     let nodes = known.sets.nodes_of(element)?;
     let faces: Option<Vec<_>> = divide_face(&nodes).map(of_triangle).collect();
     faces.ok_or_else(|| {
-        let why = "no face of a tetrahedron on the boundary has the corners of triangle";
+        let why = "no face of a solid element on the boundary has the corners of the flat element";
         word.cannot(format!("{why} {}; leave it out of the surface", element.label))
     })
 }

@@ -35,23 +35,6 @@ impl Held {
         Ok(())
     }
 
-    /// What holds both of two components if they move alike: the later one, in the steps in which both are held.
-    pub(super) fn common(&self, other: &Self) -> Option<Self> {
-        let ([from, until], [other_from, other_until]) = (self.span, other.span);
-        let later = if other_from > from { other } else { self };
-        let end = [until, other_until].into_iter().flatten().min();
-        let span = [later.span[0], end];
-        let is_some = end.is_none_or(|end| later.span[0].unwrap_or(0) < end);
-        let alike = is_some && self.track.says_as(&other.track);
-        // a target that both are in is no earlier than the first of each
-        let owner = self.owner.max(other.owner);
-        alike.then(|| Self {
-            owner,
-            span,
-            ..later.clone()
-        })
-    }
-
     /// Whether it begins in a step along a straight line.
     pub(super) fn fades(&self, timeline: &Timeline) -> bool {
         let [from, _] = self.span;
@@ -59,4 +42,13 @@ impl Held {
         let by_line = |step| self.track.given_in(step).is_some_and(|given| given.amplitude.is_none());
         ramp && from.is_some_and(by_line)
     }
+}
+
+/// The steps in which both act.
+pub(super) fn common([from, until]: Acting, [other_from, other_until]: Acting) -> Option<Acting> {
+    let from = from.max(other_from);
+    let until = [until, other_until].into_iter().flatten().min();
+    until
+        .is_none_or(|until| from.unwrap_or(0) < until)
+        .then_some([from, until])
 }

@@ -58,6 +58,20 @@ impl Track {
         }
     }
 
+    /// The same, but with a displacement that follows from others.
+    pub(super) fn moving(&self, value: f64, history: History) -> Self {
+        Self {
+            course: Some((value, history)),
+            ..self.clone()
+        }
+    }
+
+    /// A value, and the points of the factor that multiplies it; `None` if it is zero at all times.
+    pub(super) fn course(&self, timeline: &Timeline) -> Option<(f64, Vec<(f64, f64)>)> {
+        let reference = self.reference()?;
+        Some((reference, self.points(timeline, reference)))
+    }
+
     /// Tracks of which this is the sum at the ends of increments: one for each value, and one for the base. The factor
     /// of each depends on steps and amplitudes alone.
     pub(super) fn parts(&self) -> impl Iterator<Item = Self> {

@@ -81,6 +81,11 @@ impl Raw {
         };
         let division = division.map_err(|source| match source {
             MeshError::CellFlat { cell } => element(cell).word().fault(Fault::Volume),
+            MeshError::CellsCross { first, second, .. } => element(second).word().cannot(format!(
+                "element {} has a face of four corners here, which this cuts into triangles along the other diagonal; mesh both \
+                alike, or join them as separate bodies with *TIE",
+                element(first).label
+            )),
             source => DeckError::Mesh {
                 path: path.to_owned(),
                 source,
@@ -88,8 +93,8 @@ impl Raw {
         })?;
         if let Some(cell) = coarse {
             let why = format!(
-                "the elements of first order become quadratic tetrahedra with {} nodes more on their edges: linear ones would \
-                be far too stiff",
+                "the elements of first order become quadratic tetrahedra, and {} nodes are added; linear ones would be far too \
+                stiff",
                 division.added().len()
             );
             notes.push(Ignored::new(&element(cell).word(), why));
@@ -169,6 +174,12 @@ impl Raw {
                 .map(move |face| (tet, face.0))
         };
         self.tets_of(element).flat_map(of_tet)
+    }
+
+    /// The faces of tetrahedra that make up the face of an element of which one is given.
+    pub(super) fn parts_of_face(&self, tet: u32, number: u8) -> impl Iterator<Item = (u32, u8)> {
+        let position = self.elements[tet as usize];
+        self.faces_of(position, self.face_of_element(tet, number))
     }
 
     /// The face of its element that a face of a tetrahedron lies on.
@@ -270,9 +281,15 @@ impl Raw {
 
     /// The number of a node of the mesh in the deck, where it is defined.
     fn node_word(&self, model: &Model, node: u32) -> Word {
-        let position = self.of_node.iter().position(|n| *n == Some(node));
-        let label = self.node_labels[node as usize].to_string();
-        Word::new(&model.nodes[position.unwrap_or(0)].location, label)
+        let label = self.node_labels[node as usize];
+        // each is of a node of the deck
+        let position = model.nodes.iter().position(|node| node.label == label);
+        Word::new(&model.nodes[position.unwrap_or(0)].location, label.to_string())
+    }
+
+    /// Numbers of the nodes that are added.
+    pub(super) fn new_nodes(&self) -> Range<usize> {
+        self.first_added() as usize..self.uncut()
     }
 
     /// Shares of a tetrahedron in a force per volume that is constant in it, as far as its edges are straight.
@@ -355,6 +372,18 @@ impl Raw {
         let mesh = mesh.and_then(|mesh| mesh.with_regions(regions));
         mesh.map_err(|source| {
             let error = ContactError::from(source.clone());
+            let divided = |tet: usize| {
+                let element = &model.elements[self.elements[tet] as usize];
+                let is_whole = element.kind == Kind::Solid(CellShape::Tetrahedron);
+                (!is_whole).then(|| element.word())
+            };
+            let tet = error.parts().into_iter().find_map(|part| match part {
+                Part::Tet(tet) => Some(tet),
+                _ => None,
+            });
+            if let Some(word) = tet.and_then(divided) {
+                return word.fault(Fault::Distorted { source });
+            }
             let word = error.parts().into_iter().find_map(|part| match part {
                 Part::Tet(tet) => Some(model.elements[self.elements[tet] as usize].word()),
                 Part::Node(node) => Some(self.node_word(model, node)),

@@ -4,6 +4,7 @@
 //! the mesh, faces get tags, the conditions of all steps become one history each. What cannot be said to the
 //! solver is refused here, with its place. May use `model`, `lexer`, `error`.
 
+mod between;
 mod boundary;
 mod changes;
 mod contacts;

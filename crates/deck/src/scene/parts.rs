@@ -1,5 +1,7 @@
 //! What the parts of the scene are in the deck: errors of a simulation say it.
 
+use std::ops::Range;
+
 use signorini_contact::Part;
 use signorini_fem_mesh::FacetTag;
 
@@ -21,6 +23,8 @@ pub(super) struct Parts {
     surfaces: Vec<(FacetTag, String)>,
     /// Numbers in the deck, and for each the place of its set among the sections, if it has one.
     nodes: Vec<(u32, Option<u32>)>,
+    /// Those that divided elements add, whose number is that of a neighbour.
+    added: Range<usize>,
     elements: Vec<(u32, Option<u32>)>,
 }
 
@@ -49,6 +53,7 @@ impl Parts {
         let elements = raw.element_labels.iter().enumerate();
         Self {
             nodes,
+            added: raw.new_nodes(),
             elements: elements.map(|(tet, &label)| (label, region(tet))).collect(),
             sections: model.sections.iter().map(|s| s.elset.word.told()).collect(),
             contacts: model.pairs.iter().map(|pair| Some(contact(pair))).collect(),
@@ -89,7 +94,11 @@ impl Parts {
                 Some(format!("increment {} of {word}", step - before + 1))
             }
             Part::Region(region) => self.sections.get(region as usize).cloned(),
-            Part::Node(node) => self.nodes.get(node as usize).copied().map(numbered),
+            Part::Node(node) => {
+                let name = self.nodes.get(node as usize).copied().map(numbered);
+                let added = self.added.contains(&(node as usize));
+                name.map(|name| if added { format!("beside {name}") } else { name })
+            }
             Part::Tet(tet) => self.elements.get(tet).copied().map(numbered),
             Part::Tag(tag) => {
                 let with = self.surfaces.iter().filter(|s| s.0 == tag);

@@ -51,8 +51,13 @@ impl Faces {
                 return Err(faces.word.expected(what));
             };
             for element in sets.elements.find(&faces.target, &faces.word)? {
-                let before = own.len();
-                for (tet, number) in raw.faces_of(element, number) {
+                let mut faces_there = raw.faces_of(element, number).peekable();
+                if faces_there.peek().is_none() {
+                    return Err(faces
+                        .word
+                        .cannot("a section is across elastic elements, and on faces that they have"));
+                }
+                for (tet, number) in faces_there {
                     let nodes = raw.face(tet, number);
                     let out = raw.area_vector(tet, nodes);
                     area_vector = add(area_vector, out);
@@ -60,11 +65,6 @@ impl Faces {
                     let middle = centroid(&nodes.map(|n| raw.points[n as usize]));
                     centre = add(centre, scale(norm(out), middle));
                     own.insert(ascending(nodes), tet);
-                }
-                if own.len() == before {
-                    return Err(faces
-                        .word
-                        .cannot("a section is across elastic elements, and on faces that they have"));
                 }
             }
         }

@@ -1,10 +1,11 @@
 //! `*BOUNDARY` of all steps as supports.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use signorini_contact::{Coupling, Support};
 use signorini_fem_mesh::History;
 
+use super::between::{Targets, between};
 use super::couplings::Coupling as Node;
 use super::faces::{FaceTable, Known};
 use super::held::Held;
@@ -32,6 +33,8 @@ struct Table {
     rigid: BTreeMap<Key, Held>,
     /// Of the former those that are released.
     released: Vec<(Key, Held)>,
+    /// What each target gives of nodes of the mesh.
+    given: BTreeSet<(usize, Key)>,
     /// The first and the last step that lock the node of a section.
     locks: BTreeMap<u32, [usize; 2]>,
     owners: Vec<Owner>,
@@ -109,7 +112,7 @@ pub(super) fn supports(
     let held = held.into_iter().map(|(key, held)| (key, held.track)).collect();
     let leads = known.bodies.leads(known.model, &held);
     let ignored = std::mem::take(&mut table.ignored);
-    table.hold_between(known);
+    table.hold_between(known)?;
     let always = table.held.iter().filter(|(_, held)| held.span == [None; 2]);
     let held = always.map(|(key, held)| (*key, held.track.word.clone())).collect();
     let (list, names) = table.lower(known)?;
@@ -203,6 +206,7 @@ impl Table {
                         equations in one step has to be held from the first one on"
                     )));
                 }
+                self.given.extend(inside.map(|inside| (owner, (inside, component))));
                 let copies = inside.map(|inside| known.raw.with_copies(inside).skip(1));
                 for key in std::iter::once(key).chain(copies.into_iter().flatten()) {
                     let next = map.len();
@@ -366,28 +370,18 @@ impl Table {
         Ok(None)
     }
 
-    /// Holds added nodes all of whose neighbours are held alike.
-    fn hold_between(&mut self, known: Known) {
-        let mut of_node: BTreeMap<u32, Vec<(usize, &Held)>> = BTreeMap::new();
-        let released = self.released.iter().map(|(key, held)| (key, held));
-        for ((node, component), held) in self.held.iter().chain(released) {
-            of_node.entry(*node).or_default().push((*component, held));
-        }
-        let all = |node: u32| of_node.get(&node).into_iter().flatten();
-        let mut new = Vec::new();
-        for (node, around) in known.raw.added() {
-            let axes = known.transforms.of(node);
-            for (component, held) in all(around[0].0) {
-                let own = |node: u32| all(node).filter(|other| other.0 == *component);
-                let both = |held: Held, &(other, _): &(u32, f64)| {
-                    let mut common = own(other).filter_map(|other| held.common(other.1));
-                    common.next().filter(|_| known.transforms.of(other) == axes)
-                };
-                if let Some(held) = around.iter().try_fold((*held).clone(), both) {
-                    let copies = known.raw.with_copies(node);
-                    new.extend(copies.map(|node| ((node, *component), held.clone())));
-                }
-            }
+    /// Holds added nodes with those around them.
+    fn hold_between(&mut self, known: Known) -> Result<(), DeckError> {
+        let released = self.released.iter().map(|(key, held)| (*key, held));
+        let all = self.held.iter().map(|(key, held)| (*key, held)).chain(released);
+        let mut targets = Targets {
+            names: self.owners.iter().map(|owner| owner.0.clone()).collect(),
+            given: &self.given,
+        };
+        let new = between(known, all, &mut targets)?;
+        for name in targets.names.split_off(self.owners.len()) {
+            let own = new.iter().find(|(_, held)| held.owner == self.owners.len());
+            self.owners.extend(own.map(|(_, held)| (name, held.track.word.clone())));
         }
         for (key, held) in new {
             match held.span[1] {
@@ -395,6 +389,7 @@ impl Table {
                 Some(_) => self.released.push((key, held)),
             }
         }
+        Ok(())
     }
 
     fn lower(

@@ -33,6 +33,12 @@ impl Transforms {
         let mut out = Self::default();
         for (index, transform) in model.transforms.iter().enumerate() {
             let word = &transform.nset.word;
+            // the same axes, given by several cards
+            let index = out
+                .axes
+                .iter()
+                .position(|axes| *axes == transform.axes)
+                .unwrap_or(index);
             let target = Target::Name(transform.nset.name.clone());
             for node in sets.nodes.find(&target, word)? {
                 let label = model.nodes[node as usize].label;
@@ -74,21 +80,24 @@ impl Transforms {
         value: f64,
         word: &Word,
     ) -> Result<Vec3, DeckError> {
-        let unit = match self.of(node).map(|index| self.axes[index]) {
-            None => [0, 1, 2].map(|c| if c == component { 1.0 } else { 0.0 }),
-            Some(Axes::Rectangular(points)) => rectangular(points)[component],
-            Some(Axes::Cylindrical([a, b])) => {
-                let (along, arm) = (unit(sub(b, a)), sub(place, a));
-                match cylindrical(arm, along, norm(arm)) {
-                    Some(frame) => frame[component],
-                    None if component == 2 => along,
-                    None => {
-                        return Err(word.cannot("a node of it lies on its axis, where nothing is radial or tangential"));
-                    }
-                }
-            }
+        let unit = match self.frame(node, place) {
+            Ok(frame) => frame[component],
+            Err(along) if component == 2 => along,
+            Err(_) => return Err(word.cannot("a node of it lies on its axis, where nothing is radial or tangential")),
         };
         Ok(scale(value, unit))
+    }
+
+    /// The axes of a node at a place; on the axis of cylindrical ones that is all there is.
+    pub(super) fn frame(&self, node: u32, place: Vec3) -> Result<[Vec3; 3], Vec3> {
+        match self.of(node).map(|index| self.axes[index]) {
+            None => Ok([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]),
+            Some(Axes::Rectangular(points)) => Ok(rectangular(points)),
+            Some(Axes::Cylindrical([a, b])) => {
+                let (along, arm) = (unit(sub(b, a)), sub(place, a));
+                cylindrical(arm, along, norm(arm)).ok_or(along)
+            }
+        }
     }
 
     /// A support that holds components of nodes with the same axes, and its displacements.

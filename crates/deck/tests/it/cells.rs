@@ -1,185 +1,10 @@
-//! Hexahedra, prisms and pyramids: their faces, what is between their nodes, and what they are worth.
+//! Hexahedra, prisms and pyramids: their faces, and what they are worth.
 
-use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
-use signorini_contact::{Settings, Simulation, StepResult};
-use signorini_deck::Deck;
-use signorini_fem_mesh::mesh::CellShape;
-
+use crate::grid::{E, Grid, KINDS, NU, at, is_exact, pinned, run, step};
 use crate::refusals::refused;
-use crate::write::{STEEL, read};
-
-/// Young's modulus and Poisson's ratio of [`STEEL`].
-const E: f64 = 2.1e5;
-const NU: f64 = 0.3;
-
-/// A box cut into cells of one kind.
-struct Grid {
-    kind: &'static str,
-    shape: CellShape,
-    /// Numbers of the deck and places.
-    points: Vec<(usize, [f64; 3])>,
-    /// Numbers of the nodes.
-    cells: Vec<Vec<usize>>,
-}
-
-const KINDS: [&str; 5] = ["C3D8", "C3D20", "C3D6", "C3D15", "C3D5"];
-
-impl Grid {
-    fn new(kind: &'static str, n: [usize; 3], size: [f64; 3]) -> Self {
-        let (shape, order) = match kind {
-            "C3D6" => (CellShape::Prism, 1),
-            "C3D15" => (CellShape::Prism, 2),
-            "C3D20" => (CellShape::Hexahedron, 2),
-            "C3D5" => (CellShape::Pyramid, 1),
-            _ => (CellShape::Hexahedron, 1),
-        };
-        let cube = [
-            [0, 0, 0],
-            [2, 0, 0],
-            [2, 2, 0],
-            [0, 2, 0],
-            [0, 0, 2],
-            [2, 0, 2],
-            [2, 2, 2],
-            [0, 2, 2],
-        ];
-        let corners: Vec<Vec<[usize; 3]>> = match shape {
-            CellShape::Prism => [[0, 1, 3, 4, 5, 7], [1, 2, 3, 5, 6, 7]]
-                .map(|cell| cell.map(|k| cube[k]).to_vec())
-                .to_vec(),
-            // between the middle and the sides
-            CellShape::Pyramid => {
-                let side = |face: &&[usize]| face.iter().map(|&k| cube[k]).chain([[1, 1, 1]]).collect();
-                CellShape::Hexahedron.faces().iter().map(side).collect()
-            }
-            _ => vec![cube.to_vec()],
-        };
-        let points_along = n.map(|n| 2 * n + 1);
-        let number = |p: [usize; 3]| 1 + (p[2] * points_along[1] + p[1]) * points_along[0] + p[0];
-        let mut cells = Vec::new();
-        for box_ in 0..n[0] * n[1] * n[2] {
-            let at = [box_ % n[0], box_ / n[0] % n[1], box_ / n[0] / n[1]];
-            for corners in &corners {
-                let corner = |k: usize| [0, 1, 2].map(|i| 2 * at[i] + corners[k][i]);
-                let mut nodes: Vec<usize> = (0..corners.len()).map(|k| number(corner(k))).collect();
-                if order == 2 {
-                    let middle = |&[a, b]: &[usize; 2]| number([0, 1, 2].map(|i| (corner(a)[i] + corner(b)[i]) / 2));
-                    nodes.extend(shape.edges().iter().map(middle));
-                }
-                cells.push(nodes);
-            }
-        }
-        let used: BTreeSet<usize> = cells.iter().flatten().copied().collect();
-        let place = |&number: &usize| {
-            let k = number - 1;
-            let p = [
-                k % points_along[0],
-                k / points_along[0] % points_along[1],
-                k / points_along[0] / points_along[1],
-            ];
-            (
-                number,
-                [0, 1, 2].map(|i| p[i] as f64 / (points_along[i] - 1) as f64 * size[i]),
-            )
-        };
-        let points = used.iter().map(place).collect();
-        Self {
-            kind,
-            shape,
-            points,
-            cells,
-        }
-    }
-
-    /// Nodes, elements in `ALL`, material and section.
-    fn text(&self) -> String {
-        let mut text = String::from("*NODE\n");
-        for (number, [x, y, z]) in &self.points {
-            writeln!(text, "{number}, {x:?}, {y:?}, {z:?}").expect("text");
-        }
-        writeln!(text, "*ELEMENT, TYPE={}, ELSET=ALL", self.kind).expect("text");
-        for (element, nodes) in (1..).zip(&self.cells) {
-            let nodes: Vec<String> = nodes.iter().map(usize::to_string).collect();
-            let lines: Vec<String> = nodes.chunks(12).map(|line| line.join(", ")).collect();
-            writeln!(text, "{element}, {}", lines.join(",\n")).expect("text");
-        }
-        text + STEEL
-    }
-
-    fn nodes(&self, on: impl Fn([f64; 3]) -> bool) -> Vec<usize> {
-        self.points.iter().filter(|p| on(p.1)).map(|p| p.0).collect()
-    }
-
-    /// A set of nodes.
-    fn nset(&self, name: &str, on: impl Fn([f64; 3]) -> bool) -> String {
-        let nodes: Vec<String> = self.nodes(on).iter().map(|n| format!("{n},\n")).collect();
-        format!("*NSET, NSET={name}\n{}", nodes.concat())
-    }
-
-    /// Elements and numbers of the faces whose corners are all at places.
-    fn faces(&self, on: impl Fn([f64; 3]) -> bool) -> Vec<(usize, usize)> {
-        let at = self.nodes(on);
-        let mut out = Vec::new();
-        for (element, nodes) in (1..).zip(&self.cells) {
-            for (number, face) in (1..).zip(self.shape.faces()) {
-                if face.iter().all(|&k| at.contains(&nodes[k])) {
-                    out.push((element, number));
-                }
-            }
-        }
-        out
-    }
-
-    fn surface(&self, name: &str, on: impl Fn([f64; 3]) -> bool) -> String {
-        let faces = self.faces(on).into_iter().map(|(e, n)| format!("{e}, S{n}\n"));
-        format!("*SURFACE, NAME={name}\n{}", faces.collect::<String>())
-    }
-}
-
-fn step(lines: &str) -> String {
-    format!("*STEP\n*STATIC\n1., 1.\n{lines}*END STEP\n")
-}
-
-fn at(value: f64, axis: usize) -> impl Fn([f64; 3]) -> bool + Copy {
-    move |x| (x[axis] - value).abs() < 1e-9
-}
-
-/// Runs a deck and looks at each step.
-fn run(text: &str, mut look: impl FnMut(&Deck, &StepResult)) {
-    let deck = read(text).expect("deck");
-    let mut simulation = Simulation::new(deck.scene().expect("scene"), Settings::default()).expect("simulation");
-    while !simulation.is_finished() {
-        let result = simulation.step().expect("solved");
-        result.require_converged().expect("converged");
-        look(&deck, &result);
-    }
-}
-
-/// All nodes, those between the nodes of the deck too, have the displacement that is exact.
-fn is_exact(deck: &Deck, result: &StepResult, exact: impl Fn([f64; 3]) -> [f64; 3], what: &str) {
-    let pairs = deck.mesh().points().iter().zip(result.displacement());
-    let largest = pairs
-        .clone()
-        .flat_map(|(x, _)| exact(*x))
-        .fold(0.0, |m: f64, u| m.max(u.abs()));
-    for (x, u) in pairs {
-        let off = exact(*x).iter().zip(u).fold(0.0, |m: f64, (e, u)| m.max((e - u).abs()));
-        assert!(
-            off < 2e-6 * largest,
-            "{what}: {x:?} moves by {u:?}, not {:?}",
-            exact(*x)
-        );
-    }
-}
-
-/// No rigid motion, for what needs no more.
-fn pinned(grid: &Grid, size: [f64; 3]) -> String {
-    let corner = |p: [f64; 3]| grid.nodes(move |x| (0..3).all(|i| (x[i] - p[i]).abs() < 1e-9))[0];
-    let [o, x, y] = [[0.0; 3], [size[0], 0.0, 0.0], [0.0, size[1], 0.0]].map(corner);
-    format!("*BOUNDARY\n{o}, 1, 3\n{x}, 2, 3\n{y}, 3, 3\n")
-}
+use crate::write::read;
 
 #[test]
 fn pressure_acts_on_each_face_by_its_number() {
@@ -201,82 +26,6 @@ fn pressure_acts_on_each_face_by_its_number() {
                 is_exact(deck, result, |x| x.map(|x| factor * x), kind)
             });
         }
-    }
-}
-
-/// Faces are held as a whole, from the step on from which all of their nodes are.
-#[test]
-fn what_is_between_held_nodes_is_held() {
-    for kind in KINDS {
-        let grid = Grid::new(kind, [2, 2, 2], [1.0; 3]);
-        let sets = grid.nset("NALL", |_| true) + &grid.nset("TOP", at(1.0, 2)) + &grid.nset("BOTTOM", at(0.0, 2));
-        let warm = "*EXPANSION\n1e-5\n*INITIAL CONDITIONS, TYPE=TEMPERATURE\nNALL, 0.\n";
-        let text = grid.text().replace("*SOLID SECTION", &format!("{warm}*SOLID SECTION"));
-        let (before, after) = text.split_once("*INITIAL").expect("a part");
-        let (initial, section) = after.split_once("*SOLID").expect("a part");
-        let text = format!("{before}*SOLID{section}{sets}*INITIAL{initial}");
-        let text = text
-            + &pinned(&grid, [1.0; 3])
-            + &step("*TEMPERATURE\nNALL, 100.\n")
-            + &step("*BOUNDARY\nTOP, 3\nBOTTOM, 3\n");
-        let mut steps = 0;
-        run(&text, |deck, result| {
-            let along = if steps == 0 { [1e-3; 3] } else { [1.3e-3, 1.3e-3, 0.0] };
-            is_exact(deck, result, |x| [0, 1, 2].map(|i| along[i] * x[i]), kind);
-            assert_eq!(deck.node_set("TOP").expect("a set"), top_nodes(deck), "{kind}");
-            steps += 1;
-        });
-        assert_eq!(steps, 2);
-    }
-}
-
-fn top_nodes(deck: &Deck) -> Vec<u32> {
-    let points = (0..).zip(deck.mesh().points());
-    points
-        .filter(|(_, x)| (x[2] - 1.0).abs() < 1e-9)
-        .map(|(n, _)| n)
-        .collect()
-}
-
-/// Displacements given node by node, and faces that follow one another.
-#[test]
-fn what_is_between_moved_nodes_moves_along() {
-    let affine = |[x, y, z]: [f64; 3]| [1e-3 * x + 2e-3 * y, 5e-4 * z - 1e-3 * y, 3e-3 * x - 2e-3 * z];
-    for kind in KINDS {
-        let grid = Grid::new(kind, [2, 2, 2], [1.0; 3]);
-        let mut moves = String::from("*BOUNDARY\n");
-        for (number, x) in grid
-            .points
-            .iter()
-            .filter(|p| p.1.iter().any(|x| *x == 0.0 || *x == 1.0))
-        {
-            for (component, value) in (1..).zip(affine(*x)) {
-                writeln!(moves, "{number}, {component}, {component}, {value:?}").expect("text");
-            }
-        }
-        let text = grid.text() + &step(&moves);
-        run(&text, |deck, result| is_exact(deck, result, affine, kind));
-
-        let mut text = grid.text() + "*NODE\n9001, 5.\n";
-        let (left, right) = (grid.nodes(at(0.0, 0)), grid.nodes(at(1.0, 0)));
-        for (a, b) in left.iter().zip(&right) {
-            for c in 1..=3 {
-                writeln!(text, "*EQUATION\n3\n{b}, {c}, 1., {a}, {c}, -1., 9001, {c}, -1.").expect("text");
-            }
-        }
-        // the corner, and what turns about x
-        let middle = grid.nodes(|x| x == [0.0, 0.0, 1.0])[0];
-        text += &format!("*BOUNDARY\n{}, 1, 3\n{middle}, 2\n", left[0]);
-        text += &step("*BOUNDARY\n9001, 1, 1, 1e-3\n9001, 2, 2, 4e-4\n9001, 3, 3, -6e-4\n");
-        // without shear
-        let exact = |[x, y, z]: [f64; 3]| {
-            [
-                1e-3 * x - 4e-4 * y + 6e-4 * z,
-                4e-4 * x - NU * 1e-3 * y,
-                -6e-4 * x - NU * 1e-3 * z,
-            ]
-        };
-        run(&text, |deck, result| is_exact(deck, result, exact, kind));
     }
 }
 
@@ -419,7 +168,7 @@ fn names_and_numbers_stay() {
 
     let coarse = read(&Grid::new("C3D8", [1; 3], [1.0; 3]).text()).expect("deck");
     assert!(
-        coarse.ignored()[0].why.contains("19 nodes more"),
+        coarse.ignored()[0].why.contains("19 nodes are added"),
         "{}",
         coarse.ignored()[0]
     );
@@ -435,6 +184,20 @@ fn wrong_cells_are_refused() {
     try_one(turned, "1, 19, 21, 27, 25, 1, 3, 9, 7", "1", "turned inside out");
     let flat = "1, 1, 3, 9, 9, 1, 3, 9, 9";
     try_one(hexahedron.replace(element, flat), flat, "1", "no volume");
+    // a triangle across the diagonal from the smallest number
+    let crossing = "*NODE\n901, 0.5, 0.5, 2.\n*ELEMENT, TYPE=C3D4, ELSET=ALL\n7, 21, 27, 25, 901\n8, 21, 25, 19, 901\n";
+    let crossing = hexahedron.replace("*MATERIAL", &format!("{crossing}*MATERIAL"));
+    try_one(
+        crossing.clone(),
+        "7, 21, 27, 25, 901",
+        "7",
+        "element 1 has a face of four corners",
+    );
+    let along = crossing.replace(
+        "7, 21, 27, 25, 901\n8, 21, 25, 19, 901",
+        "7, 19, 21, 27, 901\n8, 19, 27, 25, 901",
+    );
+    assert!(read(&along).is_ok());
     let short = hexahedron.replace(element, "1, 1, 3, 9, 7, 19, 21, 27");
     try_one(
         short,

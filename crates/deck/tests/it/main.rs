@@ -1,11 +1,13 @@
 //! Decks: what they say, that it is the same as what a program says, and what is refused.
 
 mod assembly;
+mod between;
 mod broken;
 mod cells;
 mod couplings;
 mod equation;
 mod gaps;
+mod grid;
 mod meaning;
 mod names;
 mod orientation;

@@ -287,7 +287,7 @@ fn elements_of_second_order_are_read_with_their_nodes() {
     let mixed = read(&(mesh(&straight) + apart)).expect("deck");
     assert_eq!(mixed.mesh().points().len(), straight.points().len() + 10);
     assert!(
-        mixed.ignored()[0].why.contains("6 nodes more"),
+        mixed.ignored()[0].why.contains("6 nodes are added"),
         "{}",
         mixed.ignored()[0]
     );

@@ -48,7 +48,7 @@ fn surfaces_of_triangles() {
     refused("*SURFACE, NAME=A\nEDGE\n", "EDGE", "EDGE", "triangles");
     refused("*SURFACE, NAME=A\nLID, S1\n", "LID, S1", "LID", "without a number");
     let inside = "*ELEMENT, TYPE=CPS6\n504, 1, 2, 14, 1, 1, 1\n*SURFACE, NAME=A\n504\n";
-    refused(inside, "504", "504", "corners of triangle 504");
+    refused(inside, "504", "504", "flat element 504");
     let section = "*SOLID SECTION, ELSET=LID, MATERIAL=STEEL";
     refused(&format!("{section}\n"), section, "ELSET=LID", "solid elements only");
     let loaded = in_step("*DLOAD\nLID, P1, 1.\n");

@@ -46,8 +46,9 @@ impl Division {
     ///
     /// # Errors
     /// [`MeshError::CellNodes`] for a number of nodes that a cell does not take, [`MeshError::CellNode`] for a node that
-    /// there is not, [`MeshError::CellFlat`] for too many corners that are one, [`MeshError::MixedOrder`] for cells with and
-    /// without nodes on their edges, [`MeshError::TooLarge`] for more nodes or tetrahedra than can be numbered.
+    /// there is not, [`MeshError::CellFlat`] for too many corners that are one, [`MeshError::CellsCross`] for triangles that
+    /// do not fit, [`MeshError::MixedOrder`] for cells with and without nodes on their edges, [`MeshError::TooLarge`] for
+    /// more nodes or tetrahedra than can be numbered.
     pub fn new(points: &mut Vec<[f64; 3]>, cells: &[Cell<'_>]) -> Result<Self, MeshError> {
         Self::of(points, cells, false)
     }
@@ -91,8 +92,14 @@ impl Division {
             first: points.len() as u32,
             known: HashMap::new(),
         };
-        // what cells of second order have there is known to those of first order
-        for cell in cells.iter().filter(|cell| raised && order(cell) == 2) {
+        if let Some(error) = crossed(cells) {
+            return Err(error);
+        }
+        // what others have on the edges of triangles, other cells need in faces of four corners, or have no nodes for
+        let alike = cells
+            .iter()
+            .all(|cell| cell.shape == cells[0].shape && order(cell) == first);
+        for cell in cells.iter().filter(|cell| !alike && order(cell) == 2) {
             for (ends, &node) in cell.shape.edges().iter().zip(&cell.nodes[cell.shape.corners()..]) {
                 inside.known.insert(ascending(ends.map(|k| cell.nodes[k])), node);
             }
@@ -111,8 +118,8 @@ impl Division {
     }
 
     /// Nodes that are added behind all others, on edges, in faces and in the middle of hexahedra that have none there: the
-    /// given nodes of the edge, the face or the cell, and the shares of their places in that of the middle by the shape
-    /// functions there.
+    /// given nodes of the edge, the face or the cell, and the shares of their places in that of the new one. These are the
+    /// shape functions of second order, or, of cells of first order, halves for the ends of the edge and zeros.
     pub fn added(&self) -> impl ExactSizeIterator<Item = &[(u32, f64)]> {
         (0..self.added.count()).map(|k| self.added.of(k))
     }
@@ -196,12 +203,42 @@ impl Cell<'_> {
             let on_corners: Vec<usize> = (0..corners).filter(|&k| is_on(&[k])).collect();
             let on_edges = (corners..).zip(edges).filter(|e| is_on(e.1)).map(|e| e.0);
             let mids: Vec<u32> = on_edges.filter_map(|k| self.nodes.get(k)).copied().collect();
+            // straight edges of cells of first order keep their tetrahedra whole, however these are warped
+            let half = |node| 0.5 * f64::from(u8::from(edge.contains(&node)));
             let [corner, mid] = shares(on_corners.len(), mids.len());
-            let corners = on_corners.into_iter().map(|k| (self.nodes[k], corner));
+            let is_first = mids.is_empty();
+            let corners = on_corners.into_iter().map(|k| self.nodes[k]);
+            let corners = corners.map(|node| (node, if is_first { half(node) } else { corner }));
             added.push(corners.chain(mids.into_iter().map(|n| (n, mid))));
             inside.first + added.count() as u32 - 1
         })
     }
+}
+
+/// A triangle of a cell across the diagonal of a face of four corners of another one.
+fn crossed(cells: &[Cell<'_>]) -> Option<MeshError> {
+    let mut triangles: HashMap<[u32; 3], usize> = HashMap::new();
+    let is_mixed = cells.iter().any(|cell| cell.shape.quadrilaterals().next().is_some());
+    for (number, cell) in cells.iter().enumerate().filter(|_| is_mixed) {
+        for face in cell.shape.faces() {
+            if let &[a, b, c] = &cell.corners(face)[..] {
+                triangles.insert(ascending([a, b, c]), number);
+            }
+        }
+    }
+    for (first, cell) in cells.iter().enumerate().filter(|_| !triangles.is_empty()) {
+        for face in cell.shape.quadrilaterals() {
+            let corners = cell.corners(face);
+            let parts: Vec<_> = divide_face(&corners).map(ascending).collect();
+            for left in 0..4 {
+                let three = ascending(std::array::from_fn(|k| corners[(left + 1 + k) % 4]));
+                if let (false, Some(&second)) = (parts.contains(&three), triangles.get(&three)) {
+                    return Some(MeshError::CellsCross { first, second });
+                }
+            }
+        }
+    }
+    None
 }
 
 /// The triangles, of the same orientation, into which a division cuts a face, given by its corners: a quadrilateral is cut
@@ -214,14 +251,10 @@ pub fn divide_face(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     (2..corners.len()).map(move |k| [at(0), at(k - 1), at(k)])
 }
 
-/// Shape functions in the middle of an edge, a face or a hexahedron: at its corners, and at the nodes on its edges.
+/// Shape functions of second order in the middle of a face or a hexahedron with nodes on the edges only: at its corners,
+/// and at these.
 fn shares(corners: usize, mids: usize) -> [f64; 2] {
-    let corners = corners as f64;
-    match mids {
-        0 => [1.0 / corners, 0.0],
-        // serendipity elements
-        mids => [-0.25, (1.0 + 0.25 * corners) / mids as f64],
-    }
+    [-0.25, (1.0 + 0.25 * corners as f64) / mids as f64]
 }
 
 fn middle(points: &[[f64; 3]], between: &[(u32, f64)]) -> Vec3 {

@@ -69,6 +69,9 @@ errors! {
             and then none or one in each face of four corners and in the middle of a hexahedron", shape.corners();
         CellFlat { cell: usize } =
             "cell {cell} has no volume: too many of its corners are one node; remove it, or repair its connectivity";
+        CellsCross { first: usize, second: usize } =
+            "cell {first} has a face of four corners, on which cell {second} has a triangle along the other diagonal; mesh both \
+            alike, put pyramids between them, or make them separate bodies that are tied";
         CellNode { cell: usize, node: u32, nodes: usize } =
             "cell {cell} names node {node}, but there are only {nodes} nodes, numbered from 0; look for a table numbered from 1";
         NoCut = "no face lies between tetrahedra of the first side of the cut and of the other; check what tells the sides";

@@ -134,7 +134,7 @@ proptest! {
             let cells: Vec<Cell> = cells.iter().map(|(shape, nodes)| Cell { shape: *shape, nodes }).collect();
             let raised = Division::raised(&mut points, &cells).unwrap();
             prop_assert_eq!(&raised.tets, &division.tets);
-            // all cells are straight, so that the middle of an edge is that of what it lies in
+            // in the middle of each edge
             let straight = mesh.raise_order().unwrap();
             let same = |a: &[f64; 3], b: &[f64; 3]| (0..3).all(|i| (a[i] - b[i]).abs() < 1e-14);
             let mids = raised.mids.iter().zip(straight.mids()).flat_map(|(a, b)| a.iter().zip(b));

@@ -66,7 +66,7 @@ errors! {
             so keep one group";
         RepeatedName { name: String, groups: [u32; 2] } =
             "the physical groups {} and {} of the Gmsh file are both named {name:?}; rename one", groups[0], groups[1];
-        Mesh(#[from] MeshError) = "the mesh in the Gmsh file (numbers from 0, in the order of the file): {0}";
+        Mesh(#[from] MeshError) = "the mesh in the Gmsh file (numbers from 0, in the order of the file; a divided element is several tetrahedra): {0}";
     }
 }
 
