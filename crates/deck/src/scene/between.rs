@@ -5,8 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use signorini_fem_mesh::History;
 
 use super::faces::Known;
-use super::held::{Held, common};
-use super::supports::Key;
+use super::held::{Held, Key, common};
 use super::timeline::Acting;
 use crate::error::{DeckError, Fault};
 use crate::tolerances::TURNED;

@@ -7,8 +7,9 @@ use signorini_fem_mesh::vec3::scale;
 
 use super::between::shares;
 use super::faces::Known;
+use super::held::Key;
 use super::points::Room;
-use super::supports::{Key, Supports};
+use super::supports::Supports;
 use crate::error::{DeckError, Word};
 use crate::model::Term;
 

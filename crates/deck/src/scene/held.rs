@@ -4,6 +4,9 @@ use super::history::Track;
 use super::timeline::{Acting, Timeline};
 use crate::model::Given;
 
+/// A node of the mesh, or the position of one, and a component.
+pub(super) type Key = (u32, usize);
+
 /// A held component of a node: the target that it is given on first, and what the steps say.
 #[derive(Clone)]
 pub(super) struct Held {

@@ -8,7 +8,7 @@ use signorini_fem_mesh::History;
 use super::between::{Targets, between};
 use super::couplings::Coupling as Node;
 use super::faces::{FaceTable, Known};
-use super::held::Held;
+use super::held::{Held, Key};
 use super::history::{Histories, Track};
 use super::pretension::ONE;
 use super::rigid::{FreeLead, Lead, all_components, rigid_components};
@@ -22,9 +22,6 @@ const SINGLE: &str = "nodes";
 
 /// Name of a target, and the first word that is it.
 type Owner = (String, Word);
-
-/// A node of the mesh, or the position of one, and a component.
-pub(super) type Key = (u32, usize);
 
 /// Held components by node of the mesh and component, and by position of nodes of rigid bodies and couplings.
 #[derive(Default)]
