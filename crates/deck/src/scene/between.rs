@@ -35,19 +35,24 @@ pub(super) fn shares(
     Some(out)
 }
 
-/// Names of the targets of supports, and what each gives.
+/// Names of the targets of supports, and by which of them what is held is given.
 pub(super) struct Targets<'a> {
     pub(super) names: Vec<String>,
-    pub(super) given: &'a BTreeSet<(usize, Key)>,
+    pub(super) given: &'a BTreeMap<Key, BTreeSet<usize>>,
 }
 
 impl Targets<'_> {
     /// The first that gives all of some components; if there is none, one of its own.
     fn of(&mut self, keys: &[Key], owners: BTreeSet<usize>) -> usize {
-        let gives = |owner: &usize| keys.iter().all(|key| self.given.contains(&(*owner, *key)));
-        let all = 0..self.names.len();
-        let found = owners.iter().copied().find(gives).or_else(|| all.clone().find(gives));
-        found.unwrap_or_else(|| {
+        let is_given = |owner: &usize| {
+            keys.iter()
+                .all(|key| self.given.get(key).is_some_and(|by| by.contains(owner)))
+        };
+        let of_first = keys.first().and_then(|key| self.given.get(key));
+        let found = of_first.and_then(|by| by.iter().copied().find(is_given));
+        // of what moves with a rigid body nothing is given by itself
+        let one = owners.first().copied().filter(|_| owners.len() == 1);
+        found.or(one).unwrap_or_else(|| {
             let names: Vec<&str> = owners.iter().map(|owner| self.names[*owner].as_str()).collect();
             let name = format!("between {}", names.join(" and "));
             let known = self.names.iter().position(|other| *other == name);

@@ -30,8 +30,8 @@ struct Table {
     rigid: BTreeMap<Key, Held>,
     /// Of the former those that are released.
     released: Vec<(Key, Held)>,
-    /// What each target gives of nodes of the mesh.
-    given: BTreeSet<(usize, Key)>,
+    /// The targets that give what is held of nodes of the mesh.
+    given: BTreeMap<Key, BTreeSet<usize>>,
     /// The first and the last step that lock the node of a section.
     locks: BTreeMap<u32, [usize; 2]>,
     owners: Vec<Owner>,
@@ -203,7 +203,9 @@ impl Table {
                         equations in one step has to be held from the first one on"
                     )));
                 }
-                self.given.extend(inside.map(|inside| (owner, (inside, component))));
+                if let Some(inside) = inside {
+                    self.given.entry((inside, component)).or_default().insert(owner);
+                }
                 let copies = inside.map(|inside| known.raw.with_copies(inside).skip(1));
                 for key in std::iter::once(key).chain(copies.into_iter().flatten()) {
                     let next = map.len();
