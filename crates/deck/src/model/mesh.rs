@@ -66,7 +66,7 @@ const TYPES: [(&str, Kind, [usize; 2], &str); 16] = {
 pub(super) const TWICE: &str = "a surface of this name is there already; give all its faces at once";
 
 /// Endings of the names of variants that differ in what is not solved here, and in how they are integrated or locked.
-const VARIANTS: [&str; 10] = ["H", "HS", "I", "M", "MH", "T", "R", "RH", "IH", "RT"];
+const VARIANTS: [&str; 11] = ["H", "HS", "I", "M", "MH", "T", "R", "RH", "IH", "RT", "S"];
 
 const LABEL: &str = "a number from 1 to 2147483647";
 

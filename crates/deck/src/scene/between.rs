@@ -2,17 +2,17 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use signorini_fem_mesh::History;
+use signorini_fem_mesh::{History, HistoryError};
 
 use super::faces::Known;
 use super::held::{Held, Key, common};
 use super::timeline::Acting;
-use crate::error::{DeckError, Fault};
+use crate::error::{DeckError, Fault, Word};
 use crate::tolerances::TURNED;
 
 /// The components of the nodes around an added node, with their shares in one of its own: along x, y or z, or, `turned`,
 /// along its axes, if all have the same.
-pub(super) fn shares(
+fn shares(
     known: Known,
     (node, around): (u32, &[(u32, f64)]),
     component: usize,
@@ -28,11 +28,82 @@ pub(super) fn shares(
     }
     let mut out = Vec::with_capacity(around.len());
     for &(other, share) in around {
-        let frame = known.transforms.frame(other, known.raw.points[other as usize]).ok()?;
-        let parts = (0..3).filter(|&k| frame[k][component].abs() > TURNED);
-        out.extend(parts.map(|k| ((other, k), share * frame[k][component])));
+        match known.transforms.frame(other, known.raw.points[other as usize]) {
+            Ok(frame) => {
+                let parts = (0..3).filter(|&k| frame[k][component].abs() > TURNED);
+                out.extend(parts.map(|k| ((other, k), share * frame[k][component])));
+            }
+            // on the axis of cylindrical ones there is no other direction
+            Err(along) if along[component].abs() > 1.0 - TURNED => out.push(((other, 2), share * along[component])),
+            Err(_) => return None,
+        }
     }
     Some(out)
+}
+
+/// An equation that lets an added node follow those around it: the node, the component along x, y and z, or `turned` along
+/// the axes that all have, and the word of an equation that names one of them.
+pub(super) struct Follower {
+    pub(super) node: u32,
+    pub(super) component: usize,
+    pub(super) turned: bool,
+    pub(super) word: Word,
+}
+
+impl Follower {
+    /// Whether it says what some component is.
+    pub(super) fn says(&self, known: Known, (node, component): Key) -> bool {
+        let all = !self.turned && known.transforms.of(node).is_some();
+        self.node == node && (all || self.component == component)
+    }
+}
+
+/// What follows: where equations name some of the components around a node, and supports hold the others in all steps,
+/// but not all of them. Of cylindrical axes all three are one displacement, which is interpolated along x, y and z.
+pub(super) fn followers(known: Known, held: &BTreeMap<Key, Held>) -> Result<Vec<Follower>, DeckError> {
+    let mut named: BTreeMap<Key, Word> = BTreeMap::new();
+    for given in &known.model.equations {
+        for term in &given.terms {
+            for node in known.sets.nodes.find(&term.target, &term.word)? {
+                if let Some(inside) = known.raw.in_mesh(node) {
+                    named
+                        .entry((inside, term.component))
+                        .or_insert_with(|| given.word.clone());
+                }
+            }
+        }
+    }
+    let is_held = |key: &Key| held.get(key).is_some_and(|held| held.span == [None; 2]);
+    let mut out = Vec::new();
+    for added in known.raw.added().filter(|_| !named.is_empty()) {
+        let (node, around) = added;
+        // a node on both sides of a cut has two displacements
+        if around
+            .iter()
+            .any(|(other, _)| known.raw.with_copies(*other).nth(1).is_some())
+        {
+            continue;
+        }
+        let follower = |component: usize, turned: bool| {
+            let parts = shares(known, added, component, turned)?;
+            let is_said = |(key, _): &(Key, f64)| named.contains_key(key) || is_held(key);
+            let word = parts.iter().find_map(|(key, _)| named.get(key))?.clone();
+            let free = parts.iter().any(|(key, _)| !is_held(key));
+            (free && parts.iter().all(is_said)).then_some(Follower {
+                node,
+                component,
+                turned,
+                word,
+            })
+        };
+        let ways = |turned: bool| (0..3).filter_map(|c| follower(c, turned)).collect::<Vec<_>>();
+        let straight = ways(false);
+        match known.transforms.of(node).is_some() && straight.len() < 3 {
+            true => out.extend(ways(true)),
+            false => out.extend(straight),
+        }
+    }
+    Ok(out)
 }
 
 /// Names of the targets of supports, and by which of them what is held is given.
@@ -119,42 +190,75 @@ pub(super) fn between<'a>(
     Ok(out)
 }
 
-/// The sum of displacements, which begins as the last of them; `None` of none.
+/// The sum of displacements, which begins with the last of them, along a straight line if one of these does; `None` of
+/// none.
 fn sum(known: Known, parts: &[(f64, &Held)]) -> Result<Option<Held>, DeckError> {
-    let Some((_, last)) = parts.iter().max_by_key(|part| part.1.span[0]) else {
+    let begins = |held: &Held| (held.span[0], held.fades(known.timeline));
+    let Some(&(_, last)) = parts
+        .iter()
+        .max_by_key(|part| (part.1.span[0], part.0 != 0.0, begins(part.1).1))
+    else {
         return Ok(None);
     };
-    let last: &Held = last;
     let whole = (parts.iter().map(|part| part.0).sum::<f64>() - 1.0).abs() < TURNED;
     if whole && parts.iter().all(|part| part.1.track.says_as(&last.track)) {
         return Ok(Some(last.clone()));
     }
+    let line = known.timeline.span(last.span[0]).filter(|_| begins(last).1);
     let mut moves = Vec::with_capacity(parts.len());
     for (share, held) in parts {
-        if let Some((value, points)) = held.track.course(known.timeline) {
-            let fault = |e| held.track.word.fault(Fault::History(e));
-            moves.push((share * value, History::table(points).map_err(fault)?));
-        }
+        let Some((value, points)) = held.track.course(known.timeline) else {
+            continue;
+        };
+        let fault = |e| held.track.word.fault(Fault::History(e));
+        let history = History::table(points).map_err(fault)?;
+        // the line begins where the node is, and so with what of others is there already
+        let before = line.filter(|_| begins(held) != begins(last)).map(|span| {
+            let (start, end) = (span.start, span.end);
+            (start, end, history.value(start))
+        });
+        moves.push((share * value, history, before));
     }
-    let mut times: Vec<f64> = moves.iter().flat_map(|m| m.1.points().iter().map(|p| p.0)).collect();
+    let course = match &moves[..] {
+        [(_, first, None), more @ ..] if more.iter().all(|m| m.2.is_none() && m.1.points() == first.points()) => {
+            (moves.iter().map(|m| m.0).sum(), first.clone())
+        }
+        _ => joined(&moves).map_err(|e| last.track.word.fault(Fault::History(e)))?,
+    };
+    let track = last.track.moving(course.0, course.1);
+    Ok(Some(Held { track, ..last.clone() }))
+}
+
+/// A value, its factor in time, and, where it does not begin, but a line does, this with the factor at its start.
+type Move = (f64, History, Option<(f64, f64, f64)>);
+
+/// The sum of several as one.
+fn joined(moves: &[Move]) -> Result<(f64, History), HistoryError> {
+    let lines = moves
+        .iter()
+        .filter_map(|m| m.2)
+        .flat_map(|(start, end, _)| [start, end]);
+    let points = moves.iter().flat_map(|m| m.1.points().iter().map(|p| p.0));
+    let mut times: Vec<f64> = points.chain(lines).collect();
     times.sort_by(f64::total_cmp);
     times.dedup();
-    let value = |time: f64| {
-        moves
-            .iter()
-            .map(|(value, history)| value * history.value(time))
-            .sum::<f64>()
+    let one = |(value, history, before): &Move, time: f64| {
+        let left = before.map_or(0.0, |(start, end, left)| {
+            left * ((end - time) / (end - start)).clamp(0.0, 1.0)
+        });
+        value * (history.value(time) - left)
     };
-    let values: Vec<f64> = times.iter().map(|time| value(*time)).collect();
+    let values: Vec<f64> = times
+        .iter()
+        .map(|time| moves.iter().map(|m| one(m, *time)).sum())
+        .collect();
     let largest = values
         .iter()
         .copied()
         .fold(0.0, |m: f64, v| if v.abs() > m.abs() { v } else { m });
     let history = match largest == 0.0 {
-        true => Ok(History::constant(0.0)),
-        false => History::table(times.into_iter().zip(values.iter().map(|v| v / largest)).collect()),
+        true => History::constant(0.0),
+        false => History::table(times.into_iter().zip(values.iter().map(|v| v / largest)).collect())?,
     };
-    let history = history.map_err(|e| last.track.word.fault(Fault::History(e)))?;
-    let track = last.track.moving(largest, history);
-    Ok(Some(Held { track, ..last.clone() }))
+    Ok((largest, history))
 }

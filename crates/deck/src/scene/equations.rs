@@ -5,9 +5,8 @@ use std::collections::BTreeMap;
 use signorini_contact::Equation;
 use signorini_fem_mesh::vec3::scale;
 
-use super::between::shares;
+use super::between::Follower;
 use super::faces::Known;
-use super::held::Key;
 use super::points::Room;
 use super::supports::Supports;
 use crate::error::{DeckError, Word};
@@ -21,8 +20,6 @@ pub(super) fn equations(known: Known, supports: &Supports) -> Result<Vec<(Equati
         .iter()
         .find(|ignored| ignored.word.eq_ignore_ascii_case("UNSORTED"));
     let (mut out, mut room) = (Vec::with_capacity(model.equations.len()), Room::default());
-    // the first of each component of a node
-    let mut named: BTreeMap<Key, &Word> = BTreeMap::new();
     for given in &model.equations {
         let nodes = |term: &Term| {
             let mut nodes = known.sets.nodes.find(&term.target, &term.word)?;
@@ -60,10 +57,7 @@ pub(super) fn equations(known: Known, supports: &Supports) -> Result<Vec<(Equati
                                 .map(|point| (point, unit)),
                         );
                     }
-                    Some(inside) => {
-                        terms.push((inside, vector(known, term, inside)?));
-                        named.entry((inside, term.component)).or_insert(&given.word);
-                    }
+                    Some(inside) => terms.push((inside, vector(known, term, inside)?)),
                 }
             }
             let equation = points
@@ -72,57 +66,26 @@ pub(super) fn equations(known: Known, supports: &Supports) -> Result<Vec<(Equati
             out.push((equation, given.word.clone()));
         }
     }
-    out.extend(follow(known, &named, &supports.held));
+    out.extend(follow(known, &supports.followers));
     Ok(out)
 }
 
-/// Equations that let added nodes follow those around them, as they do in the elements of the deck, where equations name
-/// some of these, and supports hold the others: along x, y and z, or along axes that all have.
-fn follow(known: Known, named: &BTreeMap<Key, &Word>, held: &BTreeMap<Key, Word>) -> Vec<(Equation, Word)> {
-    let mut out = Vec::new();
-    let axis = |node: u32, c: usize| {
-        let frame = known.transforms.frame(node, known.raw.points[node as usize]).ok();
-        frame.map(|frame| frame[c])
-    };
-    for added in known.raw.added().filter(|_| !named.is_empty()) {
-        let (node, around) = added;
-        // a node on both sides of a cut has two displacements
-        if around
-            .iter()
-            .any(|(other, _)| known.raw.with_copies(*other).nth(1).is_some())
-        {
-            continue;
-        }
-        let word = |component: usize, turned: bool| {
-            let parts = shares(known, added, component, turned)?;
-            let is_said = |(key, _): &(Key, f64)| named.contains_key(key) || held.contains_key(key);
-            let first = parts.iter().find_map(|(key, _)| named.get(key));
-            first.filter(|_| parts.iter().all(is_said)).map(|word| (*word).clone())
+/// Equations that let added nodes follow those around them.
+fn follow(known: Known, followers: &[Follower]) -> Vec<(Equation, Word)> {
+    let around: BTreeMap<u32, &[(u32, f64)]> = known.raw.added().filter(|_| !followers.is_empty()).collect();
+    let of = |follower: &Follower| {
+        let Follower { node, component, .. } = *follower;
+        let vector = |n: u32| match known.transforms.frame(n, known.raw.points[n as usize]) {
+            _ if !follower.turned => Some([0, 1, 2].map(|k| if k == component { 1.0 } else { 0.0 })),
+            Ok(frame) => Some(frame[component]),
+            Err(along) => (component == 2).then_some(along),
         };
-        let unit = |c: usize| [0, 1, 2].map(|k| if k == c { 1.0 } else { 0.0 });
-        let straight = (0..3).filter_map(|c| Some((c, false, word(c, false)?)));
-        let mut ways: Vec<(usize, bool, Word)> = straight.collect();
-        if ways.is_empty() && known.transforms.of(node).is_some() {
-            ways.extend((0..3).filter_map(|c| Some((c, true, word(c, true)?))));
-        }
-        for (component, turned, word) in ways {
-            let vector = |n: u32| {
-                if turned {
-                    axis(n, component)
-                } else {
-                    Some(unit(component))
-                }
-            };
-            let term = |(n, share): (u32, f64)| Some((n, scale(share, vector(n)?)));
-            let around = around
-                .iter()
-                .filter(|part| part.1 != 0.0)
-                .map(|(other, share)| (*other, -share));
-            let terms: Option<Vec<_>> = around.chain([(node, 1.0)]).map(term).collect();
-            out.extend(terms.map(|terms| (Equation::new(terms), word)));
-        }
-    }
-    out
+        let around = around.get(&node)?.iter().filter(|part| part.1 != 0.0);
+        let all = around.map(|(other, share)| (*other, -share)).chain([(node, 1.0)]);
+        let terms: Option<Vec<_>> = all.map(|(n, share)| Some((n, scale(share, vector(n)?)))).collect();
+        Some((Equation::new(terms?), follower.word.clone()))
+    };
+    followers.iter().filter_map(of).collect()
 }
 
 /// What multiplies the displacement of a node of the mesh in a term.

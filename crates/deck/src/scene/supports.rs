@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use signorini_contact::{Coupling, Support};
 use signorini_fem_mesh::History;
 
-use super::between::{Targets, between};
+use super::between::{Follower, Targets, between, followers};
 use super::couplings::Coupling as Node;
 use super::faces::{FaceTable, Known};
 use super::held::{Held, Key};
@@ -50,8 +50,8 @@ pub(super) struct Rigid {
 pub(super) struct Supports {
     pub(super) list: Vec<Support>,
     pub(super) names: Vec<Owner>,
-    /// What is held in all steps, with the word that says so.
-    pub(super) held: BTreeMap<Key, Word>,
+    /// Added nodes that equations hold.
+    pub(super) followers: Vec<Follower>,
     pub(super) leads: Vec<Result<Lead, FreeLead>>,
     pub(super) rigid: Vec<Rigid>,
     /// Rotations that are held where there are none.
@@ -109,14 +109,12 @@ pub(super) fn supports(
     let held = held.into_iter().map(|(key, held)| (key, held.track)).collect();
     let leads = known.bodies.leads(known.model, &held);
     let ignored = std::mem::take(&mut table.ignored);
-    table.hold_between(known)?;
-    let always = table.held.iter().filter(|(_, held)| held.span == [None; 2]);
-    let held = always.map(|(key, held)| (*key, held.track.word.clone())).collect();
+    let followers = table.hold_between(known)?;
     let (list, names) = table.lower(known)?;
     Ok(Supports {
         list,
         names,
-        held,
+        followers,
         leads,
         rigid,
         ignored,
@@ -369,18 +367,35 @@ impl Table {
         Ok(None)
     }
 
-    /// Holds added nodes with those around them.
-    fn hold_between(&mut self, known: Known) -> Result<(), DeckError> {
+    /// Holds added nodes with those around them; those that equations hold are given back.
+    fn hold_between(&mut self, known: Known) -> Result<Vec<Follower>, DeckError> {
         let released = self.released.iter().map(|(key, held)| (*key, held));
         let all = self.held.iter().map(|(key, held)| (*key, held)).chain(released);
         let mut targets = Targets {
             names: self.owners.iter().map(|owner| owner.0.clone()).collect(),
             given: &self.given,
         };
-        let new = between(known, all, &mut targets)?;
+        let mut new = between(known, all, &mut targets)?;
+        let followers = followers(known, &self.held)?;
+        let mut of_node: BTreeMap<u32, Vec<&Follower>> = BTreeMap::new();
+        for follower in &followers {
+            of_node.entry(follower.node).or_default().push(follower);
+        }
+        new.retain(|(key, _)| {
+            let mut own = of_node.get(&key.0).into_iter().flatten();
+            !own.any(|follower| follower.says(known, *key))
+        });
+        let mut words: BTreeMap<usize, &Word> = BTreeMap::new();
+        for (_, held) in &new {
+            words.entry(held.owner).or_insert(&held.track.word);
+        }
         for name in targets.names.split_off(self.owners.len()) {
-            let own = new.iter().find(|(_, held)| held.owner == self.owners.len());
-            self.owners.extend(own.map(|(_, held)| (name, held.track.word.clone())));
+            // one that nothing is left of names nothing
+            let word = words
+                .get(&self.owners.len())
+                .copied()
+                .or(words.values().next().copied());
+            self.owners.extend(word.map(|word| (name, word.clone())));
         }
         for (key, held) in new {
             match held.span[1] {
@@ -388,7 +403,7 @@ impl Table {
                 Some(_) => self.released.push((key, held)),
             }
         }
-        Ok(())
+        Ok(followers)
     }
 
     fn lower(

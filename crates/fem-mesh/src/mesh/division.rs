@@ -96,13 +96,15 @@ impl Division {
         if let Some(error) = crossed(cells) {
             return Err(error);
         }
-        // what others have on the edges of triangles, other cells need in faces of four corners, or have no nodes for
-        let alike = cells
-            .iter()
-            .all(|cell| cell.shape == cells[0].shape && order(cell) == first);
-        for cell in cells.iter().filter(|cell| !alike && order(cell) == 2) {
-            for (ends, &node) in cell.shape.edges().iter().zip(&cell.nodes[cell.shape.corners()..]) {
-                inside.known.insert(ascending(ends.map(|k| cell.nodes[k])), node);
+        // an edge of one cell may be the diagonal of another one: edges come before diagonals, and what has nodes first
+        let is_fit = |cell: &Cell| cell.shape == cells[0].shape && order(cell) == first && cell.is_alike();
+        let passes = [(2, true), (1, true), (2, false)];
+        for (wanted, own) in passes
+            .into_iter()
+            .filter(|_| (raised || first == 2) && !cells.iter().all(is_fit))
+        {
+            for cell in cells.iter().filter(|cell| order(cell) == wanted) {
+                cell.note(own, &mut inside, &mut out.added);
             }
         }
         for (number, cell) in cells.iter().enumerate() {
@@ -167,6 +169,38 @@ impl Cell<'_> {
         of.iter().map(|&k| self.nodes[k]).collect()
     }
 
+    /// Each once, in their order.
+    fn distinct_corners(&self, of: &[usize]) -> Vec<u32> {
+        let mut out: Vec<u32> = Vec::with_capacity(of.len());
+        for node in self.corners(of) {
+            if !out.contains(&node) {
+                out.push(node);
+            }
+        }
+        out
+    }
+
+    /// Whether cells like this one meet in faces that both cut alike: all of its faces have the same number of corners.
+    fn is_alike(&self) -> bool {
+        let corners = self.shape.faces().iter().map(|face| self.distinct_corners(face).len());
+        let mut distinct = corners.collect::<Vec<_>>();
+        distinct.dedup();
+        distinct.len() == 1
+    }
+
+    /// Finds the nodes on the edges of its tetrahedra, or on its `own` edges only.
+    fn note(&self, own: bool, inside: &mut Inside, added: &mut Lists<(u32, f64)>) {
+        for tet in self.tetrahedra() {
+            for edge in EDGES.map(|edge| edge.map(|k| tet[k])) {
+                let mut edges = self.shape.edges().iter();
+                if !own || edges.any(|ends| edge.iter().all(|node| self.has(ends, *node))) {
+                    let node = self.on_edge(edge, inside, added);
+                    inside.known.entry(ascending(edge)).or_insert(node);
+                }
+            }
+        }
+    }
+
     /// Whether a node is among some corners.
     fn has(&self, corners: &[usize], node: u32) -> bool {
         corners.iter().any(|&k| self.nodes[k] == node)
@@ -186,6 +220,11 @@ impl Cell<'_> {
         let own = edges.iter().position(|ends| is_between(ends));
         let face = self.shape.quadrilaterals().position(is_between);
         let inner = self.nodes.get(corners + edges.len()..).unwrap_or(&[]);
+        if own.is_none()
+            && let Some(&node) = inside.known.get(&ascending(edge))
+        {
+            return node;
+        }
         let given = match (own, face) {
             (Some(own), _) => self.nodes.get(corners + own),
             (None, Some(face)) => inner.get(face),
@@ -218,18 +257,23 @@ impl Cell<'_> {
 
 /// A triangle of a cell across the diagonal of a face of four corners of another one.
 fn crossed(cells: &[Cell<'_>]) -> Option<MeshError> {
+    if cells.iter().all(|cell| cell.is_alike() && cell.shape == cells[0].shape) {
+        return None;
+    }
     let mut triangles: HashMap<[u32; 3], usize> = HashMap::new();
-    let is_mixed = cells.iter().any(|cell| cell.shape.quadrilaterals().next().is_some());
-    for (number, cell) in cells.iter().enumerate().filter(|_| is_mixed) {
+    for (number, cell) in cells.iter().enumerate() {
         for face in cell.shape.faces() {
-            if let &[a, b, c] = &cell.corners(face)[..] {
+            if let &[a, b, c] = &cell.distinct_corners(face)[..] {
                 triangles.insert(ascending([a, b, c]), number);
             }
         }
     }
-    for (first, cell) in cells.iter().enumerate().filter(|_| !triangles.is_empty()) {
+    for (first, cell) in cells.iter().enumerate() {
         for face in cell.shape.quadrilaterals() {
-            let corners = cell.corners(face);
+            let corners = cell.distinct_corners(face);
+            if corners.len() < 4 {
+                continue;
+            }
             let parts: Vec<_> = divide_face(&corners).map(ascending).collect();
             for left in 0..4 {
                 let three = ascending(std::array::from_fn(|k| corners[(left + 1 + k) % 4]));
