@@ -230,3 +230,54 @@ fn what_is_between_sets_is_in_none() {
         "is on no face",
     );
 }
+
+/// Where equations and supports that begin later say the same of an added node, one of them does.
+#[test]
+fn equations_stand_beside_supports() {
+    for kind in ["C3D8", "C3D20"] {
+        let grid = Grid::new(kind, [1, 1, 1], [1.0; 3]);
+        let corner = |p: [f64; 3]| grid.nodes(|x| x == p)[0];
+        let [a, b] = [corner([0.0; 3]), corner([1.0, 0.0, 0.0])];
+        let mut text =
+            grid.text() + &grid.nset("TOP", at(1.0, 2)) + &format!("*EQUATION\n2\n{a}, 3, 1., {b}, 3, -1.\n");
+        text += &("*BOUNDARY\nTOP, 1, 3\n".to_owned() + &step(&format!("*CLOAD\n{b}, 3, -100.\n")));
+        text += &step(&format!("*BOUNDARY\n{a}, 3, 3, 1e-3\n"));
+        let mut last = 0.0;
+        run(&text, |deck, result| {
+            let ends = [a, b].map(|n| deck.node(n as u32).expect("a node") as usize);
+            let [first, second] = ends.map(|n| result.displacement()[n][2]);
+            assert!((first - second).abs() < 1e-9, "{first} {second}");
+            if kind == "C3D8" {
+                let is_mid = |x: &[f64; 3]| *x == [0.5, 0.0, 0.0];
+                let mid = deck.mesh().points().iter().position(is_mid).expect("a node");
+                assert!((result.displacement()[mid][2] - first).abs() < 1e-9);
+            }
+            last = first;
+        });
+        assert!((last - 1e-3).abs() < 1e-9);
+    }
+}
+
+/// A support that begins along a line takes added nodes from where they are, also beside what is held before.
+#[test]
+fn lines_begin_where_added_nodes_are() {
+    let grid = Grid::new("C3D8", [1, 1, 1], [1.0; 3]);
+    let sets = grid.nset("A", |x| x[2] == 0.0 && x[0] == 0.0) + &grid.nset("B", |x| x[2] == 0.0 && x[0] == 1.0);
+    let text = grid.text() + &sets + &grid.nset("TOP", at(1.0, 2)) + "*BOUNDARY\nTOP, 1, 3\n";
+    let second = "*STEP\n*STATIC\n0.25, 1.\n*BOUNDARY\nB, 3, 3, 0.03\n*END STEP\n";
+    let text = text + &step("*BOUNDARY\nA, 3, 3, 0.01\n") + second;
+    let mut start = None;
+    run(&text, |deck, result| {
+        let at = |x: [f64; 3]| {
+            let node = deck.mesh().points().iter().position(|p| *p == x).expect("a node");
+            result.displacement()[node][2]
+        };
+        let found = at([0.5, 0.0, 0.0]);
+        let part = result.time() - 1.0;
+        let left = *start.get_or_insert(found);
+        let wanted = left + part * (0.02 - left);
+        assert!((found - wanted).abs() < 1e-8, "{part}: {found} {wanted}");
+        assert!((at([0.0, 0.5, 0.0]) - 0.01).abs() < 1e-8);
+    });
+    assert!(start.is_some_and(|left| (left - 0.02).abs() > 1e-3));
+}

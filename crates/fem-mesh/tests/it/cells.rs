@@ -196,6 +196,44 @@ fn collapsed_hexahedra() {
     }
 }
 
+/// An edge of one cell on the diagonal of another one, in whatever order they are.
+#[test]
+fn edges_come_before_diagonals() {
+    let mut points: Vec<[f64; 3]> = Vec::new();
+    for z in [0.0, 1.0, 2.0] {
+        points.extend([[0.0, 0.0, z], [1.0, 0.0, z], [1.0, 1.0, z], [0.0, 1.0, z]]);
+    }
+    points.pop();
+    let cube = Cell {
+        shape: CellShape::Hexahedron,
+        nodes: &[0, 1, 2, 3, 4, 5, 6, 7],
+    };
+    let prism = Cell {
+        shape: CellShape::Prism,
+        nodes: &[4, 5, 6, 8, 9, 10],
+    };
+    for cells in [[cube, prism], [prism, cube]] {
+        let mut points = points.clone();
+        let division = Division::raised(&mut points, &cells).unwrap();
+        let between: Vec<usize> = division
+            .added()
+            .filter(|around| [4, 6].iter().all(|n| around.iter().any(|a| a.0 == *n && a.1 != 0.0)))
+            .map(<[_]>::len)
+            .collect();
+        assert_eq!(between, [2]);
+        assert!((mesh(points, &division).unwrap().total_volume() - 1.5).abs() < 1e-12);
+    }
+    // the other diagonal does not fit
+    let across = Cell {
+        shape: CellShape::Prism,
+        nodes: &[5, 6, 7, 8, 9, 10],
+    };
+    assert!(matches!(
+        Division::new(&mut points, &[across, cube]),
+        Err(MeshError::CellsCross { first: 1, second: 0 })
+    ));
+}
+
 #[test]
 fn wrong_cells() {
     let mut points = vec![[0.0; 3]; 8];
