@@ -112,8 +112,9 @@
 //!
 //! Where all nodes around one that is added are in a set, held, moved, coupled or named by equations, it is, too, with
 //! the displacement that the element of the deck has there. Where they are in no common set, their reaction is that
-//! `between` their sets. Not so where some are held and the others belong to a coupling that is free or loaded. Added
-//! nodes have no number of their own; [`Deck::node_numbers`] gives that of a neighbour.
+//! `between` their sets. Not so where some are held and the others belong to a coupling that is free or loaded, or some
+//! are named by equations and the others held in some steps only. Added nodes have no number of their own;
+//! [`Deck::node_numbers`] gives that of a neighbour.
 //!
 //! # What steps mean
 //!
