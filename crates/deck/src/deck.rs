@@ -12,8 +12,8 @@ use crate::scene::{self, Translated};
 
 /// A deck as a mesh and a scene, with the names and numbers that it had. See the [crate](crate) for what is read.
 ///
-/// Nodes and tetrahedra of the mesh are in the order of the file, nodes between those of divided elements behind them; nodes
-/// that no element uses are dropped. The
+/// Nodes and tetrahedra of the mesh are in the order of the file, nodes between those of divided elements behind them;
+/// nodes that no element uses are dropped. The
 /// names of sets and surfaces are compared without regard to case and blanks.
 #[derive(Debug)]
 pub struct Deck {
@@ -128,8 +128,8 @@ impl Deck {
         self.is.nodes.get(number)
     }
 
-    /// The numbers that the nodes of the mesh have in the deck; where it is cut, or elements are divided, one number is there
-    /// more than once.
+    /// The numbers that the nodes of the mesh have in the deck; where it is cut, or elements are divided, one number is
+    /// there more than once.
     pub fn node_numbers(&self) -> &[u32] {
         &self.is.node_labels
     }

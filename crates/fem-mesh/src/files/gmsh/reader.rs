@@ -14,8 +14,8 @@ pub(super) enum Kind {
     Cell(CellShape),
 }
 
-/// The element types: number, count of nodes, what they are if they are not skipped, and where the nodes of a [`Cell`](crate::mesh::Cell) behind
-/// its corners stand if Gmsh has another order.
+/// The element types: number, count of nodes, what they are if they are not skipped, and where the nodes of a
+/// [`Cell`](crate::mesh::Cell) behind its corners stand if Gmsh has another order.
 const TYPES: [(i32, usize, Option<Kind>, &[usize]); 19] = [
     (1, 2, None, &[]),
     (2, 3, Some(Kind::Face { corners: 3 }), &[]),
