@@ -10,7 +10,7 @@ use std::ops::Range;
 use crate::tables::{Lists, ascending};
 use crate::vec3::{Vec3, add, scale};
 
-use super::cells::{Cell, EDGES, TET_FACES};
+use super::cells::{Cell, CellShape, EDGES, TET_FACES};
 use super::error::MeshError;
 
 /// Cells divided into tetrahedra. Corners of a cell may be one node, as those of a hexahedron that stands for a prism.
@@ -180,12 +180,13 @@ impl Cell<'_> {
         out
     }
 
-    /// Whether cells like this one meet in faces that both cut alike: all of its faces have the same number of corners.
+    /// Whether it meets cells like itself only in faces of as many corners.
     fn is_alike(&self) -> bool {
-        let corners = self.shape.faces().iter().map(|face| self.distinct_corners(face).len());
-        let mut distinct = corners.collect::<Vec<_>>();
-        distinct.dedup();
-        distinct.len() == 1
+        match self.shape {
+            CellShape::Tetrahedron => true,
+            CellShape::Hexahedron => (1..8).all(|k| !self.nodes[..k].contains(&self.nodes[k])),
+            CellShape::Pyramid | CellShape::Prism => false,
+        }
     }
 
     /// Finds the nodes on the edges of its tetrahedra, or on its `own` edges only.
