@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use signorini_fem_mesh::{History, HistoryError};
 
 use super::faces::Known;
-use super::held::{Held, Key, common};
+use super::held::{Held, Key, Owner, common};
 use super::timeline::Acting;
 use crate::error::{DeckError, Fault, Word};
 use crate::tolerances::TURNED;
@@ -51,10 +51,11 @@ pub(super) struct Follower {
 }
 
 impl Follower {
-    /// Whether it says what some component is.
-    pub(super) fn says(&self, known: Known, (node, component): Key) -> bool {
-        let all = !self.turned && known.transforms.of(node).is_some();
-        self.node == node && (all || self.component == component)
+    /// The components that it says something of.
+    pub(super) fn keys(&self, known: Known) -> impl Iterator<Item = Key> {
+        let all = !self.turned && known.transforms.of(self.node).is_some();
+        let (node, own) = (self.node, self.component);
+        (0..3).filter(move |&c| all || c == own).map(move |c| (node, c))
     }
 }
 
@@ -106,15 +107,15 @@ pub(super) fn followers(known: Known, held: &BTreeMap<Key, Held>) -> Result<Vec<
     Ok(out)
 }
 
-/// Names of the targets of supports, and by which of them what is held is given.
+/// The targets of supports, and by which of them what is held is given.
 pub(super) struct Targets<'a> {
-    pub(super) names: Vec<String>,
+    pub(super) owners: &'a mut Vec<Owner>,
     pub(super) given: &'a BTreeMap<Key, BTreeSet<usize>>,
 }
 
 impl Targets<'_> {
     /// The first that gives all of some components; if there is none, one of its own.
-    fn of(&mut self, keys: &[Key], owners: BTreeSet<usize>) -> usize {
+    fn of(&mut self, keys: &[Key], parts: &[(f64, &Held)], word: &Word) -> usize {
         let is_given = |owner: &usize| {
             keys.iter()
                 .all(|key| self.given.get(key).is_some_and(|by| by.contains(owner)))
@@ -122,14 +123,15 @@ impl Targets<'_> {
         let of_first = keys.first().and_then(|key| self.given.get(key));
         let found = of_first.and_then(|by| by.iter().copied().find(is_given));
         // of what moves with a rigid body nothing is given by itself
-        let one = owners.first().copied().filter(|_| owners.len() == 1);
+        let several: BTreeSet<usize> = parts.iter().map(|part| part.1.owner).collect();
+        let one = several.first().copied().filter(|_| several.len() == 1);
         found.or(one).unwrap_or_else(|| {
-            let names: Vec<&str> = owners.iter().map(|owner| self.names[*owner].as_str()).collect();
+            let names: Vec<&str> = several.iter().map(|owner| self.owners[*owner].0.as_str()).collect();
             let name = format!("between {}", names.join(" and "));
-            let known = self.names.iter().position(|other| *other == name);
+            let known = self.owners.iter().position(|other| other.0 == name);
             known.unwrap_or_else(|| {
-                self.names.push(name);
-                self.names.len() - 1
+                self.owners.push((name, word.clone()));
+                self.owners.len() - 1
             })
         })
     }
@@ -180,7 +182,7 @@ pub(super) fn between<'a>(
                 let Some(held) = sum(known, &parts)? else {
                     continue;
                 };
-                let owner = targets.of(&keys, parts.iter().map(|part| part.1.owner).collect());
+                let owner = targets.of(&keys, &parts, &held.track.word);
                 let held = Held { owner, span, ..held };
                 let copies = known.raw.with_copies(added.0);
                 out.extend(copies.map(|node| ((node, component), held.clone())));

@@ -1,7 +1,5 @@
 //! Equations between nodes.
 
-use std::collections::BTreeMap;
-
 use signorini_contact::Equation;
 use signorini_fem_mesh::vec3::scale;
 
@@ -66,26 +64,22 @@ pub(super) fn equations(known: Known, supports: &Supports) -> Result<Vec<(Equati
             out.push((equation, given.word.clone()));
         }
     }
-    out.extend(follow(known, &supports.followers));
+    out.extend(supports.followers.iter().filter_map(|follower| follow(known, follower)));
     Ok(out)
 }
 
-/// Equations that let added nodes follow those around them.
-fn follow(known: Known, followers: &[Follower]) -> Vec<(Equation, Word)> {
-    let around: BTreeMap<u32, &[(u32, f64)]> = known.raw.added().filter(|_| !followers.is_empty()).collect();
-    let of = |follower: &Follower| {
-        let Follower { node, component, .. } = *follower;
-        let vector = |n: u32| match known.transforms.frame(n, known.raw.points[n as usize]) {
-            _ if !follower.turned => Some([0, 1, 2].map(|k| if k == component { 1.0 } else { 0.0 })),
-            Ok(frame) => Some(frame[component]),
-            Err(along) => (component == 2).then_some(along),
-        };
-        let around = around.get(&node)?.iter().filter(|part| part.1 != 0.0);
-        let all = around.map(|(other, share)| (*other, -share)).chain([(node, 1.0)]);
-        let terms: Option<Vec<_>> = all.map(|(n, share)| Some((n, scale(share, vector(n)?)))).collect();
-        Some((Equation::new(terms?), follower.word.clone()))
+/// The equation that lets an added node follow those around it.
+fn follow(known: Known, follower: &Follower) -> Option<(Equation, Word)> {
+    let Follower { node, component, .. } = *follower;
+    let vector = |n: u32| match known.transforms.frame(n, known.raw.points[n as usize]) {
+        _ if !follower.turned => Some([0, 1, 2].map(|k| if k == component { 1.0 } else { 0.0 })),
+        Ok(frame) => Some(frame[component]),
+        Err(along) => (component == 2).then_some(along),
     };
-    followers.iter().filter_map(of).collect()
+    let around = known.raw.around(node).iter().filter(|part| part.1 != 0.0);
+    let all = around.map(|(other, share)| (*other, -share)).chain([(node, 1.0)]);
+    let terms: Option<Vec<_>> = all.map(|(n, share)| Some((n, scale(share, vector(n)?)))).collect();
+    Some((Equation::new(terms?), follower.word.clone()))
 }
 
 /// What multiplies the displacement of a node of the mesh in a term.

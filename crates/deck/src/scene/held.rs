@@ -2,10 +2,14 @@
 
 use super::history::Track;
 use super::timeline::{Acting, Timeline};
+use crate::error::Word;
 use crate::model::Given;
 
 /// A node of the mesh, or the position of one, and a component.
 pub(super) type Key = (u32, usize);
+
+/// Name of a target, and the first word that is it.
+pub(super) type Owner = (String, Word);
 
 /// A held component of a node: the target that it is given on first, and what the steps say.
 #[derive(Clone)]

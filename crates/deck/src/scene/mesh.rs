@@ -81,7 +81,7 @@ impl Raw {
         };
         let division = division.map_err(|source| match source {
             MeshError::CellFlat { cell } => element(cell).word().fault(Fault::Volume),
-            MeshError::CellsCross { first, second, .. } => element(second).word().cannot(format!(
+            MeshError::CellsCross { first, second } => element(second).word().cannot(format!(
                 "element {} has a face of four corners here, which this cuts into triangles along the other diagonal; mesh both \
                 alike, or join them as separate bodies with *TIE",
                 element(first).label
@@ -188,7 +188,7 @@ impl Raw {
     }
 
     /// Nodes of the mesh, ascending, with the added ones all of whose neighbours are among them.
-    pub(super) fn with_added(&self, nodes: Vec<u32>) -> Vec<u32> {
+    fn with_added(&self, nodes: Vec<u32>) -> Vec<u32> {
         if self.added.count() == 0 {
             return nodes;
         }
@@ -201,11 +201,8 @@ impl Raw {
                 .iter()
                 .all(|n| nodes.binary_search(&n.0).is_ok())
         };
-        let inside: Vec<u32> = near
-            .copied()
-            .filter(is_inside)
-            .map(|k| self.first_added() + k)
-            .collect();
+        let first = self.first_added();
+        let inside: Vec<u32> = near.copied().filter(is_inside).map(|k| first + k).collect();
         distinct(nodes.into_iter().chain(inside))
     }
 
@@ -217,6 +214,11 @@ impl Raw {
     pub(super) fn added(&self) -> impl Iterator<Item = (u32, &[(u32, f64)])> {
         let first = self.first_added();
         (0..self.added.count()).map(move |k| (first + k as u32, self.added.of(k)))
+    }
+
+    /// The neighbours of one of them.
+    pub(super) fn around(&self, added: u32) -> &[(u32, f64)] {
+        self.added.of((added - self.first_added()) as usize)
     }
 
     /// Nodes of the deck, by position, as nodes of the mesh, those that are in it and those between them.

@@ -8,7 +8,7 @@ use signorini_fem_mesh::History;
 use super::between::{Follower, Targets, between, followers};
 use super::couplings::Coupling as Node;
 use super::faces::{FaceTable, Known};
-use super::held::{Held, Key};
+use super::held::{Held, Key, Owner};
 use super::history::{Histories, Track};
 use super::pretension::ONE;
 use super::rigid::{FreeLead, Lead, all_components, rigid_components};
@@ -19,9 +19,6 @@ use crate::model::{COMPONENT, Components, Condition, Ignored, Target};
 
 /// Name of what is given on nodes by their numbers.
 const SINGLE: &str = "nodes";
-
-/// Name of a target, and the first word that is it.
-type Owner = (String, Word);
 
 /// Held components by node of the mesh and component, and by position of nodes of rigid bodies and couplings.
 #[derive(Default)]
@@ -372,31 +369,13 @@ impl Table {
         let released = self.released.iter().map(|(key, held)| (*key, held));
         let all = self.held.iter().map(|(key, held)| (*key, held)).chain(released);
         let mut targets = Targets {
-            names: self.owners.iter().map(|owner| owner.0.clone()).collect(),
+            owners: &mut self.owners,
             given: &self.given,
         };
         let mut new = between(known, all, &mut targets)?;
         let followers = followers(known, &self.held)?;
-        let mut of_node: BTreeMap<u32, Vec<&Follower>> = BTreeMap::new();
-        for follower in &followers {
-            of_node.entry(follower.node).or_default().push(follower);
-        }
-        new.retain(|(key, _)| {
-            let mut own = of_node.get(&key.0).into_iter().flatten();
-            !own.any(|follower| follower.says(known, *key))
-        });
-        let mut words: BTreeMap<usize, &Word> = BTreeMap::new();
-        for (_, held) in &new {
-            words.entry(held.owner).or_insert(&held.track.word);
-        }
-        for name in targets.names.split_off(self.owners.len()) {
-            // one that nothing is left of names nothing
-            let word = words
-                .get(&self.owners.len())
-                .copied()
-                .or(words.values().next().copied());
-            self.owners.extend(word.map(|word| (name, word.clone())));
-        }
+        let said: BTreeSet<Key> = followers.iter().flat_map(|follower| follower.keys(known)).collect();
+        new.retain(|(key, _)| !said.contains(key));
         for (key, held) in new {
             match held.span[1] {
                 None => drop(self.held.entry(key).or_insert(held)),

@@ -56,7 +56,7 @@ impl CellShape {
     /// Corners of the faces, counter-clockwise seen from inside a cell of positive volume.
     pub fn faces(self) -> &'static [&'static [usize]] {
         match self {
-            Self::Tetrahedron => &[&[0, 1, 2], &[0, 3, 1], &[1, 3, 2], &[2, 3, 0]],
+            Self::Tetrahedron => &[&TET_FACES[0], &TET_FACES[1], &TET_FACES[2], &TET_FACES[3]],
             Self::Pyramid => &[&[0, 1, 2, 3], &[0, 4, 1], &[1, 4, 2], &[2, 4, 3], &[3, 4, 0]],
             Self::Prism => &[&[0, 1, 2], &[3, 5, 4], &[0, 3, 4, 1], &[1, 4, 5, 2], &[2, 5, 3, 0]],
             Self::Hexahedron => &[
