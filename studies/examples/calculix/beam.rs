@@ -1,5 +1,8 @@
 //! A beam of cells of all kinds under a pressure: what elements are worth in CalculiX, and what this library makes of them.
 
+#[path = "../../../crates/fem-mesh/tests/it/grid.rs"]
+mod grid;
+
 use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -51,50 +54,21 @@ impl Cells {
     /// `cells` across, ten times as many along.
     pub fn new((shape, order): (CellShape, usize), cells: usize) -> Self {
         let n = [10 * cells, cells, cells];
-        let along = n.map(|n| 2 * n + 1);
-        let number = |p: [usize; 3]| 1 + (p[2] * along[1] + p[1]) * along[0] + p[0];
-        let square = [[0, 0], [1, 0], [1, 1], [0, 1]];
-        let sections: &[&[usize]] = match shape {
-            CellShape::Prism => &[&[0, 1, 3], &[1, 2, 3]],
-            _ => &[&[0, 1, 2, 3]],
+        let from_one = |nodes: Vec<usize>| nodes.into_iter().map(|n| n + 1).collect();
+        let cells: Vec<Vec<usize>> = grid::cells(shape, order, n).into_iter().map(from_one).collect();
+        let used: BTreeSet<usize> = cells.iter().flatten().copied().collect();
+        let place = |&number: &usize| {
+            let x = grid::place(n, number - 1);
+            (number, [0, 1, 2].map(|i| LENGTHS[i] * x[i]))
         };
-        let mut out = Vec::new();
-        for k in 0..n[0] * n[1] * n[2] {
-            let at = [k % n[0], k / n[0] % n[1], k / n[0] / n[1]];
-            for section in sections {
-                let corner = |level: usize, k: usize| {
-                    let [x, y] = square[k];
-                    [2 * (at[0] + x), 2 * (at[1] + y), 2 * (at[2] + level)]
-                };
-                let corners: Vec<_> = (0..2)
-                    .flat_map(|level| section.iter().map(move |k| (level, *k)))
-                    .collect();
-                let corners: Vec<_> = corners.into_iter().map(|(level, k)| corner(level, k)).collect();
-                let mut nodes: Vec<usize> = corners.iter().map(|p| number(*p)).collect();
-                if order == 2 {
-                    let middle = |&[a, b]: &[usize; 2]| number([0, 1, 2].map(|i| (corners[a][i] + corners[b][i]) / 2));
-                    nodes.extend(shape.edges().iter().map(middle));
-                }
-                out.push(nodes);
-            }
-        }
-        let used: BTreeSet<usize> = out.iter().flatten().copied().collect();
-        let place = |number: &usize| {
-            let k = number - 1;
-            let p = [k % along[0], k / along[0] % along[1], k / along[0] / along[1]];
-            (
-                *number,
-                [0, 1, 2].map(|i| LENGTHS[i] * p[i] as f64 / (along[i] - 1) as f64),
-            )
-        };
-        let ends = [0, along[1] - 1]
-            .into_iter()
-            .flat_map(|y| [0, along[2] - 1].map(|z| [along[0] - 1, y, z]));
+        let points: Vec<_> = used.iter().map(place).collect();
+        let is_corner = |x: [f64; 3]| x[0] == LENGTHS[0] && (1..3).all(|i| x[i] == 0.0 || x[i] == LENGTHS[i]);
+        let tip = points.iter().filter(|p| is_corner(p.1)).map(|p| p.0).collect();
         Self {
-            points: used.iter().map(place).collect(),
-            tip: ends.map(number).collect(),
-            cells: out,
+            points,
+            cells,
             shape,
+            tip,
         }
     }
 

@@ -7,6 +7,7 @@ use signorini_contact::{Settings, Simulation, StepResult};
 use signorini_deck::Deck;
 use signorini_fem_mesh::mesh::CellShape;
 
+use crate::boxes;
 use crate::write::{STEEL, read};
 
 /// Young's modulus and Poisson's ratio of [`STEEL`].
@@ -34,56 +35,15 @@ impl Grid {
             "C3D5" => (CellShape::Pyramid, 1),
             _ => (CellShape::Hexahedron, 1),
         };
-        let cube = [
-            [0, 0, 0],
-            [2, 0, 0],
-            [2, 2, 0],
-            [0, 2, 0],
-            [0, 0, 2],
-            [2, 0, 2],
-            [2, 2, 2],
-            [0, 2, 2],
-        ];
-        let corners: Vec<Vec<[usize; 3]>> = match shape {
-            CellShape::Prism => [[0, 1, 3, 4, 5, 7], [1, 2, 3, 5, 6, 7]]
-                .map(|cell| cell.map(|k| cube[k]).to_vec())
-                .to_vec(),
-            // between the middle and the sides
-            CellShape::Pyramid => {
-                let side = |face: &&[usize]| face.iter().map(|&k| cube[k]).chain([[1, 1, 1]]).collect();
-                CellShape::Hexahedron.faces().iter().map(side).collect()
-            }
-            _ => vec![cube.to_vec()],
-        };
-        let points_along = n.map(|n| 2 * n + 1);
-        let number = |p: [usize; 3]| 1 + (p[2] * points_along[1] + p[1]) * points_along[0] + p[0];
-        let mut cells = Vec::new();
-        for box_ in 0..n[0] * n[1] * n[2] {
-            let at = [box_ % n[0], box_ / n[0] % n[1], box_ / n[0] / n[1]];
-            for corners in &corners {
-                let corner = |k: usize| [0, 1, 2].map(|i| 2 * at[i] + corners[k][i]);
-                let mut nodes: Vec<usize> = (0..corners.len()).map(|k| number(corner(k))).collect();
-                if order == 2 {
-                    let middle = |&[a, b]: &[usize; 2]| number([0, 1, 2].map(|i| (corner(a)[i] + corner(b)[i]) / 2));
-                    nodes.extend(shape.edges().iter().map(middle));
-                }
-                cells.push(nodes);
-            }
-        }
+        let cells = boxes::cells(shape, order, n);
         let used: BTreeSet<usize> = cells.iter().flatten().copied().collect();
         let place = |&number: &usize| {
-            let k = number - 1;
-            let p = [
-                k % points_along[0],
-                k / points_along[0] % points_along[1],
-                k / points_along[0] / points_along[1],
-            ];
-            (
-                number,
-                [0, 1, 2].map(|i| p[i] as f64 / (points_along[i] - 1) as f64 * size[i]),
-            )
+            let x = boxes::place(n, number);
+            (number + 1, [0, 1, 2].map(|i| x[i] * size[i]))
         };
         let points = used.iter().map(place).collect();
+        let from_one = |nodes: Vec<usize>| nodes.into_iter().map(|n| n + 1).collect();
+        let cells = cells.into_iter().map(from_one).collect();
         Self {
             kind,
             shape,

@@ -2,6 +2,8 @@
 
 mod assembly;
 mod between;
+#[path = "../../../fem-mesh/tests/it/grid.rs"]
+mod boxes;
 mod broken;
 mod cells;
 mod couplings;
@@ -23,3 +25,6 @@ mod ties;
 mod transforms;
 mod volume;
 mod write;
+
+// for the grid of cells
+use signorini_fem_mesh::mesh::CellShape;

@@ -1,5 +1,6 @@
 //! Hexahedra, prisms and pyramids become tetrahedra that fill them and fit together.
 
+use crate::grid;
 use proptest::prelude::*;
 use signorini_fem_mesh::mesh::{Cell, CellShape, Division};
 use signorini_fem_mesh::{MeshError, TetMesh};
@@ -10,58 +11,19 @@ type OwnCell = (CellShape, Vec<u32>);
 /// A box of `n` cells along each side, of hexahedra or each of them as two prisms, whose nodes are numbered as `number`
 /// says; `order` 2 has nodes on edges, 3 also in faces and in the middle.
 fn cells(n: [usize; 3], prisms: bool, order: usize, number: &[u32]) -> (Vec<[f64; 3]>, Vec<OwnCell>) {
-    let step = order.min(2);
-    let size = n.map(|n| 2 * n + 1);
-    let at = |p: [usize; 3]| (p[2] * size[1] + p[1]) * size[0] + p[0];
     let shape = if prisms {
         CellShape::Prism
     } else {
         CellShape::Hexahedron
     };
-    let corners: &[&[[usize; 3]]] = match prisms {
-        false => &[&[
-            [0, 0, 0],
-            [2, 0, 0],
-            [2, 2, 0],
-            [0, 2, 0],
-            [0, 0, 2],
-            [2, 0, 2],
-            [2, 2, 2],
-            [0, 2, 2],
-        ]],
-        true => &[
-            &[[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2], [2, 0, 2], [0, 2, 2]],
-            &[[2, 0, 0], [2, 2, 0], [0, 2, 0], [2, 0, 2], [2, 2, 2], [0, 2, 2]],
-        ],
-    };
-    let mut places = Vec::new();
-    let of_box = (0..n[0] * n[1] * n[2]).map(|k| [k % n[0], k / n[0] % n[1], k / n[0] / n[1]]);
-    for cell in of_box {
-        for corners in corners {
-            let corner = |k: usize| [0, 1, 2].map(|i| 2 * cell[i] + corners[k][i]);
-            let middle = |of: &[usize]| [0, 1, 2].map(|i| of.iter().map(|&k| corner(k)[i]).sum::<usize>() / of.len());
-            let mut nodes: Vec<usize> = (0..shape.corners()).map(|k| at(corner(k))).collect();
-            if step == 2 {
-                nodes.extend(shape.edges().iter().map(|e| at(middle(e))));
-            }
-            if order == 3 {
-                nodes.extend(shape.faces().iter().filter(|f| f.len() == 4).map(|f| at(middle(f))));
-                let inside = (shape == CellShape::Hexahedron).then(|| at(middle(&[0, 6])));
-                nodes.extend(inside);
-            }
-            places.push(nodes);
-        }
-    }
+    let places = grid::cells(shape, order, n);
     let mut used: Vec<usize> = places.iter().flatten().copied().collect();
     used.sort_unstable();
     used.dedup();
     // the nodes in the order of the wanted numbers
     let wish = |place: &usize| (number[*place % number.len()], *place);
     used.sort_unstable_by_key(wish);
-    let points = used.iter().map(|&p| {
-        let p = [p % size[0], p / size[0] % size[1], p / size[0] / size[1]];
-        [0, 1, 2].map(|i| p[i] as f64 / (size[i] - 1) as f64)
-    });
+    let points = used.iter().map(|&number| grid::place(n, number));
     let new = |place: &usize| used.binary_search_by_key(&wish(place), wish).unwrap() as u32;
     let cells = places.iter().map(|nodes| (shape, nodes.iter().map(new).collect()));
     (points.collect(), cells.collect())

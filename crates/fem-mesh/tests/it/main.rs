@@ -10,6 +10,7 @@ mod fields;
 mod gmsh;
 #[cfg(feature = "gmsh")]
 mod gmsh_quadratic;
+mod grid;
 mod loads;
 mod merge;
 mod mesh;
@@ -23,3 +24,6 @@ mod recovery;
 mod refusals;
 mod stiffness;
 mod surface;
+
+// for the grid of cells
+use signorini_fem_mesh::mesh::CellShape;
