@@ -3,6 +3,7 @@
 use crate::tables::DisjointSets;
 use std::collections::BTreeMap;
 
+use super::cells::EDGES;
 use super::check;
 use super::error::MeshError;
 use super::faces::{NONE, face_nodes};
@@ -34,30 +35,84 @@ impl TetMesh {
         tags: [FacetTag; 2],
     ) -> Result<(Self, Vec<u32>), MeshError> {
         let sides: Vec<Option<bool>> = (0..self.tets.len()).map(is_first).collect();
+        let is_cut = |tet: usize, other: usize| sides[tet].is_some_and(|first| sides[other] == Some(!first));
+        self.open(
+            &sides,
+            self.inner_faces(|tet, _, other| is_cut(tet, other)),
+            tags,
+            false,
+        )
+    }
+
+    /// Cuts a body open along faces inside it that need not lead through: a crack, the tip of which stays joined. It has
+    /// all faces between two tetrahedra of which `is_on(corners)` holds; `is_first(tet)` tells on which side of them a
+    /// tetrahedron is. Tags, nodes and copies are as those of [`cut`](Self::cut). A face with all corners at the tip stays
+    /// closed.
+    ///
+    /// ```
+    /// use signorini_fem_mesh::{Brick, FacetTag, vec3};
+    ///
+    /// let block = Brick::new([2.0, 1.0, 1.0], [4, 2, 2]).build()?;
+    /// let is_on = |face: [[f64; 3]; 3]| face.iter().all(|[x, _, z]| *x <= 1.0 && *z == 0.5);
+    /// let is_below = |tet| vec3::centroid(&block.tet_points(tet))[2] < 0.5;
+    /// let (cracked, copied) = block.crack(is_on, is_below, [7, 8].map(FacetTag))?;
+    /// // the tip is at x = 1
+    /// assert!(copied.iter().all(|node| block.points()[*node as usize][0] < 1.0));
+    /// assert_eq!(cracked.components(), block.components());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`MeshError::NoCut`] if nothing opens, [`MeshError::CrackSides`] if both tetrahedra at a face are said to be on
+    /// one side, [`MeshError::TooLarge`].
+    pub fn crack(
+        &self,
+        is_on: impl Fn([[f64; 3]; 3]) -> bool,
+        is_first: impl Fn(usize) -> bool,
+        tags: [FacetTag; 2],
+    ) -> Result<(Self, Vec<u32>), MeshError> {
+        let corners = |tet: usize, face: usize| face_nodes(&self.tets[tet], face).map(|n| self.points[n as usize]);
+        let faces = self.inner_faces(|tet, face, _| is_on(corners(tet, face)));
+        let mut sides = vec![None; self.tets.len()];
+        faces.iter().for_each(|&(tet, _)| sides[tet] = Some(is_first(tet)));
+        let across = |&(tet, face): &(usize, usize)| (tet, self.neighbours[tet][face] as usize);
+        if let Some((first, second)) = faces.iter().map(across).find(|(a, b)| sides[*a] == sides[*b]) {
+            return Err(MeshError::CrackSides { first, second });
+        }
+        self.open(&sides, faces, tags, true)
+    }
+
+    /// Faces between tetrahedra of which `is_chosen(tet, face, other)` holds, from both sides.
+    fn inner_faces(&self, is_chosen: impl Fn(usize, usize, usize) -> bool) -> Vec<(usize, usize)> {
+        let chosen = |tet: usize| {
+            let faces = self.neighbours(tet).into_iter().enumerate();
+            let faces = faces.filter_map(|(face, other)| Some((face, other?)));
+            faces
+                .filter_map(|(face, other)| is_chosen(tet, face, other).then_some((tet, face)))
+                .collect::<Vec<_>>()
+        };
+        (0..self.tets.len()).flat_map(chosen).collect()
+    }
+
+    /// Opens faces, which are listed from both of their tetrahedra, those of which have a side. Nodes around which both
+    /// sides are still joined stay so, if that `may_end` inside a body.
+    fn open(
+        &self,
+        sides: &[Option<bool>],
+        mut faces: Vec<(usize, usize)>,
+        tags: [FacetTag; 2],
+        may_end: bool,
+    ) -> Result<(Self, Vec<u32>), MeshError> {
         let mut out = self.clone();
         // tetrahedra around the nodes of the cut
         let mut around: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
-        for (tet, side) in sides.iter().enumerate() {
-            let Some(first) = *side else {
-                continue;
-            };
-            for (face, other) in self.neighbours(tet).into_iter().enumerate() {
-                if other.is_none_or(|other| sides[other] != Some(!first)) {
-                    continue;
-                }
-                let nodes = face_nodes(&self.tets[tet], face);
-                let tag = tags[usize::from(!first)];
-                out.neighbours[tet][face] = NONE;
-                out.facets.push(Facet { nodes, tag });
-                out.owners.push(tet as u32);
-                around.extend(nodes.map(|node| (node, Vec::new())));
-                if self.order() == 2 {
-                    around.extend(self.mids_of(tet, nodes).map(|node| (node, Vec::new())));
-                }
+        for &(tet, face) in &faces {
+            let nodes = face_nodes(&self.tets[tet], face);
+            out.neighbours[tet][face] = NONE;
+            around.extend(nodes.map(|node| (node, Vec::new())));
+            if self.order() == 2 {
+                around.extend(self.mids_of(tet, nodes).map(|node| (node, Vec::new())));
             }
-        }
-        if around.is_empty() {
-            return Err(MeshError::NoCut);
         }
         for tet in 0..self.tets.len() {
             for node in self.nodes_of(tet) {
@@ -66,8 +121,8 @@ impl TetMesh {
                 }
             }
         }
-        let mut copied = Vec::new();
-        let mut copies: BTreeMap<(usize, u32), u32> = BTreeMap::new();
+        // for each node that opens the tetrahedra of the second side
+        let mut opened: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (&node, tets) in &around {
             let mut sets = DisjointSets::new(tets.len());
             for (k, &tet) in tets.iter().enumerate() {
@@ -84,18 +139,54 @@ impl TetMesh {
                 }
             }
             if found.values().any(|sides| *sides == [true; 2]) {
-                return Err(MeshError::CutEnds { node });
-            }
-            let copy = (self.points.len() + copied.len()) as u32;
-            for (k, &tet) in tets.iter().enumerate() {
-                if found.get(&sets.first(k)) == Some(&[false, true]) {
-                    copies.insert((tet, node), copy);
+                match may_end {
+                    true => continue,
+                    false => return Err(MeshError::CutEnds { node }),
                 }
             }
-            copied.push(node);
+            let is_second = |k: &usize| found.get(&sets.first(*k)) == Some(&[false, true]);
+            opened.insert(node, (0..tets.len()).filter(is_second).map(|k| tets[k]).collect());
+        }
+        if may_end {
+            // what has all corners at the tip cannot open
+            let corners = |tet: usize, edge: usize| EDGES[edge].map(|k| self.tets[tet][k]);
+            let edge = |node: &u32| {
+                let tet = around[node][0];
+                let mids = self.mids.get(tet)?;
+                Some(corners(tet, mids.iter().position(|mid| mid == node)?))
+            };
+            let ends: Vec<(u32, Option<[u32; 2]>)> = opened.keys().map(|node| (*node, edge(node))).collect();
+            for (node, ends) in ends {
+                if ends.is_some_and(|ends| ends.iter().all(|end| !opened.contains_key(end))) {
+                    opened.remove(&node);
+                }
+            }
+            faces.retain(|&(tet, face)| {
+                let opens = face_nodes(&self.tets[tet], face)
+                    .iter()
+                    .any(|node| opened.contains_key(node));
+                if !opens {
+                    out.neighbours[tet][face] = self.neighbours[tet][face];
+                }
+                opens
+            });
+        }
+        if faces.is_empty() {
+            return Err(MeshError::NoCut);
+        }
+        check::numbered("nodes", self.points.len() + opened.len())?;
+        for &(tet, face) in &faces {
+            let tag = tags[usize::from(sides[tet] == Some(false))];
+            let nodes = face_nodes(&self.tets[tet], face);
+            out.facets.push(Facet { nodes, tag });
+            out.owners.push(tet as u32);
+        }
+        let mut copies: BTreeMap<(usize, u32), u32> = BTreeMap::new();
+        for (&node, tets) in &opened {
+            let copy = out.points.len() as u32;
+            copies.extend(tets.iter().map(|tet| ((*tet, node), copy)));
             out.points.push(self.points[node as usize]);
         }
-        check::sizes(out.points.len(), out.tets.len())?;
         for (&(tet, node), &copy) in &copies {
             let mids = out.mids.get_mut(tet).into_iter().flatten();
             let places = out.tets[tet].iter_mut().chain(mids);
@@ -105,7 +196,7 @@ impl TetMesh {
             let copy = |node: u32| copies.get(&(owner as usize, node)).copied();
             facet.nodes = facet.nodes.map(|node| copy(node).unwrap_or(node));
         }
-        Ok((out, copied))
+        Ok((out, opened.into_keys().collect()))
     }
 
     /// All nodes of a tetrahedron.

@@ -33,7 +33,7 @@ errors! {
             first";
         CoincidentNodes { first: usize, second: usize, distance: f64 } =
             "nodes {first} and {second} of the same body coincide (distance {distance:e}); merge them (merge_nodes), \
-            otherwise the body is cut open there";
+            otherwise the body is cut open there, or tag the facets of both sides if it is a crack";
         FacetNodeOutOfRange { facet: usize, node: u32, nodes: usize } =
             "facet {facet} names node {node}, but there are only {nodes} nodes, numbered from 0; look for a table \
             numbered from 1";
@@ -42,7 +42,7 @@ errors! {
             nodes, so mesh them together";
         FacetInside { facet: usize, nodes: [u32; 3], first: usize, second: usize } =
             "facet {facet} with nodes {nodes:?} lies inside the body, between the tetrahedra {first} and {second}; \
-            tag only facets of the boundary";
+            tag only facets of the boundary (a crack has facets of its own on both sides: TetMesh::crack, Gmsh's plugin Crack)";
         FacetRepeated { first: usize, second: usize, nodes: [u32; 3] } =
             "facets {first} and {second} are the same triangle {nodes:?}; a facet has one tag, so list it once";
         MidNodeCorner { tet: usize, node: u32 } =
@@ -74,7 +74,11 @@ errors! {
             alike, put pyramids between them, or make them separate bodies that are tied";
         CellNode { cell: usize, node: u32, nodes: usize } =
             "cell {cell} names node {node}, but there are only {nodes} nodes, numbered from 0; look for a table numbered from 1";
-        NoCut = "no face lies between tetrahedra of the first side of the cut and of the other; check what tells the sides";
+        NoCut = "no face inside the mesh opens; check what tells its sides, and of a crack its faces: one with all corners at \
+            the tip stays closed";
+        CrackSides { first: usize, second: usize } =
+            "a face of the crack is between the tetrahedra {first} and {second}, and both are said to be on one side; check \
+            what tells the sides";
         CutEnds { node: u32 } =
             "the cut ends inside a body, at node {node}, around which both sides are still joined; let it go through to \
             the boundary";

@@ -95,18 +95,29 @@ impl TetMesh {
         check::no_dangling(points.len(), &tets, &mids)?;
         let table = FaceTable::new(points.len(), &tets);
         let neighbours = table.neighbours(tets.len())?;
-        check::no_coincident(&points, &tets, &mids)?;
         let (facets, owners) = place_facets(points.len(), &tets, &table, facets)?;
-        let regions = vec![0; tets.len()];
-        Ok(Self {
+        let mesh = Self {
+            regions: vec![0; tets.len()],
             points,
             tets,
             mids,
             facets,
             owners,
-            regions,
             neighbours,
-        })
+        };
+        check::no_coincident(&mesh.points, &mesh.tets, &mesh.mids, || mesh.named())?;
+        Ok(mesh)
+    }
+
+    /// Which nodes are on facets with a tag.
+    fn named(&self) -> Vec<bool> {
+        let mut named = vec![false; self.points.len()];
+        for (facet, corners) in self.facets.iter().enumerate() {
+            let mids = (self.order() == 2).then(|| self.facet_mids(facet));
+            let nodes = corners.nodes.into_iter().chain(mids.into_iter().flatten());
+            nodes.for_each(|node| named[node as usize] = true);
+        }
+        named
     }
 
     /// Sets the material region of each tetrahedron.

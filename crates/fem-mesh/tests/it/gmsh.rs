@@ -443,3 +443,15 @@ fn sizes_are_a_view_of_scalar_tetrahedra() {
     let message = write_sizes(&nowhere, &mesh, &sizes).expect_err("folder").to_string();
     assert!(message.contains("folder.pos"), "{message}");
 }
+
+/// What Gmsh's plugin Crack makes of a surface inside a block: facets on both sides with tags of their own.
+#[test]
+fn a_crack_of_gmsh_is_read() {
+    let path = format!("{}/tests/data/crack.msh", env!("CARGO_MANIFEST_DIR"));
+    let (mesh, names) = read_gmsh(path).expect("a mesh");
+    let [lower, upper] = ["lower", "upper"].map(|name| mesh.nodes_on(names.surface(name).expect("a name")));
+    let tip = lower.iter().filter(|node| upper.contains(node)).count();
+    assert_eq!((lower.len(), tip), (upper.len(), 3));
+    assert_eq!(mesh.components().iter().max(), Some(&0));
+    assert!((mesh.total_volume() - 2.0).abs() < 1e-9);
+}
