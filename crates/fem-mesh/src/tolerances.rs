@@ -61,6 +61,10 @@ pub(crate) const PLANE: f64 = 0.5;
 /// Most tables of local numbers, each as long as the mesh has nodes: useful threads.
 pub(crate) const TABLES: usize = 16;
 
+/// Area of a crack within a part, over that of the neck around its tip, from which the part is split. A penny-shaped crack
+/// in a block of 1 to 100 parts: with 0.1 to 0.25 34 to 88 products, never split 621 in 27 parts, always split 48 in one.
+pub(crate) const NECK: f64 = 0.2;
+
 // Means on surfaces
 
 /// Sine of the angles between the normals of a facet below which it is plane: files have nine digits.

@@ -11,6 +11,7 @@ use crate::tables::{Lists, distinct};
 use crate::tolerances::{MOST_SWEEPS, SWEEP_MOVES};
 use crate::vec3::{self, Vec3};
 
+use super::cracks::split_at_cracks;
 use super::parts::{expect_parts, renumbered, split_by};
 use super::subdomains::DecompositionError;
 
@@ -21,7 +22,8 @@ use super::subdomains::DecompositionError;
 /// Each tetrahedron goes to the part whose centre is nearest, out of its own part and those that touch it, centres
 /// are computed anew, and so on until next to nothing moves. A centre is the mean over tetrahedra, not over volume,
 /// so that parts keep similar numbers of them in graded meshes. What a part does not reach through faces goes to the
-/// neighbour that shares most with it.
+/// neighbour that shares most with it. At last parts that have both faces of a crack (tagged facets in one place) are
+/// split between them, unless the crack is small against what joins them.
 ///
 /// `groups` are labels, one for each tetrahedron, of what a part must not mix: materials. Bodies are never mixed. The
 /// result is accepted by [`Decomposition::from_parts`](crate::Decomposition::from_parts): all parts are connected, and
@@ -34,10 +36,12 @@ pub fn compact_parts(mesh: &TetMesh, groups: &[u32], parts: &[u32]) -> Result<Ve
     expect_parts(mesh, groups)?;
     expect_parts(mesh, parts)?;
     let groups = connected_sets(mesh.neighbour_table(), |a, b| groups[a] == groups[b]);
-    Ok(compact(mesh, &groups, parts))
+    let mut parts = compact(mesh, &groups, parts);
+    split_at_cracks(mesh, &mut parts);
+    Ok(renumbered(&parts))
 }
 
-/// As [`compact_parts`], with groups that hang together.
+/// As [`compact_parts`], with groups that hang together, numbers with gaps, and parts on both sides of a crack.
 pub(crate) fn compact(mesh: &TetMesh, groups: &[u32], parts: &[u32]) -> Vec<u32> {
     let tets = parts.len();
     let centres: Vec<Vec3> = (0..tets).map(|tet| vec3::centroid(&mesh.tet_points(tet))).collect();
@@ -51,7 +55,7 @@ pub(crate) fn compact(mesh: &TetMesh, groups: &[u32], parts: &[u32]) -> Vec<u32>
         }
     }
     join_pieces(mesh, groups, &mut parts);
-    renumbered(&parts)
+    parts
 }
 
 /// One number for each part of a group, without gaps.

@@ -1,6 +1,7 @@
 //! A cut for a mesh that comes without one: slabs of equal numbers of tetrahedra, made compact.
 
 use super::compact::{compact, join_pieces};
+use super::cracks::split_at_cracks;
 use super::parts::{expect_parts, renumbered};
 use super::subdomains::DecompositionError;
 use crate::mesh::{TetMesh, connected_sets, extent};
@@ -11,7 +12,7 @@ use crate::vec3::{self, Vec3};
 /// How many parts [`even_parts`] makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum PartCount {
-    /// So many, but where bodies or groups are more.
+    /// So many; more where bodies or groups are, or cracks split them.
     Exactly(usize),
     /// A number near by for which the parts of a body that fills its box are nearest to cubes; a sixth of it where
     /// quadratic cells are graded so strongly along all axes that many parts would be flat.
@@ -24,7 +25,7 @@ pub enum PartCount {
 /// connected group gets its share of the parts by its number of tetrahedra, at least one. It is cut across the longest
 /// edge of its box into slabs, slabs into columns, columns into blocks; cells of a structured mesh stay whole where the
 /// number of parts allows it. What is not compact then is made so as by
-/// [`compact_parts`](crate::decomposition::compact_parts). In a box with cells graded along an axis, slabs of long
+/// [`compact_parts`](crate::decomposition::compact_parts), cracks included. In a box with cells graded along an axis, slabs of long
 /// cells get fewer of them, so that parts are not flat, and where all fell into boxes they stay so. The parts are
 /// numbered by their first tetrahedra.
 ///
@@ -78,14 +79,19 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
         }
     }
     join_pieces(mesh, &groups, &mut slabs);
-    if whole.iter().all(|w| *w) {
-        return Ok(renumbered(&slabs));
-    }
-    let mut parts = compact(mesh, &groups, &slabs);
-    // boxes stay: their faces are plane, and along ragged ones long cells hang loose
-    for tet in (0..tets).filter(|&tet| whole[groups[tet] as usize]) {
-        parts[tet] = tets as u32 + slabs[tet];
-    }
+    let mut parts = match whole.iter().all(|w| *w) {
+        true => slabs,
+        false => {
+            let mut parts = compact(mesh, &groups, &slabs);
+            // boxes stay: their faces are plane, and along ragged ones long cells hang loose
+            for tet in (0..tets).filter(|&tet| whole[groups[tet] as usize]) {
+                parts[tet] = tets as u32 + slabs[tet];
+            }
+            parts
+        }
+    };
+    parts = renumbered(&parts);
+    split_at_cracks(mesh, &mut parts);
     Ok(renumbered(&parts))
 }
 

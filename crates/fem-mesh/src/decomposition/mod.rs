@@ -7,6 +7,7 @@
 
 mod boxes;
 mod compact;
+mod cracks;
 mod even;
 mod parts;
 mod subdomains;

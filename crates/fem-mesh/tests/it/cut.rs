@@ -1,6 +1,7 @@
 //! Meshes that are cut open.
 
 use signorini_fem_mesh::brick::{X_MAX, Z_MIN};
+use signorini_fem_mesh::decomposition::{PartCount, compact_parts, even_parts};
 use signorini_fem_mesh::mesh::drop_unused_nodes;
 use signorini_fem_mesh::vec3::{add, area_vector, centroid, norm};
 use signorini_fem_mesh::{Brick, Decomposition, FacetTag, MeshError, TetMesh};
@@ -21,6 +22,19 @@ fn bar(order: usize) -> TetMesh {
 
 fn middle(mesh: &TetMesh, tet: usize) -> [f64; 3] {
     centroid(&mesh.tet_points(tet))
+}
+
+/// The boundary is closed, and what is known of the mesh is as of one that is made anew.
+fn assert_sound(cut: &TetMesh) {
+    let sum = cut.boundary_facets().iter().fold([0.0; 3], |sum, facet| {
+        add(sum, area_vector(&facet.nodes.map(|n| cut.points()[n as usize])))
+    });
+    assert!(norm(sum) < 1e-12);
+    let again = match cut.order() {
+        1 => TetMesh::new(cut.points().to_vec(), cut.tets().to_vec(), cut.facets().to_vec()),
+        _ => TetMesh::quadratic(cut.points().to_vec(), cut.quadratic_tets(), cut.facets().to_vec()),
+    };
+    assert_eq!(again.expect("a mesh"), *cut);
 }
 
 /// Facets of both sides lie on each other, the mesh falls into two bodies, and everything else stays.
@@ -55,21 +69,7 @@ fn both_sides_match() {
             (cut.total_volume(), cut.tets().len()),
             (whole.total_volume(), whole.tets().len())
         );
-        // the boundary of each body is closed, and what is known of it is as of a mesh that is made anew
-        let sum = cut.boundary_facets().iter().fold([0.0; 3], |sum, facet| {
-            add(sum, area_vector(&facet.nodes.map(|n| cut.points()[n as usize])))
-        });
-        assert!(norm(sum) < 1e-12);
-        let tets = cut.tets().to_vec();
-        let again = match order {
-            1 => TetMesh::new(cut.points().to_vec(), tets, cut.facets().to_vec()),
-            _ => {
-                let quadratic = tets.iter().zip(cut.mids());
-                let quadratic = quadratic.map(|(t, m)| std::array::from_fn(|k| if k < 4 { t[k] } else { m[k - 4] }));
-                TetMesh::quadratic(cut.points().to_vec(), quadratic.collect(), cut.facets().to_vec())
-            }
-        };
-        assert_eq!(again.expect("a mesh"), cut);
+        assert_sound(&cut);
         assert_eq!(Decomposition::whole(&cut).subdomains().len(), 2);
     }
 }
@@ -123,4 +123,110 @@ fn cuts_that_are_none_are_refused() {
     };
     let error = whole.cut(half, TAGS).expect_err("ends inside");
     assert!(matches!(error, MeshError::CutEnds { .. }), "{error}");
+}
+
+fn in_plane(face: [[f64; 3]; 3]) -> bool {
+    face.iter().all(|p| (p[2] - 0.5).abs() < 1e-9)
+}
+
+/// A block with layers that are plane.
+fn layers(order: usize) -> TetMesh {
+    let mesh = Brick::new([2.0, 2.0, 1.0], [6, 6, 2]).build().expect("brick");
+    if order == 2 {
+        mesh.raise_order().expect("order 2")
+    } else {
+        mesh
+    }
+}
+
+/// A crack inside a block: its tip is on both sides, all other nodes on one, and the block stays one body. One that leads
+/// through is a cut.
+#[test]
+fn a_crack_keeps_its_tip() {
+    for order in [1, 2] {
+        let whole = layers(order);
+        let is_lower = |tet: usize| middle(&whole, tet)[2] < 0.5;
+        let radius = |p: [f64; 3]| (p[0] - 1.0).hypot(p[1] - 1.0);
+        let is_on = |face: [[f64; 3]; 3]| in_plane(face) && face.iter().all(|p| radius(*p) < 0.8);
+        let (cracked, copied) = whole.crack(is_on, is_lower, TAGS).expect("crack");
+        assert_sound(&cracked);
+        assert_eq!(cracked.components(), whole.components());
+        let [low, up] = TAGS.map(|tag| cracked.nodes_on(tag));
+        let tip: Vec<u32> = low.iter().copied().filter(|n| up.contains(n)).collect();
+        assert_eq!(low.len(), tip.len() + copied.len());
+        assert!(copied.iter().all(|n| low.contains(n) && !tip.contains(n)));
+        let smallest = tip
+            .iter()
+            .map(|n| radius(whole.points()[*n as usize]))
+            .fold(f64::INFINITY, f64::min);
+        assert!(smallest > 0.5, "{smallest}");
+        let facets = |tag| cracked.facets().iter().filter(move |f| f.tag == tag).count();
+        let inside = whole.tets().iter().enumerate().filter(|(t, _)| is_lower(*t));
+        let faces = inside.flat_map(|(_, t)| [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]].map(|f| f.map(|k| t[k])));
+        let faces = faces.filter(|f| is_on(f.map(|n| whole.points()[n as usize])));
+        // all of them but those with all corners at the tip
+        let open = faces.filter(|f| f.iter().any(|n| copied.contains(n))).count();
+        assert_eq!((facets(TAGS[0]), facets(TAGS[1])), (open, open));
+        let through = whole.crack(in_plane, is_lower, TAGS).expect("through");
+        assert_eq!(through, whole.cut(|tet| Some(is_lower(tet)), TAGS).expect("cut"));
+    }
+}
+
+#[test]
+fn cracks_that_are_none_are_refused() {
+    let whole = layers(2);
+    let is_lower = |tet: usize| middle(&whole, tet)[2] < 0.5;
+    assert_eq!(whole.crack(|_| false, is_lower, TAGS), Err(MeshError::NoCut));
+    // a face alone inside is all tip
+    let one = whole.tets().iter().find_map(|t| {
+        let faces = [[1, 2, 3], [0, 2, 3], [0, 1, 3], [0, 1, 2]].map(|f| f.map(|k| whole.points()[t[k] as usize]));
+        let inner = |face: &[[f64; 3]; 3]| {
+            in_plane(*face)
+                && face
+                    .iter()
+                    .all(|p| (0.1..1.9).contains(&p[0]) && (0.1..1.9).contains(&p[1]))
+        };
+        faces.into_iter().find(inner)
+    });
+    let one = one.expect("a face");
+    let is_one = |face: [[f64; 3]; 3]| face.iter().all(|p| one.contains(p));
+    assert_eq!(whole.crack(is_one, is_lower, TAGS), Err(MeshError::NoCut));
+    let error = whole.crack(in_plane, |_| true, TAGS).expect_err("one side");
+    assert!(matches!(error, MeshError::CrackSides { .. }), "{error}");
+}
+
+/// No subdomain hangs together by what is left around a crack; a crack that is small against its part stays in it.
+#[test]
+fn parts_do_not_straddle_a_crack() {
+    let whole = Brick::new([2.0, 2.0, 2.0], [8, 8, 8]).build().expect("brick");
+    let is_lower = |tet: usize| middle(&whole, tet)[2] < 1.0;
+    let is_on = |face: [[f64; 3]; 3]| face.iter().all(|p| p[2] == 1.0 && p[0] < 1.6);
+    let cracked = whole.crack(is_on, is_lower, TAGS).expect("crack").0;
+    let on_both_sides = |parts: &[u32]| {
+        let facets = || cracked.facets().iter().enumerate();
+        let of = |tag| {
+            facets()
+                .filter(move |(_, f)| f.tag == tag)
+                .map(|(k, _)| parts[cracked.facet_owner(k)])
+        };
+        let [low, up] = TAGS.map(|tag| of(tag).collect::<Vec<u32>>());
+        up.iter().any(|part| low.contains(part))
+    };
+    let groups = vec![0; cracked.tets().len()];
+    for count in [3, 5, 12, 27] {
+        let parts = even_parts(&cracked, &groups, PartCount::Exactly(count)).expect("parts");
+        let subdomains = Decomposition::from_parts(&cracked, &parts).expect("connected");
+        assert!((count..=2 * count).contains(&subdomains.subdomains().len()));
+        assert!(!on_both_sides(&parts), "{count} parts");
+        let whole_parts = even_parts(&whole, &groups, PartCount::Exactly(count)).expect("parts");
+        let again = compact_parts(&cracked, &groups, &whole_parts).expect("parts");
+        assert!(!on_both_sides(&again), "{count} compact parts");
+    }
+    // a whole body stays
+    let parts = even_parts(&cracked, &groups, PartCount::Exactly(1)).expect("parts");
+    assert_eq!(parts, groups);
+    let is_on = |face: [[f64; 3]; 3]| face.iter().all(|p| p[2] == 1.0 && p[0].max(p[1]) < 0.3);
+    let cracked = whole.crack(is_on, is_lower, TAGS).expect("crack").0;
+    let parts = even_parts(&cracked, &groups, PartCount::Exactly(3)).expect("parts");
+    assert_eq!(parts.iter().max(), Some(&2));
 }
