@@ -128,7 +128,7 @@ signorini_fem_mesh::errors! {
             gap; where Contact::between is to press them apart, tell how far by with_gap";
         SameSide { contact: usize, tag: u32 } =
             "contact {contact}: the tag {tag} is on both sides; give each side its own (TetMesh::map_tags before \
-            append keeps those of two bodies apart)";
+            append keeps those of two bodies apart, NewPhysicalGroup of Gmsh's plugin Crack those of a crack)";
         Tied { contact: usize } =
             "contact {contact} is tied: its sides move alike, and friction, gap, compliance, direction and rotation mean \
             nothing; leave them out, or use Contact::between";

@@ -24,6 +24,7 @@ const NEAR: f64 = 10.0;
 /// The partner of a contact node.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Partner {
+    /// The node itself at the tip of a crack, which is on both sides.
     pub(super) node: u32,
     /// Distance along the normal of the contact node, m; negative where the bodies overlap.
     pub(super) gap: f64,
@@ -173,8 +174,11 @@ fn nodes(
     rounding: f64,
 ) -> Result<Option<Vec<Partner>>, ContactError> {
     let partner = |(local, &node): (usize, &u32)| {
+        if other.surface.local(node).is_some() {
+            // the tip of a crack; in a mesh of order 2 its mean moves
+            return Ok((mesh.order() == 1).then_some(Partner { node, gap: 0.0 }));
+        }
         let seen_from = Viewer {
-            node,
             at: mesh.points()[node as usize],
             normal: fixed.unwrap_or(&surface.frames()[local]).normal,
             size: surface.areas()[local].sqrt(),
@@ -262,7 +266,6 @@ fn match_facets(mesh: &TetMesh, surface: &Surface, mut found: Vec<Partner>, othe
 
 /// A contact node that looks for its partner.
 struct Viewer {
-    node: u32,
     at: [f64; 3],
     normal: [f64; 3],
     /// Root of the area of the node, m.
@@ -326,7 +329,7 @@ impl<'a> OtherSide<'a> {
     fn seen(&self, from: &Viewer, local: usize) -> Option<(Partner, f64)> {
         let node = self.surface.nodes()[local];
         let facing = -self.surface.frames()[local].normal_part(from.normal);
-        if node == from.node || facing < FACING {
+        if facing < FACING {
             return None;
         }
         let to = self.mesh.points()[node as usize];

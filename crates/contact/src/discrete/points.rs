@@ -121,6 +121,8 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
             let mut mean = vec![(node, 1.0)];
             let partner = match partners {
                 Partners::Obstacle => None,
+                // what is on both sides does not move against itself
+                Partners::Nodes(partners) if partners[local].node == node => continue,
                 Partners::Nodes(partners) => {
                     measured = partners[local].gap;
                     Some(Side::node(partners[local].node))

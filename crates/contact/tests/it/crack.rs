@@ -108,3 +108,169 @@ fn faces_of_a_curved_crack_change_places() {
         );
     }
 }
+
+/// A plate of 4 m x 0.25 m x 4 m about the origin in plane strain with a crack of 2 m in the middle, its outer faces moved
+/// by a uniform strain: `squeeze` across the crack, `shear` along it.
+fn plate(order: usize, contact: Option<Contact>, squeeze: History, shear: History) -> Scene {
+    let whole = Brick::new([4.0, 0.25, 4.0], [16, 1, 16]).with_origin([-2.0, 0.0, -2.0]);
+    let whole = whole.build().expect("brick");
+    let is_on = |face: [[f64; 3]; 3]| face.iter().all(|[x, _, z]| x.abs() < 1.01 && *z == 0.0);
+    let is_lower = |tet: usize| vec3::centroid(&whole.tet_points(tet))[2] < 0.0;
+    let mut mesh = whole.crack(is_on, is_lower, [LOW, UP]).expect("crack").0;
+    if order == 2 {
+        mesh = mesh.raise_order().expect("order 2");
+    }
+    let mut outer: Vec<u32> = [brick::X_MIN, brick::X_MAX, brick::Z_MIN, brick::Z_MAX]
+        .into_iter()
+        .flat_map(|tag| mesh.nodes_on(tag))
+        .collect();
+    outer.sort_unstable();
+    outer.dedup();
+    let height = |node: &u32| mesh.points()[*node as usize][2];
+    let along = outer.iter().map(|node| [1e-3 * height(node), 0.0, 0.0]).collect();
+    let across = outer.iter().map(|node| [0.0, 0.0, -1e-3 * height(node)]).collect();
+    let moved = |components, by, history| Support::components(outer.clone(), components).with_motions(by, history);
+    let mut scene = Scene::new(mesh.clone(), uniform(YOUNG, POISSON))
+        .with_support(moved([true, false, false], along, shear))
+        .with_support(moved([false, false, true], across, squeeze));
+    for tag in [brick::Y_MIN, brick::Y_MAX] {
+        scene = scene.with_support(Support::components(tag, [false, true, false]));
+    }
+    contact.into_iter().fold(scene, Scene::with_contact)
+}
+
+const YOUNG: f64 = 1e9;
+const POISSON: f64 = 0.25;
+
+/// A closed crack that nothing makes slide is as none: the strain is uniform.
+#[test]
+fn a_crack_that_sticks_is_none() {
+    let one = History::constant(1.0);
+    for order in [1, 2] {
+        let contact = Contact::between(LOW, UP).with_friction(Friction::coulomb(2.0));
+        let mut simulation =
+            Simulation::new(plate(order, Some(contact), one.clone(), one.clone()), tight()).expect("set-up");
+        let found = step(&mut simulation);
+        assert_certified(&found, "sticks");
+        assert_eq!((found.summary.slip, found.summary.active), (0, found.points.len()));
+        let points = simulation.scene().mesh().points();
+        for (u, [_, _, z]) in found.displacement.chunks(3).zip(points) {
+            let off = vec3::norm(vec3::sub([u[0], u[1], u[2]], [1e-3 * z, 0.0, -1e-3 * z]));
+            assert!(off < 1e-9, "order {order}: {off:.1e}");
+        }
+        println!("order {order}: {} products", found.report.counters.products);
+    }
+}
+
+/// The faces of an open crack do not feel each other.
+#[test]
+fn an_open_crack_is_free() {
+    let (pull, shear) = (History::constant(-1.0), History::constant(0.3));
+    for order in [1, 2] {
+        let contact = Contact::between(LOW, UP).with_friction(Friction::coulomb(0.3));
+        let [found, free] =
+            [Some(contact), None].map(|contact| solve(plate(order, contact, pull.clone(), shear.clone()), tight()));
+        assert_eq!(found.summary.active, 0);
+        println!(
+            "order {order}: open {} {}",
+            found.report.counters.products, free.report.counters.products
+        );
+        crate::couplings::assert_close(&found.displacement, &free.displacement, 1e-7, "displacement");
+    }
+}
+
+/// A shear along the crack leaves the pressure `p` across it as it is, so that the faces slide as those without friction
+/// do under the shear stress that friction leaves: first above `mu p`, and on return above `2 mu p`.
+#[test]
+fn a_closed_crack_slides_and_slides_back() {
+    let lame = YOUNG * POISSON / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON));
+    let shear_modulus = YOUNG / (2.0 * (1.0 + POISSON));
+    let pressure = (lame + 2.0 * shear_modulus) * 1e-3;
+    let coefficient = 0.3 * shear_modulus * 1e-3 / pressure;
+    let squeeze = History::table(vec![(0.0, 0.0), (1.0, 1.0), (5.0, 1.0)]).expect("table");
+    let shear = vec![(0.0, 0.0), (1.0, 0.0), (2.0, 1.0), (3.0, 0.2), (4.0, -1.0), (5.0, -0.6)];
+    let shear = History::table(shear).expect("table");
+    // mean over the nodes of the faces
+    let slip = |scene: Scene| -> Vec<f64> {
+        let mesh = scene.mesh().clone();
+        let (_, steps) = run(scene.with_analysis(Analysis::quasistatic(5.0, 5)), tight());
+        let sum = |s: &Solved, tag| {
+            mesh.nodes_on(tag)
+                .iter()
+                .map(|n| s.displacement[3 * *n as usize])
+                .sum::<f64>()
+        };
+        steps.iter().map(|s| sum(s, UP) - sum(s, LOW)).collect()
+    };
+    for (order, within) in [(1, 1e-10), (2, 1e-8)] {
+        let contact = Contact::between(LOW, UP);
+        let free = slip(plate(order, Some(contact.clone()), squeeze.clone(), shear.clone()));
+        let contact = contact.with_friction(Friction::coulomb(coefficient));
+        let found = slip(plate(order, Some(contact), squeeze.clone(), shear.clone()));
+        let whole = free[1];
+        let ratios: Vec<f64> = found.iter().map(|slip| slip / whole).collect();
+        println!(
+            "order {order}: {ratios:?}, free {:?}",
+            free.iter().map(|s| s / whole).collect::<Vec<_>>()
+        );
+        // 1 - 0.3; less 0.8 - 0.6; less 1.2; stays, since 0.4 < 0.6
+        for (ratio, expected) in ratios.iter().zip([0.0, 0.7, 0.5, -0.7, -0.7]) {
+            assert!((ratio - expected).abs() < within, "order {order}: {ratios:?}");
+        }
+    }
+}
+
+/// A crack that opens in part, slides in part and sticks in part, by every method, preconditioner and decomposition.
+#[test]
+fn every_way_finds_the_same_crack() {
+    for order in [1, 2] {
+        let whole = block([2.0, 1.0, 1.0], [8, 3, 4]);
+        let is_on = |face: [[f64; 3]; 3]| face.iter().all(|[x, _, z]| *x > TIP - 0.2 && *z == 0.5);
+        let is_lower = |tet: usize| vec3::centroid(&whole.tet_points(tet))[2] < 0.5;
+        let mut mesh = whole.crack(is_on, is_lower, [LOW, UP]).expect("crack").0;
+        if order == 2 {
+            mesh = mesh.raise_order().expect("order 2");
+        }
+        let plain = || {
+            Scene::new(mesh.clone(), uniform(YOUNG, 0.3))
+                .with_support(Support::fixed(brick::Z_MIN))
+                .with_load(Load::traction(brick::Z_MAX, [2e5, 4e5, -1e6]))
+                .with_load(Load::traction(brick::X_MAX, [2e5, 0.0, 9e5]))
+                .with_contact(Contact::between(LOW, UP).with_friction(Friction::coulomb(0.8)))
+                .without_subdomains()
+        };
+        let expected = solve(plain(), at(1e-11));
+        let ContactSummary {
+            active, stick, slip, ..
+        } = expected.summary;
+        println!(
+            "order {order}: {active} of {} touch, {stick} stick, {slip} slide",
+            expected.points.len()
+        );
+        assert!(active < expected.points.len() && slip > 0 && stick > 0);
+        let agrees = |found: &Solved, what: &str| {
+            crate::couplings::assert_close(&found.displacement, &expected.displacement, 1e-6, what);
+        };
+        for method in methods() {
+            agrees(
+                &solve(plain().with_boxes([2, 1, 1]), by(method).with_tolerance(1e-10)),
+                "method",
+            );
+        }
+        let dirichlet = tight().with_preconditioner(Preconditioner::Dirichlet);
+        agrees(&solve(plain().with_boxes([2, 1, 2]), dirichlet), "Dirichlet");
+        for parts in [2, 5, 9] {
+            let found = solve(plain().with_subdomains(parts), tight());
+            println!("{parts} parts: {} products", found.report.counters.products);
+            agrees(&found, "parts");
+        }
+        for (one, error, sum) in crate::estimates::estimated(&plain().with_subdomains(5), at(1e-5)) {
+            let truth = energy_distance(&plain(), &one.displacement, &expected.displacement);
+            println!(
+                "estimated {:.2} times the true error",
+                sum.likely() * error.scale.sqrt() / truth
+            );
+            assert!((0.5..20.0).contains(&(sum.likely() * error.scale.sqrt() / truth)));
+        }
+    }
+}
