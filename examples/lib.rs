@@ -6,6 +6,7 @@
 //! | `tresca` | a slip bound that is data, by two methods |
 //! | `two_bodies` | a pad on a rail |
 //! | `bolt` | plates that a tightened bolt holds, until they part |
+//! | `crack` | a crack that slides to and fro under pressure |
 //! | `own_mesh` | a mesh of Gmsh, files for ParaView |
 //! | `deck` | a deck of CalculiX or Abaqus, from file to ParaView |
 //! | `restart` | a run that is stopped and continued |

@@ -1,6 +1,8 @@
 //! The plain programs: each runs, and finds what it must find.
 #![allow(dead_code, missing_docs, unreachable_pub)]
 
+#[path = "../crack.rs"]
+mod crack;
 #[path = "../deck.rs"]
 mod deck;
 #[path = "../from_mesh.rs"]
@@ -30,6 +32,15 @@ fn the_readme_shows_the_first_program() {
         .trim();
     assert!(readme.contains(program), "copy examples/first.rs into the README");
     assert!(program.lines().count() <= 40);
+}
+
+/// Slip is that without friction under what friction leaves of the shear: 0.7 of it at first, then 0.5, -0.7, -0.7, 0.7.
+#[test]
+fn the_crack_slides_as_the_formula_says() {
+    let slips = crack::slips(4).expect("crack");
+    for (slip, expected) in slips.iter().zip([0.0, 1.0, 5.0 / 7.0, -1.0, -1.0, 1.0]) {
+        assert!((slip / slips[1] - expected).abs() < 1e-5, "{slips:?}");
+    }
 }
 
 #[test]
