@@ -62,20 +62,20 @@
 //! | `*PART`, `*END PART` | `NAME` | nodes, elements, sets, surfaces and sections of a part |
 //! | `*ASSEMBLY`, `*INSTANCE` and their ends | `NAME`, `PART` | where parts are, see below |
 //! | `*NODE` | `NSET` | any numbers; nodes that no element and no equation uses are dropped |
-//! | `*ELEMENT` | `TYPE=C3D4`, `C3D10`, `C3D8`, `C3D20`, `C3D6`, `C3D15`, `C3D5`, `C3D13`, `ELSET` | tetrahedra, hexahedra, prisms and pyramids, see below, and as these their variants (`C3D10M`, `C3D8R`, `C3D8I`); `R3D3` and `R3D4` for rigid surfaces; `CPS3`, `CPS4`, `CPS6`, `CPS8`, `T3D2`, `T3D3`, which Gmsh writes, have no stiffness, and the flat ones name the faces on which they lie; other types are refused |
+//! | `*ELEMENT` | `TYPE=C3D4`, `C3D10`, `C3D8`, `C3D20`, `C3D6`, `C3D15`, `C3D5`, `C3D13`, `ELSET` | tetrahedra, hexahedra, prisms and pyramids, see below, and as these their variants (`C3D10M`, `C3D8R`, `C3D8I`); `R3D3` and `R3D4` for rigid surfaces; `CPS3`, `CPS4`, `CPS6`, `CPS8` and variants, `T3D2`, `T3D3`, which Gmsh writes, have no stiffness, and the flat ones name the faces on which they lie; other types are refused |
 //! | `*NSET`, `*ELSET` | `NSET` or `ELSET`, `GENERATE`, `INTERNAL`, `INSTANCE` | numbers and sets defined before; cards of one name add up |
 //! | `*SURFACE` | `NAME`, `TYPE=ELEMENT`, `INTERNAL` | faces `S1` to `S6` of elements or sets, on the boundary, or without a number all that are there, or those of triangles; `SPOS`, `SNEG` of rigid facets |
 //! | | `TYPE=NODE` | the faces on the boundary whose corners are all among these nodes and sets; a node on none of them is refused |
 //! | `*MATERIAL` | `NAME` | |
-//! | `*ELASTIC` | `TYPE=ISO`, `ORTHO`, `ENGINEERING CONSTANTS` | numbers of one temperature |
+//! | `*ELASTIC` | `TYPE=ISO`, `ORTHO`, `ENGINEERING CONSTANTS`, `ANISO` | numbers of one temperature |
 //! | `*DENSITY` | | for gravity |
 //! | `*EXPANSION` | `TYPE=ISO`, `ORTHO`, `ZERO` | constant coefficients; `ZERO` says nothing then |
 //! | `*INITIAL CONDITIONS` | `TYPE=TEMPERATURE` | temperatures without stress, else zero |
 //! | `*SOLID SECTION` | `ELSET`, `MATERIAL`, `ORIENTATION` | a region of the mesh; each element has one |
-//! | `*ORIENTATION` | `NAME`, `SYSTEM` | axes of the material of a section, x, y, z without; `CYLINDRICAL` of isotropic ones only |
+//! | `*ORIENTATION` | `NAME`, `SYSTEM`, `DEFINITION=COORDINATES` | axes of the material of a section, x, y, z without; `CYLINDRICAL` of isotropic ones only |
 //! | `*AMPLITUDE` | `NAME`, `TIME=STEP TIME` or `TOTAL TIME`, `VALUE=RELATIVE`, `DEFINITION=TABULAR` | straight lines, constant outside; times ascend |
 //! | `*SURFACE INTERACTION` | `NAME` | |
-//! | `*SURFACE BEHAVIOR` | `PRESSURE-OVERCLOSURE=HARD`, `LINEAR` | contact is hard and exact, or has a normal compliance, the inverse of the slope; other laws are refused |
+//! | `*SURFACE BEHAVIOR` | `PRESSURE-OVERCLOSURE=HARD`, `LINEAR`, `TIED` | contact is hard and exact, or has a normal compliance, the inverse of the slope, or the pairs are as those of `*TIE`; other laws are refused |
 //! | `*FRICTION` | `SLIP TOLERANCE`, `ELASTIC SLIP` | Coulomb's coefficient, and elastic slip where a stick slope stands beside it; both parameters are ignored: friction is exact |
 //! | `*CONTACT PAIR` | `INTERACTION`, `TYPE`, `SMALL SLIDING`, `ADJUST` | the first (dependent) surface touches the second, whether their meshes match or not; sliding is small; with `ADJUST` gaps up to that length and overlaps are none |
 //! | `*CLEARANCE` | `SLAVE`, `MASTER`, `VALUE` | the gap of a contact pair, in place of the measured one; negative for a press fit; of rigid surfaces only to a half-space |
@@ -87,7 +87,7 @@
 //! | `*PRE-TENSION SECTION` | `SURFACE`, `NODE` | a bolt is cut at faces between elements, all on one side, and its parts move towards each other along the mean normal, or one given, under the force or the displacement of component 1 of the node; CalculiX is wrong here for tetrahedra |
 //! | `*EQUATION` | | a sum of components 1 to 3 of nodes, or of each node of sets, by ascending numbers, times coefficients is zero; nodes without elements are [points](signorini_contact::Coupling::point), held, moved, loaded or free; nodes of rigid bodies and couplings are refused |
 //! | `*TRANSFORM` | `NSET`, `TYPE=R`, `C` | axes of nodes, along which their supports and forces are |
-//! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT`, `FIXED` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `XASYMM` and so on; rotations held at zero are ignored on solids; `FIXED` of the node of a section only, whose motion then stays |
+//! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT`, `FIXED` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `XASYMM` and so on; rotations held at zero are ignored on solids; what is `FIXED` stays where the steps before left it, not read of rigid bodies, couplings and nodes of equations; a displacement before the first step is reached in that |
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |
 //! | `*STATIC` | `DIRECT`, `SOLVER` | first increment, period, least and largest increment |
 //! | `*MODEL CHANGE` | `TYPE=CONTACT PAIR`, `ADD`, `REMOVE` | a pair comes or goes with the step: it [starts](signorini_contact::Contact::with_start) and [ends](signorini_contact::Contact::with_end) |

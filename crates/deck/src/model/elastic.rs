@@ -1,4 +1,4 @@
-//! `*ELASTIC`: isotropic, orthotropic along x, y, z, or the engineering constants of the same.
+//! `*ELASTIC`: isotropic, orthotropic along x, y, z, the engineering constants of the same, or any law.
 
 use super::Model;
 use super::property::{of_material, twice};
@@ -12,6 +12,9 @@ const ORTHOTROPIC: &str = "nine numbers, eight in the first line: D1111, D1122, 
     D1313, D2323, and at most a temperature: laws that depend on temperature are not read";
 const ENGINEERING: &str = "nine numbers, eight in the first line: E1, E2, E3, nu12, nu13, nu23, G12, G13, G23, and at \
     most a temperature: laws that depend on temperature are not read";
+const ANISOTROPIC: &str = "21 numbers, eight in a line: D1111, D1122, D2222, D1133, D2233, D3333, D1112, D2212, D3312, D1212, \
+    D1113, D2213, D3313, D1213, D1313, D1123, D2223, D3323, D1223, D1323, D2323, and at most a temperature: laws that depend on \
+    temperature are not read";
 
 pub(super) fn elastic(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["TYPE"])?;
@@ -21,9 +24,9 @@ pub(super) fn elastic(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         "ISO" | "ISOTROPIC" => (ISOTROPIC, 2),
         "ORTHO" | "ORTHOTROPIC" => (ORTHOTROPIC, 9),
         "ENGINEERINGCONSTANTS" => (ENGINEERING, 9),
+        "ANISO" | "ANISOTROPIC" => (ANISOTROPIC, 21),
         _ => {
-            let why = "isotropic laws, orthotropic ones and engineering constants are read (a program can set any \
-                law with Hooke::from_voigt)";
+            let why = "TYPE is ISO, ORTHO, ENGINEERING CONSTANTS or ANISO";
             let word = kind.as_ref().map_or(&card.word, |kind| &kind.word);
             return Err(word.fault(Fault::Unsupported(why)));
         }
@@ -50,6 +53,7 @@ pub(super) fn elastic(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     let law = match (wanted, &numbers[..]) {
         (ORTHOTROPIC, n) => orthotropic([[n[0], n[1], n[3]], [n[1], n[2], n[4]], [n[3], n[4], n[5]]], &n[6..9]),
         (ENGINEERING, n) => orthotropic(inverse(n), &n[6..9]),
+        (ANISOTROPIC, n) => anisotropic(n),
         (_, n) => Hooke::isotropic(n[0], n[1]),
     };
     let law = law.map_err(|error| first.fault(Fault::Hooke(error)))?;
@@ -66,6 +70,19 @@ fn orthotropic(normal: [[f64; 3]; 3], shear: &[f64]) -> Result<Hooke, HookeError
     // the order is yz, xz, xy
     for (row, value) in (3..6).zip(shear.iter().rev()) {
         c[row][row] = *value;
+    }
+    Hooke::from_voigt(&c)
+}
+
+/// Any law from the columns of the upper triangle, in the order 11, 22, 33, 12, 13, 23.
+fn anisotropic(numbers: &[f64]) -> Result<Hooke, HookeError> {
+    let place = [0, 1, 2, 5, 4, 3];
+    let mut c = [[0.0; 6]; 6];
+    let upper = (0..6).flat_map(|column| (0..=column).map(move |row| (row, column)));
+    for ((row, column), value) in upper.zip(numbers) {
+        let [row, column] = [row, column].map(|k| place[k]);
+        c[row][column] = *value;
+        c[column][row] = *value;
     }
     Hooke::from_voigt(&c)
 }

@@ -98,7 +98,11 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
     let kind = card.need("TYPE")?;
     let variants = |plain: &str| kind.name.strip_prefix(plain).is_some_and(|end| VARIANTS.contains(&end));
     let found = TYPES.iter().find(|t| t.0 == kind.name);
-    let variant = || TYPES.iter().find(|t| matches!(t.1, Kind::Solid(_)) && variants(t.0));
+    let variant = || {
+        TYPES
+            .iter()
+            .find(|t| matches!(t.1, Kind::Solid(_) | Kind::Flat) && variants(t.0))
+    };
     let Some(&(plain, of, [nodes, kept], wanted)) = found.or_else(variant) else {
         return Err(kind.word.fault(Fault::Unsupported(
             "only C3D4, C3D10, C3D8, C3D20, C3D6, C3D15, C3D5, C3D13, R3D3 and R3D4 for rigid surfaces, and CPS3, CPS4, CPS6, \

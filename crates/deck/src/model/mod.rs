@@ -183,6 +183,8 @@ pub(crate) struct Amplitude {
 pub(crate) struct Interaction {
     pub(crate) location: Location,
     pub(crate) friction: Option<f64>,
+    /// The word that ties all pairs with it.
+    pub(crate) tied: Option<Word>,
     /// Along the normal and along the surface, length over stress.
     pub(crate) compliance: [f64; 2],
 }

@@ -18,7 +18,9 @@ pub(crate) struct Orientation {
 
 /// `*ORIENTATION`.
 pub(super) fn orientation(model: &mut Model, card: &Card) -> Result<(), DeckError> {
-    card.allow(&["NAME", "SYSTEM"])?;
+    card.allow(&["NAME", "SYSTEM", "DEFINITION"])?;
+    let definition = "DEFINITION=COORDINATES; others are not supported";
+    card.choice("DEFINITION", &["COORDINATES"], definition)?;
     let systems = ["RECTANGULAR", "CYLINDRICAL"];
     let cylindrical = card.choice("SYSTEM", &systems, "SYSTEM=RECTANGULAR or SYSTEM=CYLINDRICAL")? == Some(1);
     let wanted = "a line with two points, on the first axis and in the plane of the first two, and at most one with the \

@@ -128,6 +128,7 @@ pub(super) fn interaction(model: &mut Model, card: &Card) -> Result<(), DeckErro
     let interaction = Interaction {
         location: card.word.location.clone(),
         friction: None,
+        tied: None,
         compliance: [0.0; 2],
     };
     model.interactions.add(name, interaction);
@@ -141,9 +142,13 @@ pub(super) fn behavior(model: &mut Model, card: &Card) -> Result<(), DeckError> 
     match law.as_ref().map_or("HARD", |law| &law.name) {
         "LINEAR" => {}
         "HARD" => return card.lines_at_most(0, "no data: hard contact has no numbers"),
+        "TIED" => {
+            interaction.tied = law.map(|law| law.word);
+            return card.lines_at_most(1, "one line with the slope of pressure over overclosure");
+        }
         _ => {
-            let why = "contact is hard or has a linear law here; write PRESSURE-OVERCLOSURE=HARD without data lines, \
-                or LINEAR with the slope (tied surfaces: *TIE)";
+            let why = "contact is hard, tied or has a linear law here; write PRESSURE-OVERCLOSURE=HARD without data lines, \
+                or LINEAR with the slope";
             let word = law.as_ref().map_or(&card.word, |law| &law.word);
             return Err(word.fault(Fault::Unsupported(why)));
         }

@@ -274,10 +274,6 @@ pub(super) fn boundary(model: &mut Model, step: Option<&mut Step>, card: &Card) 
     for line in &card.lines {
         let mut given = boundary_line(line, amplitude)?;
         given.kind.fixed = card.param("FIXED").map(|param| param.word.clone());
-        if step.is_none() && given.given.value != 0.0 {
-            let why = "before the first *STEP a support cannot move; give its value in a step";
-            return Err(line.cannot(why));
-        }
         lines.push(given);
     }
     match step {

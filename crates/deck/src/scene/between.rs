@@ -6,7 +6,7 @@ use signorini_fem_mesh::{History, HistoryError};
 
 use super::faces::Known;
 use super::held::{Held, Key, Owner, common};
-use super::timeline::Acting;
+use super::timeline::{Acting, Beginning};
 use crate::error::{DeckError, Fault, Word};
 use crate::tolerances::TURNED;
 
@@ -195,18 +195,29 @@ pub(super) fn between<'a>(
 /// The sum of displacements, which begins with the last of them, along a straight line if one of these does; `None` of
 /// none.
 fn sum(known: Known, parts: &[(f64, &Held)]) -> Result<Option<Held>, DeckError> {
-    let begins = |held: &Held| (held.span[0], held.fades(known.timeline));
+    let begins = |held: &Held| (held.span[0], held.beginning(known.timeline));
     let Some(&(_, last)) = parts
         .iter()
         .max_by_key(|part| (part.1.span[0], part.0 != 0.0, begins(part.1).1))
     else {
         return Ok(None);
     };
+    let stays = |held: &Held| begins(held).1 == Beginning::Stay;
+    if let Some((_, fixed)) = parts.iter().find(|part| stays(part.1)) {
+        let rests = |held: &Held| held.span[0].is_none() && held.track.course(known.timeline).is_none();
+        return match parts.iter().find(|part| !stays(part.1) && !rests(part.1)) {
+            None => Ok(Some((*fixed).clone())),
+            Some((_, moves)) => Err(moves.track.word.cannot(
+                "this moves nodes beside others that are FIXED, on elements that are divided here; give all of them FIXED",
+            )),
+        };
+    }
     let whole = (parts.iter().map(|part| part.0).sum::<f64>() - 1.0).abs() < TURNED;
     if whole && parts.iter().all(|part| part.1.track.says_as(&last.track)) {
         return Ok(Some(last.clone()));
     }
-    let line = known.timeline.span(last.span[0]).filter(|_| begins(last).1);
+    let line = known.timeline.span(last.span[0]);
+    let line = line.filter(|_| begins(last).1 == Beginning::Line);
     let mut moves = Vec::with_capacity(parts.len());
     for (share, held) in parts {
         let Some((value, points)) = held.track.course(known.timeline) else {

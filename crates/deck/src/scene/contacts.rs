@@ -10,9 +10,9 @@ use super::faces::{FaceTable, Known};
 use super::rigid::{FreeLead, Lead, obstacle};
 use super::ties;
 use super::timeline::Acting;
-use crate::error::{DeckError, Fault};
+use crate::error::{DeckError, Fault, Word};
 use crate::lexer::Named;
-use crate::model::{Clearance, Ignored, Law, Model, Names, Pair, Touch};
+use crate::model::{Clearance, Ignored, Law, Model, Names, Pair, Tie, Touch};
 
 /// One contact for each pair, and those of pairs that come back, with the position of the pair.
 pub(super) struct Contacts {
@@ -41,7 +41,17 @@ pub(super) fn contacts(
             Law::Tied(_) => None,
         };
         let sides = sides(known, surfaces, pair)?;
-        if let (Law::Tied(tie), false) = (&pair.law, surfaces.at(sides[1]).is_empty()) {
+        let tie = match (&pair.law, law.and_then(|law| law.tied.as_ref())) {
+            (Law::Tied(tie), _) => Some(tie.clone()),
+            (Law::Contact(_), Some(word)) if clearances.contains_key(&pair.surfaces()) => {
+                let why = "pairs of this interaction are tied and have no gap; remove their *CLEARANCE";
+                return Err(word.cannot(why));
+            }
+            (Law::Contact(touch), Some(word)) => Some(tied(touch, word, ignored)),
+            (Law::Contact(_), None) => None,
+        };
+        let law = law.filter(|_| tie.is_none());
+        if let (Some(tie), false) = (&tie, surfaces.at(sides[1]).is_empty()) {
             ignored.extend(ties::check(known, faces, (pair, tie), sides)?);
         }
         let [slave, master] = sides.map(|side| &surfaces.at(side)[..]);
@@ -74,7 +84,7 @@ pub(super) fn contacts(
                 contact = contact.with_friction(Friction::coulomb(coefficient));
             }
         }
-        if let Law::Contact(touch) = &pair.law {
+        if let (Law::Contact(touch), Some(_)) = (&pair.law, law) {
             let given = clearances.get(&pair.surfaces()).copied();
             contact = with_gap(contact, (given, takes_gap), (touch, master.is_empty()), ignored)?;
         }
@@ -90,6 +100,17 @@ pub(super) fn contacts(
         later.extend(all.map(|contact| (index, contact)));
     }
     Ok(Contacts { first, later })
+}
+
+/// What an interaction that ties makes of a contact pair.
+fn tied(touch: &Touch, word: &Word, ignored: &mut Vec<Ignored>) -> Tie {
+    let why = "the sides are tied without giving way, whatever the slope and the friction";
+    ignored.push(Ignored::new(word, why));
+    Tie {
+        word: word.clone(),
+        adjust: touch.adjust.is_some(),
+        tolerance: touch.adjust.as_ref().map(|(_, reach)| *reach),
+    }
 }
 
 /// The positions of both surfaces of a pair, which have no face in common; the dependent one has faces of elements.

@@ -1,7 +1,7 @@
 //! What the steps say of one component of a node that is held.
 
 use super::history::Track;
-use super::timeline::{Acting, Timeline};
+use super::timeline::{Acting, Beginning, Timeline};
 use crate::error::Word;
 use crate::model::Given;
 
@@ -18,6 +18,8 @@ pub(super) struct Held {
     pub(super) track: Track,
     /// Given before the first step, which may say it anew.
     pub(super) before: bool,
+    /// Begins with FIXED: it stays where it is then.
+    pub(super) fixed: bool,
     /// The step from which on it is held, if that is not the first, and that which releases it.
     pub(super) span: Acting,
 }
@@ -42,12 +44,15 @@ impl Held {
         Ok(())
     }
 
-    /// Whether it begins in a step along a straight line.
-    pub(super) fn fades(&self, timeline: &Timeline) -> bool {
+    pub(super) fn beginning(&self, timeline: &Timeline) -> Beginning {
         let [from, _] = self.span;
         let ramp = timeline.span(from).is_some_and(|span| span.ramp);
         let by_line = |step| self.track.given_in(step).is_some_and(|given| given.amplitude.is_none());
-        ramp && from.is_some_and(by_line)
+        match self.fixed {
+            true => Beginning::Stay,
+            false if ramp && from.is_some_and(by_line) => Beginning::Line,
+            false => Beginning::Jump,
+        }
     }
 }
 

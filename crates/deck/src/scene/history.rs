@@ -117,6 +117,13 @@ impl Track {
         self.events.retain(|event| *event != (step, None));
     }
 
+    /// Whether the last value follows an amplitude in total time.
+    pub(super) fn follows(&self, timeline: &Timeline) -> bool {
+        let last = self.events.iter().rev().find_map(|event| event.1);
+        let amplitude = last.and_then(|given| given.amplitude);
+        amplitude.is_some_and(|amplitude| timeline.model.amplitudes.at(amplitude).total)
+    }
+
     /// Whether a step removes it.
     pub(super) fn is_removed_in(&self, step: usize) -> bool {
         self.event(step) == Some(None)

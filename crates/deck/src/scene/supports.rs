@@ -13,7 +13,7 @@ use super::history::{Histories, Track};
 use super::pretension::ONE;
 use super::rigid::{FreeLead, Lead, all_components, rigid_components};
 use super::spread::coupled_nodes;
-use super::timeline::Acting;
+use super::timeline::{Acting, Beginning};
 use crate::error::{DeckError, Word};
 use crate::model::{COMPONENT, Components, Condition, Ignored, Target};
 
@@ -154,13 +154,10 @@ impl Table {
                 let why = "the node is FIXED, and stays so; remove one of both";
                 return Err(line.word.cannot(why));
             }
-            if let Some(fixed) = &line.kind.fixed {
-                let Some(step) = step.filter(|_| section && line.given.value == 0.0) else {
-                    return Err(fixed.cannot(
-                        "only the node of a *PRE-TENSION SECTION stays as the steps before left it; give the displacement \
-                        that the steps before reached, and remove it",
-                    ));
-                };
+            if let (Some(fixed), true) = (&line.kind.fixed, line.given.value != 0.0) {
+                return Err(fixed.cannot("what is FIXED stays as the steps before left it; remove the value"));
+            }
+            if let (Some(fixed), Some(step), true) = (&line.kind.fixed, step, section) {
                 if self.rigid.contains_key(&(node, 0)) {
                     return Err(fixed.cannot("its displacement is prescribed, and stays so; remove one of both"));
                 }
@@ -169,6 +166,12 @@ impl Table {
                 continue;
             }
             let inside = known.raw.in_mesh(node);
+            let is_rigid = known.bodies.has(node) || known.couplings.moves(node) || known.points.has(node);
+            if let (Some(fixed), true) = (&line.kind.fixed, is_rigid) {
+                let why = "of a rigid body, a coupling or equations this is not read; give the displacement that the steps \
+                    before reached";
+                return Err(fixed.cannot(why));
+            }
             let (map, key, components) = match inside {
                 _ if known.bodies.has(node) || known.couplings.moves(node) => (&mut self.rigid, node, 6),
                 _ if known.points.has(node) => (&mut self.rigid, node, 3),
@@ -204,10 +207,27 @@ impl Table {
                 let copies = inside.map(|inside| known.raw.with_copies(inside).skip(1));
                 for key in std::iter::once(key).chain(copies.into_iter().flatten()) {
                     let next = map.len();
+                    let known_before = map.get_mut(&(key, component));
+                    match (known_before, step, &line.kind.fixed) {
+                        (Some(held), _, None) if held.fixed => {
+                            let why = format!("{what} is FIXED, and stays so; remove one of both");
+                            return Err(line.word.cannot(why));
+                        }
+                        (Some(held), _, Some(fixed)) if held.track.follows(known.timeline) => {
+                            let why = format!("{what} follows an amplitude in total time; end that before");
+                            return Err(fixed.cannot(why));
+                        }
+                        (Some(held), Some(step), Some(_)) => {
+                            held.track.keep(step);
+                            continue;
+                        }
+                        _ => {}
+                    }
                     let held = map.entry((key, component)).or_insert_with(|| Held {
                         owner,
                         track: Track::new(next, &line.word),
                         before: step.is_none(),
+                        fixed: from.is_some() && line.kind.fixed.is_some(),
                         span: [from, None],
                     });
                     held.give(step, line.given, &what)
@@ -392,17 +412,17 @@ impl Table {
         }: Known,
     ) -> Result<(Vec<Support>, Vec<Owner>), DeckError> {
         let mut histories = Histories::default();
-        // by target, axes, first component, history, components, steps and fading: nodes and their displacements
-        type Group = (usize, Option<usize>, usize, Option<usize>, [bool; 3], Acting, bool);
+        // by target, axes, first component, history, components, steps and beginning: nodes and their displacements
+        type Group = (usize, Option<usize>, usize, Option<usize>, [bool; 3], Acting, Beginning);
         let mut groups: BTreeMap<Group, Vec<(u32, [f64; 3])>> = BTreeMap::new();
         let mut all: Vec<(Key, Held)> = self.held.into_iter().chain(self.released).collect();
-        let part = |((node, component), held): &(Key, Held)| (*node, held.span, held.fades(timeline), *component);
+        let part = |((node, component), held): &(Key, Held)| (*node, held.span, held.beginning(timeline), *component);
         all.sort_by_key(part);
         for of_node in all.chunk_by(|a, b| {
             let [a, b] = [a, b].map(part);
             (a.0, a.1, a.2) == (b.0, b.1, b.2)
         }) {
-            let (node, span, fades, _) = part(&of_node[0]);
+            let (node, span, beginning, _) = part(&of_node[0]);
             let mut moves = Vec::with_capacity(3);
             for ((_, component), held) in of_node {
                 let motion = histories.add(timeline, &held.track)?;
@@ -430,20 +450,20 @@ impl Table {
                     history.filter(|_| moves),
                     on,
                     span,
-                    fades,
+                    beginning,
                 );
                 groups.entry(key).or_default().push((node, value));
             }
         }
         let (mut supports, mut names) = (Vec::new(), Vec::new());
-        for ((owner, axes, _, history, on, span, fades), nodes) in groups {
+        for ((owner, axes, _, history, on, span, beginning), nodes) in groups {
             let (nodes, mut values): (Vec<u32>, Vec<[f64; 3]>) = nodes.into_iter().unzip();
             if values.iter().all(|value| *value == values[0]) {
                 values.truncate(1);
             }
             let motion = history.map(|history| (values, histories.at(history)));
             let support = transforms.support(axes, (nodes, on), motion);
-            supports.push(timeline.during(support, span, fades)?);
+            supports.push(timeline.during(support, span, beginning)?);
             names.push(self.owners[owner].clone());
         }
         Ok((supports, names))

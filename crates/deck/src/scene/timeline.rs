@@ -20,6 +20,17 @@ pub(super) struct Span {
 /// From which step on something acts, if not from the first, and up to which.
 pub(super) type Acting = [Option<usize>; 2];
 
+/// How a support begins whose nodes were free.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Beginning {
+    /// They jump to what the steps say.
+    Jump,
+    /// They go there along a straight line, in the first of its steps.
+    Line,
+    /// They stay where they are.
+    Stay,
+}
+
 #[derive(Debug)]
 pub(super) struct Timeline<'a> {
     pub(super) model: &'a Model,
@@ -78,22 +89,28 @@ impl<'a> Timeline<'a> {
         self.spans.get(step?)
     }
 
-    /// A support from a step on, and until another. From where its nodes are then they go, where it `fades`, along a
-    /// straight line in the first of these steps to what the steps say; else they jump.
-    pub(super) fn during(&self, support: Support, [from, until]: Acting, fades: bool) -> Result<Support, DeckError> {
+    /// A support from a step on, and until another.
+    pub(super) fn during(
+        &self,
+        support: Support,
+        [from, until]: Acting,
+        beginning: Beginning,
+    ) -> Result<Support, DeckError> {
         let support = self
             .span(until)
             .map_or(support.clone(), |span| support.with_end(span.start));
         let Some(first) = self.span(from) else {
             return Ok(support);
         };
-        let line = match fades {
-            true => History::table(vec![(first.start, 1.0), (first.end, 0.0)]),
-            false => Ok(History::constant(0.0)),
+        let support = support.with_start(first.start);
+        let line = match beginning {
+            Beginning::Stay => return Ok(support),
+            Beginning::Line => History::table(vec![(first.start, 1.0), (first.end, 0.0)]),
+            Beginning::Jump => Ok(History::constant(0.0)),
         };
         let word = &self.model.steps[from.unwrap_or(0)].word;
         let line = line.map_err(|error| word.fault(Fault::History(error)))?;
-        Ok(support.with_start(first.start).with_fading(line))
+        Ok(support.with_fading(line))
     }
 
     /// Backward Euler over all increments; a single one is static.

@@ -116,6 +116,8 @@ fn what_is_refused() {
     refused("*DISTRIBUTING\n4, 4", &moment, "900, 5, 1.", "5", "does not name");
     let axes = format!("*NSET, NSET=R\n900\n*TRANSFORM, NSET=R\n0., 1., 0., -1., 0., 0.\n{HELD}{idle}");
     refused("*DISTRIBUTING", &axes, "*TRANSFORM, NSET=R", "NSET=R", "along x, y, z");
+    let fixed = format!("{HELD}{}", step("*BOUNDARY, FIXED\n900, 1, 6\n"));
+    refused("*KINEMATIC", &fixed, "*BOUNDARY, FIXED", "FIXED", "of a rigid body");
     let own = "*COUPLING, REF NODE=27, SURFACE=S6";
     behind(
         &format!("{own}\n*DISTRIBUTING\n{HELD}{idle}"),

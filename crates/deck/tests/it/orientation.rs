@@ -154,3 +154,36 @@ fn parts_have_materials_along_x_y_and_z() {
     let steel = deck("", turn).replace(WOOD, "*MATERIAL, NAME=WOOD\n*ELASTIC\n2.1e5, 0.3\n");
     assert!(read(&steel).is_ok());
 }
+
+/// A tetrahedron of a material whose 21 constants all differ: the forces that CalculiX 2.20 prints.
+#[test]
+fn any_law_has_the_forces_of_calculix() {
+    let deck = "*NODE\n1, 0, 0, 0\n2, 1, 0, 0\n3, 0, 1, 0\n4, 0, 0, 1\n*NSET, NSET=A\n2\n*NSET, NSET=B\n3\n*NSET, NSET=C\n4\n\
+        *NSET, NSET=D\n1\n*ELEMENT, TYPE=C3D4, ELSET=ALL\n1, 1, 2, 3, 4\n*MATERIAL, NAME=M\n*ELASTIC, TYPE=ANISO\n\
+        300000., 110000., 320000., 130000., 140000., 350000., 160000., 170000.\n\
+        180000., 390000., 200000., 210000., 220000., 230000., 440000., 250000.\n\
+        260000., 270000., 280000., 290000., 500000.\n\
+        *ORIENTATION, NAME=AXES, DEFINITION=COORDINATES\n1, 0, 0, 0, 1, 0\n\
+        *SOLID SECTION, ELSET=ALL, MATERIAL=M, ORIENTATION=AXES\n*BOUNDARY\nD, 1, 3\n*STEP\n*STATIC\n*BOUNDARY\n\
+        A, 1, 1, 1e-3\nA, 2, 2, 2e-3\nA, 3, 3, -1e-3\nB, 1, 1, 3e-3\nB, 2, 2, -2e-3\nB, 3, 3, 1.5e-3\n\
+        C, 1, 1, -1e-3\nC, 2, 2, 2.5e-3\nC, 3, 3, 0.7e-3\n*END STEP\n";
+    let read = read(deck).expect("deck");
+    let mut simulation = Simulation::new(read.scene().expect("scene"), Settings::default()).expect("set-up");
+    let reactions = simulation.step().expect("a step").reactions().supports;
+    let printed = [
+        ("D", [-9.151667e2, -1.055500e3, -9.563333e2]),
+        ("A", [2.618333e2, 4.260000e2, 2.273333e2]),
+        ("B", [4.260000e2, 1.730000e2, 4.565000e2]),
+        ("C", [2.273333e2, 4.565000e2, 2.725000e2]),
+    ];
+    assert_eq!(read.support_names().len(), printed.len());
+    for (name, force) in printed {
+        let at = read
+            .support_names()
+            .iter()
+            .position(|own| own == name)
+            .expect("a support");
+        let off = norm(sub(reactions[at].resultant.force, force));
+        assert!(off < 1e-6 * norm(force), "{name}: {:?}", reactions[at].resultant.force);
+    }
+}

@@ -270,3 +270,75 @@ fn other_changes_are_refused() {
         "component 3 of node 900 is free in the steps before",
     );
 }
+
+const PULLED: &str = "*BOUNDARY\nN1, 1, 3\n*DSLOAD\nS6, P, 300.\n";
+
+/// Nodes of the body stay where a step found them, loads or not, until a step releases them: what CalculiX 2.20 prints of
+/// the same deck.
+#[test]
+fn fixed_nodes_stay_as_in_calculix() {
+    let steps = [
+        PULLED,
+        "*BOUNDARY, FIXED\nN2, 1, 3\n*DSLOAD, OP=NEW\nS4, P, 200.\n",
+        "*DSLOAD, OP=NEW\nS6, P, 100.\n",
+        "*BOUNDARY, OP=NEW\nN1, 1, 3\n",
+    ];
+    let deck = in_steps(2, ("1., 1.", ""), &steps);
+    let printed = [
+        [
+            [-1.044670e-2, -2.524072e-4, -3.784299e-2],
+            [1.122048e-2, -2.684596e-4, -3.832892e-2],
+            [3.844785e-4, -6.771820e-5, -3.800899e-2],
+        ],
+        [
+            [-3.482233e-3, -8.413573e-5, -1.261433e-2],
+            [3.740160e-3, -8.948652e-5, -1.277631e-2],
+            [1.281595e-4, -2.257273e-5, -1.266966e-2],
+        ],
+    ];
+    let steps = displacements(scene(&deck));
+    for (step, u) in steps.iter().enumerate() {
+        for (label, wanted) in [3, 9, 26].into_iter().zip(printed[step / 3]) {
+            for c in 0..3 {
+                let off = (u[label - 1][c] - wanted[c]).abs();
+                assert!(
+                    off <= 1e-6 * wanted[c].abs(),
+                    "step {step}, node {label}: {:?}",
+                    u[label - 1]
+                );
+            }
+        }
+    }
+    // what is given again, or given a value
+    for (lines, why) in [
+        (
+            "*BOUNDARY, FIXED\nN2, 1, 3\n*BOUNDARY\nN2, 1, 1, 0.1\n",
+            "is FIXED, and stays so",
+        ),
+        ("*BOUNDARY, FIXED\nN2, 1, 1, 0.1\n", "remove the value"),
+    ] {
+        let deck = in_steps(2, ("1., 1.", ""), &[PULLED, lines]);
+        let error = read(&deck)
+            .and_then(|deck| deck.scene())
+            .expect_err("refused")
+            .to_string();
+        assert!(error.contains(why), "{error}");
+    }
+}
+
+/// What was held before goes on being held; a displacement before the first step is reached in it.
+#[test]
+fn what_is_held_stays_and_what_is_given_early_is_reached() {
+    let at_end = |deck: &str| displacements(scene(deck)).pop().expect("a step");
+    let moved = "*BOUNDARY\nN1, 1, 3\nN2, 1, 1, 0.002\n";
+    let plain = at_end(&in_steps(2, ("1., 1.", ""), &[moved, "*DSLOAD\nS6, P, 300.\n"]));
+    let again = "*BOUNDARY, OP=NEW, FIXED\nN1, 1, 3\nN2, 1, 1\n*DSLOAD\nS6, P, 300.\n";
+    assert_close(&at_end(&in_steps(2, ("1., 1.", ""), &[moved, again])), plain, "fixed");
+    let whole = in_steps(2, ("0.5, 1.", ""), &[moved]);
+    let early = in_steps(2, ("0.5, 1.", ""), &[""]).replace("*STEP", &format!("{moved}*STEP"));
+    let [wanted, found] = [&whole, &early].map(|deck| displacements(scene(deck)));
+    assert_eq!(wanted.len(), 2);
+    for (found, wanted) in found.iter().zip(wanted) {
+        assert_close(found, wanted, "early");
+    }
+}

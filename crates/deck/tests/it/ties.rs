@@ -63,3 +63,22 @@ fn a_surface_may_be_larger() {
     let deck = read(&(write::mesh(&mesh) + write::STEEL + "*TIE, NAME=T\nS15, S6\n"));
     assert!(deck.expect("deck").ignored().is_empty());
 }
+
+/// An interaction that ties makes ties of its contact pairs, with no gap to give.
+#[test]
+fn a_tied_interaction_is_a_tie() {
+    let card = |more: &str| {
+        format!(
+            "*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=TIED\n1e7\n*FRICTION\n0.1, 1e6\n{more}\
+             *CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE"
+        )
+    };
+    let [by_contact, by_tie] = [card(""), "*TIE, NAME=T".to_owned()].map(|card| tied(0.0, &card).expect("deck"));
+    let told: Vec<String> = by_contact.ignored().iter().map(ToString::to_string).collect();
+    assert!(told.iter().any(|t| t.contains("PRESSURE-OVERCLOSURE=TIED")), "{told:?}");
+    let [own, other] = [by_contact, by_tie].map(|deck| deck.scene().expect("scene").contacts().to_vec());
+    assert_eq!(format!("{own:?}"), format!("{other:?}"));
+    assert!(tied(0.1, &card("")).is_err());
+    let error = tied(0.0, &card("*CLEARANCE, SLAVE=S15, MASTER=S6, VALUE=0.1\n")).expect_err("a gap");
+    assert!(error.to_string().contains("remove their *CLEARANCE"), "{error}");
+}

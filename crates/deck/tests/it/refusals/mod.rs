@@ -110,10 +110,10 @@ fn parameters() {
     behind("*STEP, PERTURBATION\n", "*STEP, PERTURBATION", "PERTURBATION", "linear");
     behind("*STEP, INC=many\n", "*STEP, INC=many", "INC=many", "a number");
     behind(
-        "*ELASTIC, TYPE=ANISOTROPIC\n1.\n",
-        "*ELASTIC, TYPE=ANISOTROPIC",
-        "TYPE=ANISOTROPIC",
-        "engineering constants are read",
+        "*ELASTIC, TYPE=LAMINA\n1.\n",
+        "*ELASTIC, TYPE=LAMINA",
+        "TYPE=LAMINA",
+        "ENGINEERING CONSTANTS",
     );
     inside(
         "*CLOAD, OP=OLD\n1, 1, 1.\n",

@@ -11,12 +11,6 @@ fn supports() {
     behind("*BOUNDARY\nN5\n", "N5", "N5", "a component");
     behind("*BOUNDARY\nN5, SYMM\n", "N5, SYMM", "SYMM", "XSYMM");
     behind("*BOUNDARY\nN5, PINNED, 1\n", "N5, PINNED, 1", "1", "nothing after");
-    behind(
-        "*BOUNDARY\nN5, 1, 1, 0.1\n",
-        "N5, 1, 1, 0.1",
-        "N5, 1, 1, 0.1",
-        "before the first *STEP",
-    );
     behind("*BOUNDARY\n99, 1\n", "99, 1", "99", "no node");
     inside("*BOUNDARY\nN6, 1, 6, 0.1\n", "N6, 1, 6, 0.1", "6", "no rotations");
     inside(
@@ -49,12 +43,7 @@ fn loads() {
     let both = format!("*DLOAD\nALL, CENTRIF, 1., 0., 0., 0., 0., 0., 1.\n{other}\n");
     inside(&both, other, "ALL", "about another axis");
     let held = "*BOUNDARY, FIXED";
-    inside(
-        &format!("{held}\nN6, 1\n"),
-        held,
-        "FIXED",
-        "displacement that the steps before reached",
-    );
+    inside(&format!("{held}\nN6, 1, 1, 2.\n"), held, "FIXED", "remove the value");
     inside("*DLOAD\nALL, P1, 1.\n", "ALL, P1, 1.", "ALL", "inside the body");
     inside("*DLOAD\nALL, P1, 1., 2.\n", "ALL, P1, 1., 2.", "2.", "a value");
     let nowhere = "ALL, GRAV, 9.8, 0., 0., 0.";
