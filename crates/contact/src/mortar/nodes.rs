@@ -13,7 +13,8 @@ use std::collections::BTreeMap;
 /// What a node of the first side sees of the other one.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MortarNode {
-    /// Nodes of its own side with weights that sum to one, the node itself first; in a mesh of order 1 nothing else.
+    /// Nodes of its own side with weights that sum to one, the node itself first if it has a weight: between tips in a
+    /// mesh of order 2 it has none. In a mesh of order 1 nothing else.
     pub(crate) own: Vec<(u32, f64)>,
     /// Nodes of the other side with weights that sum to one, the largest first; of a tied one that is apart also nodes
     /// behind it.
@@ -143,7 +144,7 @@ impl Sums {
         }
     }
 
-    /// The means of both sides at a node; `None` where it has no weight itself.
+    /// The means of both sides at a node.
     fn node(self, node: u32, frame: SurfaceFrame) -> Option<MortarNode> {
         let most = self.partner.values().fold(0.0, |m: f64, w| m.max(w.abs()));
         let mean = |mut weights: BTreeMap<u32, f64>| -> Vec<(u32, f64)> {
@@ -154,7 +155,7 @@ impl Sums {
         let (mut own, mut partner) = (mean(self.own), mean(self.partner));
         own.sort_by_key(|n| (n.0 != node, n.0));
         partner.sort_by(|a, b| b.1.abs().total_cmp(&a.1.abs()).then(a.0.cmp(&b.0)));
-        (own.first()?.0 == node).then_some(MortarNode {
+        Some(MortarNode {
             own,
             partner,
             way: self.way / self.area,

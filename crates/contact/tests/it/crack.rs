@@ -274,3 +274,67 @@ fn every_way_finds_the_same_crack() {
         }
     }
 }
+
+const SEEDS: u64 = 40;
+
+/// Cracks of any outline in plane or bent layers, which end inside or at the boundary, under any load: in parts and in one
+/// piece they open, stick and slide alike.
+#[test]
+fn random_cracks_do_not_feel_partitions() {
+    let mut found = 0;
+    for seed in 1..SEEDS {
+        let mut dice = random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+        let cells = [0; 3].map(|_| dice.random_range(4..8));
+        let order = 1 + (dice.random::<f64>() < 0.4) as usize;
+        let layer = dice.random_range(1..cells[2]);
+        let whole = Brick::new([1.0; 3], cells).build().expect("brick");
+        let middle = [0; 2].map(|_| dice.random_range(0.1..0.9));
+        let (size, stretch) = (dice.random_range(0.2..0.7), dice.random_range(0.4..1.0));
+        let height = layer as f64 / cells[2] as f64;
+        let within =
+            |[x, y, z]: [f64; 3]| (z - height).abs() < 1e-9 && (x - middle[0]).hypot((y - middle[1]) / stretch) < size;
+        let is_lower = |tet: usize| vec3::centroid(&whole.tet_points(tet))[2] < height;
+        let Ok((mesh, _)) = whole.crack(|face| face.into_iter().all(within), is_lower, [LOW, UP]) else {
+            continue;
+        };
+        let bend = dice.random_range(-0.2..0.2);
+        let mesh = mesh
+            .map_points(|[x, y, z]| [x, y, z + bend * x * y * (1.0 - z)])
+            .expect("bent");
+        let mesh = if order == 2 {
+            mesh.raise_order().expect("order 2")
+        } else {
+            mesh
+        };
+        let mut any = |size: f64| [0; 3].map(|_| dice.random_range(-size..size));
+        let (top, side) = (any(1e6), any(1e6));
+        let coefficient = dice.random_range(0.0..0.8);
+        let scene = || {
+            Scene::new(mesh.clone(), uniform(YOUNG, 0.3))
+                .with_support(Support::fixed(brick::Z_MIN))
+                .with_load(Load::traction(brick::Z_MAX, top).with_history(ramp()))
+                .with_load(Load::traction(brick::X_MAX, side).with_history(up_down_up()))
+                .with_contact(Contact::between(LOW, UP).with_friction(Friction::coulomb(coefficient)))
+                .with_analysis(Analysis::quasistatic(1.0, 5))
+        };
+        let parts = dice.random_range(3..12);
+        let solved = |scene: Scene| {
+            let mut simulation = Simulation::new(scene, at(1e-9)).expect("set-up");
+            rest(&mut simulation)
+        };
+        let [own, expected] = [
+            solved(scene().with_subdomains(parts)),
+            solved(scene().without_subdomains()),
+        ];
+        for (k, (own, expected)) in own.iter().zip(&expected).enumerate() {
+            let what = format!("crack {seed}, step {k}");
+            assert_certified(own, &what);
+            crate::couplings::assert_close(&own.displacement, &expected.displacement, 1e-7, &what);
+        }
+        let [own, expected] = [own, expected].map(|s| s.iter().map(|s| s.report.counters.products).sum::<usize>());
+        println!("crack {seed}: {own} and {expected} products");
+        assert!(own <= 3 * expected + 10, "crack {seed}: {own} and {expected} products");
+        found += 1;
+    }
+    assert!(found > 20, "{found} cracks");
+}

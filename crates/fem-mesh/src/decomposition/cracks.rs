@@ -5,6 +5,7 @@
 
 use std::collections::{HashMap, VecDeque};
 
+use super::parts::split_by;
 use crate::mesh::{TetMesh, face_nodes};
 use crate::tables::{DisjointSets, Lists, distinct};
 use crate::tolerances::NECK;
@@ -51,6 +52,9 @@ pub(super) fn split_at_cracks(mesh: &TetMesh, parts: &mut [u32]) {
         }
         next += all.len() as u32;
     }
+    // one side may come to a part at several places
+    let pieces = split_by(mesh, parts);
+    parts.copy_from_slice(&pieces);
 }
 
 /// Pairs of tagged facets in one place.
