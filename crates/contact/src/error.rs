@@ -90,6 +90,7 @@ signorini_fem_mesh::errors! {
             equal steps, backward Euler does not";
         UnknownTag { what: &'static str, index: usize, tag: u32, known: String } =
             "{what} {index}: no facet has the tag {tag}; the mesh has {known}";
+        Spring { spring: usize, reason: &'static str } = "spring {spring}: {reason}";
         SpringStiffness { spring: usize, value: f64 } =
             "spring {spring}: its stiffness is {value}; it must be finite and not negative, and some component \
             positive";

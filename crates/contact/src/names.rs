@@ -108,7 +108,7 @@ impl ContactError {
                 coupling.chain(node.map(Part::Node)).collect()
             }
             Self::UnknownCoupling { load, .. } => vec![Part::Load(*load)],
-            Self::SpringStiffness { spring, .. } => vec![Part::Spring(*spring)],
+            Self::Spring { spring, .. } | Self::SpringStiffness { spring, .. } => vec![Part::Spring(*spring)],
             Self::UnknownNode { support, .. }
             | Self::ValueCount { support, .. }
             | Self::SupportAxis { support, .. } => {

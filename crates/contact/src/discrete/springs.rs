@@ -3,7 +3,7 @@
 use super::creases::area_vector;
 use super::supports::Supports;
 use crate::error::ContactError;
-use crate::scene::Scene;
+use crate::scene::{Place, Scene};
 use crate::tolerances::NO_SPRING;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use signorini_fem_mesh::{Surface, vec3};
@@ -24,10 +24,23 @@ impl Springs {
         let mut springs = Self::default();
         let mut sum: BTreeMap<u32, Matrix3<f64>> = BTreeMap::new();
         for spring in &scene.springs {
-            let surface = Surface::new(&scene.mesh, &[spring.tag])?;
             let mut own: BTreeMap<u32, Matrix3<f64>> = BTreeMap::new();
-            for (triangle, &facet) in surface.triangles().iter().zip(surface.facets()) {
-                let vector = area_vector(&scene.mesh, &surface, triangle);
+            let surface = match &spring.place {
+                Place::Tag(tag) => Some(Surface::new(&scene.mesh, &[*tag])?),
+                Place::Nodes(nodes) => {
+                    let stiffness = spring.matrix([0.0; 3]);
+                    let stiffness = Matrix3::from_fn(|i, j| stiffness[i][j]);
+                    nodes
+                        .iter()
+                        .for_each(|node| *own.entry(*node).or_default() += stiffness);
+                    None
+                }
+            };
+            let facets = surface
+                .iter()
+                .flat_map(|s| s.triangles().iter().zip(s.facets()).map(move |f| (s, f)));
+            for (surface, (triangle, &facet)) in facets {
+                let vector = area_vector(&scene.mesh, surface, triangle);
                 let area = vec3::norm(vector);
                 let stiffness = spring.matrix(vector.map(|c| c / area));
                 let share = Matrix3::from_fn(|i, j| stiffness[i][j]) * (area / 3.0);

@@ -74,9 +74,11 @@ impl Scene {
             });
         }
         for (index, spring) in self.springs.iter().enumerate() {
-            spring.validate(index)?;
-            if self.mesh.nodes_on(spring.tag).is_empty() {
-                return Err(self.unknown_tag("spring", index, spring.tag));
+            spring.validate(index, self.mesh.points().len())?;
+            if let Place::Tag(tag) = spring.place
+                && self.mesh.nodes_on(tag).is_empty()
+            {
+                return Err(self.unknown_tag("spring", index, tag));
             }
         }
         let mut contacts = self.contacts.iter().enumerate();

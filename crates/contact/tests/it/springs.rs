@@ -403,3 +403,51 @@ fn certificates_of_soft_springs_are_lengths() {
     assert!(largest > 1e-9 * told.reference, "{largest:e} {told:?}");
     assert!(told.value >= 0.999 * largest, "{largest:e} {told:?}");
 }
+
+/// Springs at nodes that have their shares of the areas are the foundation; each has a reaction of its own.
+#[test]
+fn springs_at_nodes_are_the_foundation() {
+    let foundation = block_on_springs(1.0);
+    let mut springs = Vec::new();
+    for (nodes, area, normal) in facets(foundation.mesh(), brick::Z_MIN) {
+        assert!(normal[2] < 0.0);
+        for (k, stiffness) in [GROUND, 0.5 * GROUND, 2.0 * GROUND].into_iter().enumerate() {
+            // of any length
+            let mut direction = [0.0; 3];
+            direction[k] = -3.0;
+            springs.push(Spring::along(nodes.to_vec(), direction, stiffness * area / 3.0));
+        }
+    }
+    let mut scene = Scene::new(foundation.mesh().clone(), uniform(YOUNG, 0.3))
+        .with_support(Support::components(brick::X_MIN, [false, true, false]))
+        .with_spring(Spring::normal(brick::X_MIN, GROUND))
+        .with_load(Load::traction(brick::Z_MAX, [3e7, 1e7, -1e8]))
+        .with_load(Load::traction(brick::X_MAX, [2e7, -4e7, 1e7]));
+    scene = springs.into_iter().fold(scene, Scene::with_spring);
+    let solved = |scene: Scene| {
+        let (simulation, mut results) = run(scene.with_boxes([2, 1, 2]), tight());
+        let reactions = simulation.result().expect("a step").reactions();
+        (results.remove(0), reactions)
+    };
+    let ((own, sprung), (expected, founded)) = (solved(scene), solved(foundation));
+    assert_eq!(own.report.counters, expected.report.counters);
+    assert_close(&own.displacement, &expected.displacement, 1e-9, "displacement");
+    // the first is that at the other face
+    let mut sum = Resultant::default();
+    sprung.springs[1..].iter().for_each(|spring| sum += spring.resultant);
+    assert_close(&sum.force, &founded.springs[0].resultant.force, 1e-7, "force");
+    assert_close(&sum.moment, &founded.springs[0].resultant.moment, 1e-7, "moment");
+    for (bad, text) in [
+        (Spring::along(vec![], [1.0, 0.0, 0.0], 1.0), "no nodes"),
+        (Spring::along(vec![99_999], [1.0, 0.0, 0.0], 1.0), "numbered from 0"),
+        (Spring::along(vec![0], [0.0; 3], 1.0), "no length"),
+        (Spring::along(vec![0], [f64::NAN, 0.0, 0.0], 1.0), "no length"),
+        (Spring::along(vec![0], [1.0, 0.0, 0.0], -1.0), "stiffness is -1"),
+    ] {
+        let scene = block_on_springs(1.0).with_spring(bad);
+        let error = Simulation::new(scene, Settings::default())
+            .expect_err("refused")
+            .to_string();
+        assert!(error.starts_with("spring 2:") && error.contains(text), "{error}");
+    }
+}
