@@ -61,6 +61,16 @@ pub(crate) const PLANE: f64 = 0.5;
 /// Most tables of local numbers, each as long as the mesh has nodes: useful threads.
 pub(crate) const TABLES: usize = 16;
 
+/// Cosine of the angle, with the sign turned, from which normals of facets face each other, as on both sides of a crack. A
+/// bend of a thin body has less.
+pub(crate) const FACING: f64 = 0.7;
+/// Distance of facets that face each other, over the size of a facet, up to which they are a crack: a slot as thin as that
+/// makes a neck as well.
+pub(crate) const CRACK: f64 = 0.5;
+/// The same behind a facet, where rounding may put the other one.
+pub(crate) const BEHIND: f64 = 1e-6;
+/// Tetrahedra of a piece over those of its part up to which it joins a neighbour.
+pub(crate) const SMALL_PIECE: f64 = 0.1;
 /// Area of a crack within a part, over that of the neck around its tip, from which the part is split. A penny-shaped crack
 /// in a block of 1 to 100 parts: with 0.1 to 0.25 34 to 88 products, never split 621 in 27 parts, always split 48 in one.
 pub(crate) const NECK: f64 = 0.2;

@@ -3,136 +3,210 @@
 //! Centres of parts do not see a crack. A part that has both of its faces hangs together around the tip, perhaps by a few
 //! tetrahedra: nothing else is as soft as this neck, and solvers take many times the steps. So it becomes a part a side.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::{HashMap, HashSet, VecDeque};
 
-use super::parts::split_by;
 use crate::mesh::{TetMesh, face_nodes};
 use crate::tables::{DisjointSets, Lists, distinct};
-use crate::tolerances::NECK;
-use crate::vec3::{area_vector, norm};
+use crate::tolerances::{BEHIND, CRACK, FACING, NECK, SMALL_PIECE};
+use crate::vec3::{Vec3, area_vector, centroid, dot, norm, scale, sub};
 
-/// Splits parts by the faces of a crack if that is large against the neck around its tip: each tetrahedron goes with the
-/// face to which the fewest steps lead.
+use super::parts::split_by;
+
+/// Splits parts by the faces of cracks, if these are large against the neck around their tips: each tetrahedron goes with
+/// the face to which the fewest steps lead. Small pieces join their neighbours.
 pub(super) fn split_at_cracks(mesh: &TetMesh, parts: &mut [u32]) {
-    let owner = |facet: u32| mesh.facet_owner(facet as usize);
-    let faces = crack_faces(mesh);
-    let mut split: Vec<(u32, [u32; 2])> = faces.iter().map(|f| (parts[owner(f[0])], *f)).collect();
-    split.retain(|(part, [_, second])| parts[owner(*second)] == *part);
-    if split.is_empty() {
-        return;
-    }
-    split.sort_unstable();
-    let sides = sides(mesh, &faces);
     let count = parts.iter().max().map_or(0, |&p| p as usize + 1);
-    let members = Lists::by_key(count, parts);
+    let of_facets: Vec<u32> = (0..mesh.facets().len()).map(|f| parts[mesh.facet_owner(f)]).collect();
+    let facets = Lists::by_key(count, &of_facets);
+    let mut members = None;
     let mut next = count as u32;
-    for faces in split.chunk_by(|a, b| a.0 == b.0) {
-        let part = faces[0].0;
-        let own = members.of(part as usize);
-        let mut around = own.iter().flat_map(|tet| mesh.neighbours(*tet as usize)).flatten();
-        if around.all(|tet| parts[tet] == part) {
-            // a whole body: what joins it is its own
+    for part in 0..count {
+        let crack = Crack::new(mesh, facets.of(part));
+        if crack.area == 0.0 {
             continue;
         }
-        let nearest = nearest_sides(mesh, own, &sides);
-        let crack: f64 = faces
-            .iter()
-            .map(|(_, [face, _])| area(mesh.facet_points(*face as usize)))
-            .sum();
-        if crack < NECK * neck(mesh, &nearest) {
+        let own = members.get_or_insert_with(|| Lists::by_key(count, parts)).of(part);
+        let nearest = crack.nearest_sides(mesh, own);
+        if crack.area < NECK * neck(mesh, own, &nearest) {
             continue;
         }
-        let all = distinct(nearest.values().copied());
+        let sides = distinct(nearest.values().copied());
         for tet in own {
             // the first side keeps the number
-            match nearest.get(tet).and_then(|side| all.binary_search(side).ok()) {
+            match nearest.get(tet).and_then(|side| sides.binary_search(side).ok()) {
                 None | Some(0) => {}
                 Some(k) => parts[*tet as usize] = next + k as u32 - 1,
             }
         }
-        next += all.len() as u32;
+        next += sides.len() as u32;
     }
-    // one side may come to a part at several places
+    if let Some(members) = members {
+        join_small(mesh, &members, parts);
+    }
+}
+
+/// Makes parts of what hangs together, since a side may come to a part at several places, and gives what is small to the
+/// neighbour that shares most faces with it; `members` are the parts before.
+fn join_small(mesh: &TetMesh, members: &Lists<u32>, parts: &mut [u32]) {
     let pieces = split_by(mesh, parts);
     parts.copy_from_slice(&pieces);
-}
-
-/// Pairs of tagged facets in one place.
-fn crack_faces(mesh: &TetMesh) -> Vec<[u32; 2]> {
-    let mut known: HashMap<[[u64; 3]; 3], u32> = HashMap::new();
-    let mut out = Vec::new();
-    for facet in 0..mesh.facets().len() as u32 {
-        let mut places = mesh
-            .facet_points(facet as usize)
-            .map(|p| p.map(|x| (x + 0.0).to_bits()));
-        places.sort_unstable();
-        if let Some(other) = known.insert(places, facet) {
-            out.push([other, facet]);
+    let tets = Lists::by_key(pieces.iter().max().map_or(0, |&p| p as usize + 1), &pieces);
+    let mut is_small = vec![false; tets.count()];
+    for part in 0..members.count() {
+        let most = SMALL_PIECE * members.of(part).len() as f64;
+        for &tet in members.of(part) {
+            let piece = pieces[tet as usize] as usize;
+            is_small[piece] = tets.of(piece).len() as f64 <= most;
         }
     }
-    out
-}
-
-/// The side of each node that is on one side of a crack only: its smallest node.
-fn sides(mesh: &TetMesh, faces: &[[u32; 2]]) -> HashMap<u32, u32> {
-    let nodes = |facet: u32| mesh.facets()[facet as usize].nodes;
-    let mut sets = DisjointSets::new(mesh.points().len());
-    let mut on_one: Vec<u32> = Vec::new();
-    for pair in faces {
-        let [first, second] = pair.map(nodes);
-        for (own, other) in [(first, second), (second, first)] {
-            let inner = own.into_iter().filter(|node| !other.contains(node));
-            let from = on_one.len();
-            on_one.extend(inner);
-            on_one[from..]
-                .windows(2)
-                .for_each(|pair| sets.join(pair[0] as usize, pair[1] as usize));
-        }
-    }
-    let side = |node: u32| (node, sets.first(node as usize) as u32);
-    on_one.into_iter().map(side).collect()
-}
-
-/// For each tetrahedron of a part the side to which the fewest steps through faces lead.
-fn nearest_sides(mesh: &TetMesh, part: &[u32], sides: &HashMap<u32, u32>) -> HashMap<u32, u32> {
-    let side = |tet: &u32| {
-        mesh.tets()[*tet as usize]
-            .iter()
-            .find_map(|node| sides.get(node))
-            .copied()
-    };
-    let mut nearest: HashMap<u32, u32> = part.iter().filter_map(|tet| Some((*tet, side(tet)?))).collect();
-    let mut queue: VecDeque<u32> = part.iter().copied().filter(|tet| nearest.contains_key(tet)).collect();
-    while let Some(tet) = queue.pop_front() {
-        let here = nearest[&tet];
-        for other in mesh.neighbours(tet as usize).into_iter().flatten() {
-            let other = other as u32;
-            if part.binary_search(&other).is_ok() && !nearest.contains_key(&other) {
-                nearest.insert(other, here);
-                queue.push_back(other);
+    for part in 0..members.count() {
+        let own = members.of(part);
+        let small = own.iter().map(|tet| pieces[*tet as usize]);
+        for piece in distinct(small.filter(|piece| is_small[*piece as usize])) {
+            let tets = tets.of(piece as usize);
+            let around = tets.iter().flat_map(|tet| mesh.neighbours(*tet as usize)).flatten();
+            let around = around.filter(|tet| !is_small[pieces[*tet] as usize]);
+            // the other side of the crack last
+            let neighbour = |tet: usize| (own.binary_search(&(tet as u32)).is_ok(), pieces[tet]);
+            let mut others: Vec<(bool, u32)> = around.map(neighbour).collect();
+            others.sort_unstable();
+            let runs = others.chunk_by(|a, b| a == b);
+            if let Some(most) = runs.max_by_key(|run| (!run[0].0, run.len(), std::cmp::Reverse(run[0].1))) {
+                tets.iter().for_each(|tet| parts[*tet as usize] = most[0].1);
             }
         }
     }
-    nearest
+}
+
+/// An axis at right angles to no plane that meshes have many facets in.
+const OBLIQUE: Vec3 = [1.0, 0.618, 0.382];
+
+/// Facets of a part that face each other.
+struct Crack {
+    /// Of one of its faces, m².
+    area: f64,
+    /// The side of each node that is on one only: its smallest node.
+    sides: HashMap<u32, u32>,
+}
+
+impl Crack {
+    fn new(mesh: &TetMesh, facets: &[u32]) -> Self {
+        let all: Vec<Place> = facets.iter().map(|facet| Place::new(mesh, *facet)).collect();
+        // along an oblique axis: facets of one plane are spread out
+        let along = |k: usize| dot(all[k].centre, OBLIQUE);
+        let mut order: Vec<usize> = (0..all.len()).collect();
+        order.sort_by(|a, b| along(*a).total_cmp(&along(*b)));
+        let reach = CRACK * norm(OBLIQUE) * all.iter().map(|place| place.size).fold(0.0, f64::max);
+        let mut faces = HashSet::new();
+        for (k, &a) in order.iter().enumerate() {
+            let near = order[k + 1..].iter().take_while(|b| along(**b) - along(a) <= reach);
+            for &b in near.filter(|b| all[a].faces(&all[**b])) {
+                faces.extend([a, b]);
+            }
+        }
+        let mut crack = Self {
+            area: 0.0,
+            sides: HashMap::new(),
+        };
+        if faces.is_empty() {
+            return crack;
+        }
+        // a node of facets that face each other is at the tip
+        let mut normals: HashMap<u32, Vec<Vec3>> = HashMap::new();
+        for &k in &faces {
+            for node in all[k].nodes {
+                normals.entry(node).or_default().push(all[k].normal);
+            }
+        }
+        let is_tip = |node: u32| {
+            let here = &normals[&node];
+            here.iter().any(|a| here.iter().any(|b| dot(*a, *b) < -FACING))
+        };
+        let mut faces: Vec<usize> = faces.into_iter().collect();
+        faces.sort_unstable();
+        crack.area = faces.iter().map(|k| 0.5 * all[*k].area).sum();
+        let inner = |k: &usize| all[*k].nodes.into_iter().filter(|node| !is_tip(*node));
+        let nodes = distinct(faces.iter().flat_map(inner));
+        let local = |node: u32| nodes.partition_point(|n| *n < node);
+        let mut sets = DisjointSets::new(nodes.len());
+        for k in &faces {
+            let own: Vec<usize> = inner(k).map(local).collect();
+            own.windows(2).for_each(|pair| sets.join(pair[0], pair[1]));
+        }
+        let side = |(k, node): (usize, &u32)| (*node, nodes[sets.first(k)]);
+        crack.sides = nodes.iter().enumerate().map(side).collect();
+        crack
+    }
+
+    /// For each tetrahedron of the part the side to which the fewest steps through faces lead.
+    fn nearest_sides(&self, mesh: &TetMesh, part: &[u32]) -> HashMap<u32, u32> {
+        let side = |tet: &u32| {
+            let mut corners = mesh.tets()[*tet as usize].iter();
+            corners.find_map(|node| self.sides.get(node)).copied()
+        };
+        let mut nearest: HashMap<u32, u32> = part.iter().filter_map(|tet| Some((*tet, side(tet)?))).collect();
+        let mut queue: VecDeque<u32> = part.iter().copied().filter(|tet| nearest.contains_key(tet)).collect();
+        while let Some(tet) = queue.pop_front() {
+            let here = nearest[&tet];
+            for other in mesh.neighbours(tet as usize).into_iter().flatten() {
+                let other = other as u32;
+                if part.binary_search(&other).is_ok() && !nearest.contains_key(&other) {
+                    nearest.insert(other, here);
+                    queue.push_back(other);
+                }
+            }
+        }
+        nearest
+    }
+}
+
+/// Where a facet is.
+struct Place {
+    nodes: [u32; 3],
+    centre: Vec3,
+    /// Out of the body.
+    normal: Vec3,
+    area: f64,
+    size: f64,
+}
+
+impl Place {
+    fn new(mesh: &TetMesh, facet: u32) -> Self {
+        let points = mesh.facet_points(facet as usize);
+        let vector = area_vector(&points);
+        let area = norm(vector);
+        Self {
+            nodes: mesh.facets()[facet as usize].nodes,
+            centre: centroid(&points),
+            normal: scale(1.0 / area, vector),
+            area,
+            size: area.sqrt(),
+        }
+    }
+
+    /// Whether another facet looks at it across next to nothing, with no body between.
+    fn faces(&self, other: &Self) -> bool {
+        let way = sub(other.centre, self.centre);
+        let size = self.size.min(other.size);
+        let gap = dot(way, self.normal);
+        let is_near = norm(way) <= CRACK * size && gap >= -BEHIND * size;
+        is_near && dot(self.normal, other.normal) < -FACING
+    }
 }
 
 /// The area of the faces between tetrahedra of different sides, m².
-fn neck(mesh: &TetMesh, nearest: &HashMap<u32, u32>) -> f64 {
-    let mut tets: Vec<(&u32, &u32)> = nearest.iter().collect();
-    tets.sort_unstable();
+fn neck(mesh: &TetMesh, part: &[u32], nearest: &HashMap<u32, u32>) -> f64 {
     let mut sum = 0.0;
-    for (&tet, side) in tets {
+    for &tet in part {
         for (face, other) in mesh.neighbours(tet as usize).into_iter().enumerate() {
             let other = other.and_then(|other| nearest.get(&(other as u32)));
             // each face once
-            if other.is_some_and(|other| other < side) {
-                sum += area(face_nodes(&mesh.tets()[tet as usize], face).map(|n| mesh.points()[n as usize]));
+            if other.is_some() && other < nearest.get(&tet) {
+                sum += norm(area_vector(
+                    &face_nodes(&mesh.tets()[tet as usize], face).map(|n| mesh.points()[n as usize]),
+                ));
             }
         }
     }
     sum
-}
-
-fn area(corners: [[f64; 3]; 3]) -> f64 {
-    norm(area_vector(&corners))
 }

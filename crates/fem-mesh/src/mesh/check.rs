@@ -98,21 +98,19 @@ pub(super) fn no_dangling(nodes: usize, tets: &[[u32; 4]], mids: &[[u32; 6]]) ->
     }
 }
 
-/// Coinciding nodes of the same body are a cut that nobody meant, unless both are `named`: on facets with a tag, as the
-/// faces of a crack are. Those of different bodies are allowed, since bodies in contact may have matching nodes. Here
-/// tetrahedra with a common node belong to the same body.
+/// Coinciding nodes of the same body are a cut that nobody meant, unless `keep` drops them; those of different bodies are
+/// allowed, since bodies in contact may have matching nodes. Here tetrahedra with a common node belong to the same body.
 pub(super) fn no_coincident(
     points: &[Vec3],
     tets: &[[u32; 4]],
     mids: &[[u32; 6]],
-    named: impl FnOnce() -> Vec<bool>,
+    keep: impl FnOnce(&mut Vec<(usize, usize)>),
 ) -> Result<(), MeshError> {
     let mut pairs = close_pairs(points, 0.0);
     if pairs.is_empty() {
         return Ok(());
     }
-    let named = named();
-    pairs.retain(|&(a, b)| !(named[a] && named[b]));
+    keep(&mut pairs);
     let mut bodies = DisjointSets::new(points.len());
     for tet in tets {
         tet[1..]

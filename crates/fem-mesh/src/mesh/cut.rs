@@ -1,7 +1,7 @@
 //! Meshes that are cut open inside.
 
 use crate::tables::DisjointSets;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::cells::EDGES;
 use super::check;
@@ -103,31 +103,27 @@ impl TetMesh {
         tags: [FacetTag; 2],
         may_end: bool,
     ) -> Result<(Self, Vec<u32>), MeshError> {
-        let mut out = self.clone();
-        // tetrahedra around the nodes of the cut
+        let mut neighbours = self.neighbours.clone();
+        // tetrahedra around the corners of the cut
         let mut around: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for &(tet, face) in &faces {
-            let nodes = face_nodes(&self.tets[tet], face);
-            out.neighbours[tet][face] = NONE;
-            around.extend(nodes.map(|node| (node, Vec::new())));
-            if self.order() == 2 {
-                around.extend(self.mids_of(tet, nodes).map(|node| (node, Vec::new())));
-            }
+            neighbours[tet][face] = NONE;
+            around.extend(face_nodes(&self.tets[tet], face).map(|node| (node, Vec::new())));
         }
-        for tet in 0..self.tets.len() {
-            for node in self.nodes_of(tet) {
-                if let Some(tets) = around.get_mut(&node) {
+        for (tet, corners) in self.tets.iter().enumerate() {
+            for node in corners {
+                if let Some(tets) = around.get_mut(node) {
                     tets.push(tet);
                 }
             }
         }
-        // for each node that opens the tetrahedra of the second side
+        // each corner that opens, with the tetrahedra of the second side
         let mut opened: BTreeMap<u32, Vec<usize>> = BTreeMap::new();
         for (&node, tets) in &around {
             let mut sets = DisjointSets::new(tets.len());
             for (k, &tet) in tets.iter().enumerate() {
-                for other in out.neighbours(tet).into_iter().flatten() {
-                    if let Ok(other) = tets.binary_search(&other) {
+                for other in neighbours[tet].into_iter().filter(|other| *other != NONE) {
+                    if let Ok(other) = tets.binary_search(&(other as usize)) {
                         sets.join(k, other);
                     }
                 }
@@ -147,61 +143,88 @@ impl TetMesh {
             let is_second = |k: &usize| found.get(&sets.first(*k)) == Some(&[false, true]);
             opened.insert(node, (0..tets.len()).filter(is_second).map(|k| tets[k]).collect());
         }
-        if may_end {
-            // what has all corners at the tip cannot open
-            let corners = |tet: usize, edge: usize| EDGES[edge].map(|k| self.tets[tet][k]);
-            let edge = |node: &u32| {
-                let tet = around[node][0];
-                let mids = self.mids.get(tet)?;
-                Some(corners(tet, mids.iter().position(|mid| mid == node)?))
-            };
-            let ends: Vec<(u32, Option<[u32; 2]>)> = opened.keys().map(|node| (*node, edge(node))).collect();
-            for (node, ends) in ends {
-                if ends.is_some_and(|ends| ends.iter().all(|end| !opened.contains_key(end))) {
-                    opened.remove(&node);
-                }
+        // a face with all corners at the tip stays
+        faces.retain(|&(tet, face)| {
+            let mut corners = face_nodes(&self.tets[tet], face).into_iter();
+            let opens = corners.any(|node| opened.contains_key(&node));
+            if !opens {
+                neighbours[tet][face] = self.neighbours[tet][face];
             }
-            faces.retain(|&(tet, face)| {
-                let opens = face_nodes(&self.tets[tet], face)
-                    .iter()
-                    .any(|node| opened.contains_key(node));
-                if !opens {
-                    out.neighbours[tet][face] = self.neighbours[tet][face];
-                }
-                opens
-            });
-        }
+            opens
+        });
         if faces.is_empty() {
             return Err(MeshError::NoCut);
         }
-        check::numbered("nodes", self.points.len() + opened.len())?;
+        let mut copies: BTreeMap<u32, Vec<Vec<usize>>> = opened.into_iter().map(|(n, tets)| (n, vec![tets])).collect();
+        if self.order() == 2 {
+            copies.extend(self.copies_of_mids(&copies));
+        }
+        let copied: Vec<u32> = copies
+            .iter()
+            .flat_map(|(node, all)| all.iter().map(|_| *node))
+            .collect();
+        check::numbered("nodes", self.points.len() + copied.len())?;
+        let mut out = Self {
+            neighbours,
+            ..self.clone()
+        };
         for &(tet, face) in &faces {
             let tag = tags[usize::from(sides[tet] == Some(false))];
             let nodes = face_nodes(&self.tets[tet], face);
             out.facets.push(Facet { nodes, tag });
             out.owners.push(tet as u32);
         }
-        let mut copies: BTreeMap<(usize, u32), u32> = BTreeMap::new();
-        for (&node, tets) in &opened {
-            let copy = out.points.len() as u32;
-            copies.extend(tets.iter().map(|tet| ((*tet, node), copy)));
+        let mut numbers: BTreeMap<(usize, u32), u32> = BTreeMap::new();
+        for (&node, tets) in copies
+            .iter()
+            .flat_map(|(node, all)| all.iter().map(move |tets| (node, tets)))
+        {
+            let number = out.points.len() as u32;
+            numbers.extend(tets.iter().map(|tet| ((*tet, node), number)));
             out.points.push(self.points[node as usize]);
         }
-        for (&(tet, node), &copy) in &copies {
+        for (&(tet, node), &number) in &numbers {
             let mids = out.mids.get_mut(tet).into_iter().flatten();
             let places = out.tets[tet].iter_mut().chain(mids);
-            places.filter(|place| **place == node).for_each(|place| *place = copy);
+            places.filter(|place| **place == node).for_each(|place| *place = number);
         }
         for (facet, &owner) in out.facets.iter_mut().zip(&out.owners) {
-            let copy = |node: u32| copies.get(&(owner as usize, node)).copied();
-            facet.nodes = facet.nodes.map(|node| copy(node).unwrap_or(node));
+            let number = |node: u32| numbers.get(&(owner as usize, node)).copied();
+            facet.nodes = facet.nodes.map(|node| number(node).unwrap_or(node));
         }
-        Ok((out, opened.into_keys().collect()))
+        Ok((out, copied))
     }
 
-    /// All nodes of a tetrahedron.
-    fn nodes_of(&self, tet: usize) -> impl Iterator<Item = u32> {
-        let mids = self.mids.get(tet).into_iter().flatten();
-        self.tets[tet].iter().chain(mids).copied()
+    /// The tetrahedra for each copy of a mid-node, from those of the copies of corners: where the ends of its edge become
+    /// different nodes, it does. The first keeps it, an edge that stays if there is one.
+    fn copies_of_mids(&self, corners: &BTreeMap<u32, Vec<Vec<usize>>>) -> BTreeMap<u32, Vec<Vec<usize>>> {
+        let mut is_copied: BTreeSet<(usize, u32)> = BTreeSet::new();
+        for (&node, tets) in corners
+            .iter()
+            .flat_map(|(node, all)| all.iter().map(move |tets| (node, tets)))
+        {
+            is_copied.extend(tets.iter().map(|tet| (*tet, node)));
+        }
+        let ends = |tet: usize, edge: usize| EDGES[edge].map(|k| is_copied.contains(&(tet, self.tets[tet][k])));
+        let mut edges: BTreeMap<u32, BTreeMap<[bool; 2], Vec<usize>>> = BTreeMap::new();
+        for &(tet, _) in &is_copied {
+            let mids = self.mids[tet].iter().enumerate();
+            let moved = mids.filter(|(edge, _)| ends(tet, *edge) != [false; 2]);
+            edges.extend(moved.map(|(_, mid)| (*mid, BTreeMap::new())));
+        }
+        for (tet, mids) in self.mids.iter().enumerate() {
+            for (edge, mid) in mids.iter().enumerate() {
+                if let Some(found) = edges.get_mut(mid) {
+                    // ends in one order in all tetrahedra
+                    let [a, b] = EDGES[edge].map(|k| self.tets[tet][k]);
+                    let [first, second] = ends(tet, edge);
+                    let ends = if a < b { [first, second] } else { [second, first] };
+                    found.entry(ends).or_default().push(tet);
+                }
+            }
+        }
+        let all = edges.into_iter();
+        let all = all.map(|(mid, found)| (mid, found.into_values().skip(1).collect::<Vec<_>>()));
+        all.filter(|(_, copies)| !copies.is_empty()).collect()
     }
 }

@@ -1,6 +1,9 @@
 //! The mesh: tetrahedra with tagged boundary facets and material regions.
 
-use crate::tables::distinct;
+use std::collections::{BTreeMap, HashMap, HashSet};
+
+use crate::tables::{ascending, distinct};
+use crate::tolerances::FACING;
 use crate::vec3::{self, Vec3};
 
 use super::check;
@@ -54,8 +57,8 @@ pub struct BoundaryFacet {
 ///
 /// A value of this type has passed all checks: finite coordinates, valid node numbers,
 /// tetrahedra of positive volume that do not overlap at faces, no unused nodes, no coinciding
-/// nodes inside one body, and facets that lie on the boundary, each listed once and oriented
-/// outward. It may hold several bodies; nodes of different bodies may coincide.
+/// nodes inside one body but on [cracks](Self::crack), whose tagged facets face each other, and facets that lie on the
+/// boundary, each listed once and oriented outward. It may hold several bodies; nodes of different bodies may coincide.
 ///
 /// Tetrahedra are oriented so that det(p1 - p0, p2 - p0, p3 - p0) > 0.
 #[derive(Debug, Clone, PartialEq)]
@@ -105,19 +108,29 @@ impl TetMesh {
             owners,
             neighbours,
         };
-        check::no_coincident(&mesh.points, &mesh.tets, &mesh.mids, || mesh.named())?;
+        check::no_coincident(&mesh.points, &mesh.tets, &mesh.mids, |pairs| {
+            mesh.leave_cracks_out(pairs)
+        })?;
         Ok(mesh)
     }
 
-    /// Which nodes are on facets with a tag.
-    fn named(&self) -> Vec<bool> {
-        let mut named = vec![false; self.points.len()];
+    /// Drops pairs of coinciding nodes that are meant: with tagged facets that face each other, as those of a crack do.
+    fn leave_cracks_out(&self, pairs: &mut Vec<(usize, usize)>) {
+        let mut normals: HashMap<usize, Vec<Vec3>> =
+            pairs.iter().flat_map(|(a, b)| [*a, *b]).map(|n| (n, vec![])).collect();
         for (facet, corners) in self.facets.iter().enumerate() {
             let mids = (self.order() == 2).then(|| self.facet_mids(facet));
-            let nodes = corners.nodes.into_iter().chain(mids.into_iter().flatten());
-            nodes.for_each(|node| named[node as usize] = true);
+            for node in corners.nodes.into_iter().chain(mids.into_iter().flatten()) {
+                if let Some(normals) = normals.get_mut(&(node as usize)) {
+                    normals.push(vec3::unit(facet_area_vector(self, facet)));
+                }
+            }
         }
-        named
+        let face = |a: &usize, b: &usize| {
+            let facing = |own: &Vec3| normals[b].iter().any(|other| vec3::dot(*own, *other) < -FACING);
+            normals[a].iter().any(facing)
+        };
+        pairs.retain(|(a, b)| !face(a, b));
     }
 
     /// Sets the material region of each tetrahedron.
@@ -238,16 +251,18 @@ impl TetMesh {
     }
 }
 
-/// Turns facets outward and finds their tetrahedra.
+/// Turns facets outward and finds their tetrahedra. Leaves out faces of cracks that have all corners at the tip, and are
+/// closed: facets inside that are listed from both sides, beside others of their tag.
 fn place_facets(
     nodes: usize,
     tets: &[[u32; 4]],
     table: &FaceTable,
-    mut facets: Vec<Facet>,
+    facets: Vec<Facet>,
 ) -> Result<(Vec<Facet>, Vec<u32>), MeshError> {
-    let mut owners = Vec::with_capacity(facets.len());
-    let mut taken = std::collections::HashMap::with_capacity(facets.len());
-    for (number, facet) in facets.iter_mut().enumerate() {
+    let (mut placed, mut owners) = (Vec::with_capacity(facets.len()), Vec::with_capacity(facets.len()));
+    let mut taken = HashMap::with_capacity(facets.len());
+    let mut inside: BTreeMap<[u32; 3], Vec<(usize, [usize; 2])>> = BTreeMap::new();
+    for (number, facet) in facets.iter().enumerate() {
         let given = facet.nodes;
         if let Some(&node) = given.iter().find(|&&n| n as usize >= nodes) {
             return Err(MeshError::FacetNodeOutOfRange {
@@ -263,22 +278,45 @@ fn place_facets(
             return Err(MeshError::FacetUnknown { facet, nodes });
         };
         if let Some((second, _)) = sides.next() {
-            let (facet, first) = (number, tet);
-            return Err(MeshError::FacetInside {
-                facet,
-                nodes,
-                first,
-                second,
-            });
+            inside
+                .entry(ascending(given))
+                .or_default()
+                .push((number, [tet, second]));
+            continue;
         }
         if let Some(first) = taken.insert((tet, face), number) {
             let second = number;
             return Err(MeshError::FacetRepeated { first, second, nodes });
         }
-        facet.nodes = outward(given, face_nodes(&tets[tet], face));
+        let nodes = outward(given, face_nodes(&tets[tet], face));
+        placed.push(Facet { nodes, ..*facet });
         owners.push(tet as u32);
     }
-    Ok((facets, owners))
+    let on_tags: HashSet<(FacetTag, u32)> = match inside.is_empty() {
+        true => HashSet::new(),
+        false => placed
+            .iter()
+            .flat_map(|f: &Facet| f.nodes.map(|node| (f.tag, node)))
+            .collect(),
+    };
+    let is_closed = |found: &[(usize, [usize; 2])]| {
+        let tips = |&(facet, _): &(usize, _)| {
+            let Facet { nodes, tag } = facets[facet];
+            // a corner of the crack may have no other facet
+            nodes.iter().filter(|node| on_tags.contains(&(tag, **node))).count() >= 2
+        };
+        found.len() == 2 && found.iter().all(tips)
+    };
+    let faults = inside.values().filter(|found| !is_closed(found)).flatten();
+    match faults.min() {
+        Some(&(facet, [first, second])) => Err(MeshError::FacetInside {
+            facet,
+            nodes: facets[facet].nodes,
+            first,
+            second,
+        }),
+        None => Ok((placed, owners)),
+    }
 }
 
 /// The triangle as given if it is a rotation of the outward one, else with two nodes swapped.
