@@ -47,7 +47,11 @@ impl Partition {
         let tets = mesh.tets().len();
         let own = if mesh.order() == 2 { QUADRATIC } else { TETS };
         match self {
-            Self::Automatic if tets < 2 * own => Ok(Decomposition::whole(mesh)),
+            Self::Automatic if tets < 2 * own => {
+                // bodies in one piece, but for cracks
+                let parts = even_parts(mesh, &vec![0; tets], PartCount::Exactly(1))?;
+                Ok(Decomposition::from_parts(mesh, &parts)?)
+            }
             Self::Automatic => even(PartCount::About((tets / own).min(MOST))),
             Self::Subdomains(count) => even(PartCount::Exactly(*count)),
             Self::Whole => Ok(Decomposition::whole(mesh)),
