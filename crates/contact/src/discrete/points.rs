@@ -176,6 +176,9 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                 });
             }
         }
+        // between tips of a crack a point has the name of a mid-node
+        let own = of_contact(&out, index);
+        out[own].sort_by_key(ContactPoint::node);
         let mids = mids.into_iter().flatten();
         out.extend(mids.map(|mid| tied_mid(scene, (index, surface), fixed, &mid)));
     }
