@@ -79,7 +79,7 @@ impl Spring {
             Stiffness::Normal(k) => normal.map(|a| normal.map(|b| k * a * b)),
             Stiffness::Components([x, y, z]) => [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]],
             Stiffness::Along(direction, k) => {
-                let unit = vec3::unit(direction);
+                let unit = vec3::unit(scaled(direction));
                 unit.map(|a| unit.map(|b| k * a * b))
             }
         }
@@ -100,8 +100,7 @@ impl Spring {
             Stiffness::Normal(k) => [k; 3],
             Stiffness::Components(k) => k,
             Stiffness::Along(direction, k) => {
-                let length = vec3::norm(direction);
-                if !(length > 0.0 && length.is_finite()) {
+                if !vec3::is_finite(scaled(direction)) {
                     return refuse("its direction has no length; give a vector that is finite and not zero");
                 }
                 [k; 3]
@@ -114,4 +113,10 @@ impl Spring {
             None => Ok(()),
         }
     }
+}
+
+/// A vector over its largest component: its square is neither zero nor infinite.
+fn scaled(direction: [f64; 3]) -> [f64; 3] {
+    let largest = direction.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+    direction.map(|c| c / largest)
 }

@@ -204,7 +204,9 @@ fn sum(known: Known, parts: &[(f64, &Held)]) -> Result<Option<Held>, DeckError> 
     };
     let stays = |held: &Held| begins(held).1 == Beginning::Stay;
     if let Some((_, fixed)) = parts.iter().find(|part| stays(part.1)) {
-        let rests = |held: &Held| held.span[0].is_none() && held.track.course(known.timeline).is_none();
+        let from = fixed.span[0].unwrap_or(0);
+        let rests =
+            |held: &Held| held.span[0].is_none_or(|own| own < from) && held.track.rests_from(from, known.timeline);
         return match parts.iter().find(|part| !stays(part.1) && !rests(part.1)) {
             None => Ok(Some((*fixed).clone())),
             Some((_, moves)) => Err(moves.track.word.cannot(

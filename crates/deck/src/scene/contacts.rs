@@ -108,7 +108,7 @@ fn tied(touch: &Touch, word: &Word, ignored: &mut Vec<Ignored>) -> Tie {
     ignored.push(Ignored::new(word, why));
     Tie {
         word: word.clone(),
-        adjust: touch.adjust.is_some(),
+        adjust: true,
         tolerance: touch.adjust.as_ref().map(|(_, reach)| *reach),
     }
 }

@@ -124,6 +124,17 @@ impl Track {
         amplitude.is_some_and(|amplitude| timeline.model.amplitudes.at(amplitude).total)
     }
 
+    /// Takes back what a step says.
+    pub(super) fn forget(&mut self, step: usize) {
+        self.events.retain(|event| event.0 != step);
+    }
+
+    /// Whether nothing changes it from a step on.
+    pub(super) fn rests_from(&self, step: usize, timeline: &Timeline) -> bool {
+        let said = self.events.last().is_none_or(|event| event.0 < step);
+        said && self.course.is_none() && !self.follows(timeline)
+    }
+
     /// Whether a step removes it.
     pub(super) fn is_removed_in(&self, step: usize) -> bool {
         self.event(step) == Some(None)

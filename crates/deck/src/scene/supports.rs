@@ -218,8 +218,11 @@ impl Table {
                             return Err(fixed.cannot(why));
                         }
                         (Some(held), Some(step), Some(_)) => {
-                            held.track.keep(step);
-                            continue;
+                            held.track.forget(step);
+                            if held.span[0] != Some(step) {
+                                continue;
+                            }
+                            held.fixed = true;
                         }
                         _ => {}
                     }

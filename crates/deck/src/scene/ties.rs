@@ -11,7 +11,7 @@ use signorini_fem_mesh::vec3::{add, area_vector, dot, norm, sub};
 
 use super::faces::{FaceTable, Known};
 use crate::error::DeckError;
-use crate::model::{Ignored, Pair, Tie};
+use crate::model::{Ignored, Law, Pair, Tie};
 use crate::tolerances::{BEFORE, NO_TIE, TIE, TOGETHER};
 
 /// Refuses a tie whose nodes are too far from the other surface; `surfaces` are the positions of both.
@@ -54,6 +54,13 @@ pub(super) fn check(
                 farthest = (distance, label);
             }
         } else if dot(normal, gradient).abs() > BEFORE * norm(normal) {
+            if matches!(pair.law, Law::Contact(_)) {
+                return Err(pair.slave.word.cannot(format!(
+                    "node {label} is {distance:.3e} from {}: CalculiX pulls tied contact shut, here it stays as far apart; move \
+                    the nodes, or write *TIE with a POSITION TOLERANCE",
+                    pair.master.word.text
+                )));
+            }
             return Err(pair.slave.word.cannot(format!(
                 "node {label} is {distance:.3e} from {}, more than the position tolerance {tolerance:.3e}{}: CalculiX would \
                 not tie it, here all is tied that faces the other surface; give *TIE a larger POSITION TOLERANCE, or \

@@ -331,9 +331,16 @@ fn fixed_nodes_stay_as_in_calculix() {
 fn what_is_held_stays_and_what_is_given_early_is_reached() {
     let at_end = |deck: &str| displacements(scene(deck)).pop().expect("a step");
     let moved = "*BOUNDARY\nN1, 1, 3\nN2, 1, 1, 0.002\n";
-    let plain = at_end(&in_steps(2, ("1., 1.", ""), &[moved, "*DSLOAD\nS6, P, 300.\n"]));
+    let plain = || at_end(&in_steps(2, ("1., 1.", ""), &[moved, "*DSLOAD\nS6, P, 300.\n"]));
     let again = "*BOUNDARY, OP=NEW, FIXED\nN1, 1, 3\nN2, 1, 1\n*DSLOAD\nS6, P, 300.\n";
-    assert_close(&at_end(&in_steps(2, ("1., 1.", ""), &[moved, again])), plain, "fixed");
+    assert_close(&at_end(&in_steps(2, ("1., 1.", ""), &[moved, again])), plain(), "fixed");
+    // FIXED counts, whatever the step says before it, or what is given before the first
+    let both = "*BOUNDARY\nN2, 1, 1, 0.1\n*BOUNDARY, FIXED\nN2, 1, 1\n*DSLOAD\nS6, P, 300.\n";
+    assert_close(&at_end(&in_steps(2, ("1., 1.", ""), &[moved, both])), plain(), "both");
+    let held = "*BOUNDARY, FIXED\nN2, 1, 1\n*DSLOAD\nS6, P, 300.\n";
+    let [early, plainly] = [moved, "*BOUNDARY\nN1, 1, 3\nN2, 1\n"]
+        .map(|given| in_steps(2, ("1., 1.", ""), &[held]).replace("*STEP", &format!("{given}*STEP")));
+    assert_close(&at_end(&early), at_end(&plainly), "before the first step");
     let whole = in_steps(2, ("0.5, 1.", ""), &[moved]);
     let early = in_steps(2, ("0.5, 1.", ""), &[""]).replace("*STEP", &format!("{moved}*STEP"));
     let [wanted, found] = [&whole, &early].map(|deck| displacements(scene(deck)));

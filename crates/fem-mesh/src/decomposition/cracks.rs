@@ -3,7 +3,7 @@
 //! Centres of parts do not see a crack. A part that has both of its faces hangs together around the tip, perhaps by a few
 //! tetrahedra: nothing else is as soft as this neck, and solvers take many times the steps. So it becomes a part a side.
 
-use std::collections::{HashMap, HashSet, VecDeque};
+use std::collections::{BTreeMap, HashMap, VecDeque};
 
 use crate::mesh::{TetMesh, face_nodes};
 use crate::tables::{DisjointSets, Lists, distinct};
@@ -26,8 +26,9 @@ pub(super) fn split_at_cracks(mesh: &TetMesh, parts: &mut [u32]) {
             continue;
         }
         let own = members.get_or_insert_with(|| Lists::by_key(count, parts)).of(part);
-        let nearest = crack.nearest_sides(mesh, own);
-        if crack.area < NECK * neck(mesh, own, &nearest) {
+        let mut nearest = crack.nearest_sides(mesh, own);
+        let necks = crack.join(&necks(mesh, own, &nearest), &mut nearest);
+        if crack.area < NECK * necks {
             continue;
         }
         let sides = distinct(nearest.values().copied());
@@ -87,6 +88,8 @@ struct Crack {
     area: f64,
     /// The side of each node that is on one only: its smallest node.
     sides: HashMap<u32, u32>,
+    /// Sides that face each other.
+    apart: Vec<[u32; 2]>,
 }
 
 impl Crack {
@@ -96,21 +99,13 @@ impl Crack {
         let along = |k: usize| dot(all[k].centre, OBLIQUE);
         let mut order: Vec<usize> = (0..all.len()).collect();
         order.sort_by(|a, b| along(*a).total_cmp(&along(*b)));
-        let reach = CRACK * norm(OBLIQUE) * all.iter().map(|place| place.size).fold(0.0, f64::max);
-        let mut faces = HashSet::new();
+        let mut pairs = Vec::new();
         for (k, &a) in order.iter().enumerate() {
+            let reach = CRACK * norm(OBLIQUE) * all[a].size;
             let near = order[k + 1..].iter().take_while(|b| along(**b) - along(a) <= reach);
-            for &b in near.filter(|b| all[a].faces(&all[**b])) {
-                faces.extend([a, b]);
-            }
+            pairs.extend(near.filter(|b| all[a].faces(&all[**b])).map(|b| [a, *b]));
         }
-        let mut crack = Self {
-            area: 0.0,
-            sides: HashMap::new(),
-        };
-        if faces.is_empty() {
-            return crack;
-        }
+        let faces = distinct(pairs.iter().flatten().copied());
         // a node of facets that face each other is at the tip
         let mut normals: HashMap<u32, Vec<Vec3>> = HashMap::new();
         for &k in &faces {
@@ -122,20 +117,53 @@ impl Crack {
             let here = &normals[&node];
             here.iter().any(|a| here.iter().any(|b| dot(*a, *b) < -FACING))
         };
-        let mut faces: Vec<usize> = faces.into_iter().collect();
-        faces.sort_unstable();
-        crack.area = faces.iter().map(|k| 0.5 * all[*k].area).sum();
-        let inner = |k: &usize| all[*k].nodes.into_iter().filter(|node| !is_tip(*node));
-        let nodes = distinct(faces.iter().flat_map(inner));
+        let inner = |k: usize| all[k].nodes.into_iter().filter(|node| !is_tip(*node));
+        let nodes = distinct(faces.iter().flat_map(|k| inner(*k)));
         let local = |node: u32| nodes.partition_point(|n| *n < node);
         let mut sets = DisjointSets::new(nodes.len());
-        for k in &faces {
+        for &k in &faces {
             let own: Vec<usize> = inner(k).map(local).collect();
             own.windows(2).for_each(|pair| sets.join(pair[0], pair[1]));
         }
-        let side = |(k, node): (usize, &u32)| (*node, nodes[sets.first(k)]);
-        crack.sides = nodes.iter().enumerate().map(side).collect();
-        crack
+        let mut side = |node: u32| nodes[sets.first(local(node))];
+        let mut apart = Vec::new();
+        for pair in &pairs {
+            if let [Some(a), Some(b)] = pair.map(|k| inner(k).next()) {
+                apart.push([side(a), side(b)]);
+            }
+        }
+        Self {
+            area: faces.iter().map(|k| 0.5 * all[*k].area).sum(),
+            sides: nodes.iter().map(|node| (*node, side(*node))).collect(),
+            apart: distinct(apart),
+        }
+    }
+
+    /// Joins sides that do not face each other, as both skins of a layer between two cracks, those with most faces in
+    /// common first. Returns the area of the faces between sides that are left, m².
+    fn join(&self, necks: &BTreeMap<[u32; 2], f64>, nearest: &mut HashMap<u32, u32>) -> f64 {
+        let all = distinct(self.sides.values().copied());
+        let local = |side: u32| all.partition_point(|s| *s < side);
+        let mut sets = DisjointSets::new(all.len());
+        let mut order: Vec<([u32; 2], f64)> = necks.iter().map(|(pair, area)| (*pair, *area)).collect();
+        order.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
+        for (pair, _) in &order {
+            let mut joined = sets.clone();
+            let [a, b] = pair.map(local);
+            joined.join(a, b);
+            let mut apart = self.apart.iter().map(|pair| pair.map(local));
+            if apart.all(|[a, b]| joined.first(a) != joined.first(b)) {
+                sets = joined;
+            }
+        }
+        nearest
+            .values_mut()
+            .for_each(|side| *side = all[sets.first(local(*side))]);
+        let between = order.iter().filter(|(pair, _)| {
+            let [a, b] = pair.map(|side| sets.clone().first(local(side)));
+            a != b
+        });
+        between.map(|(_, area)| area).sum()
     }
 
     /// For each tetrahedron of the part the side to which the fewest steps through faces lead.
@@ -194,19 +222,20 @@ impl Place {
     }
 }
 
-/// The area of the faces between tetrahedra of different sides, m².
-fn neck(mesh: &TetMesh, part: &[u32], nearest: &HashMap<u32, u32>) -> f64 {
-    let mut sum = 0.0;
-    for &tet in part {
-        for (face, other) in mesh.neighbours(tet as usize).into_iter().enumerate() {
+/// The area of the faces between tetrahedra of each two sides, m².
+fn necks(mesh: &TetMesh, part: &[u32], nearest: &HashMap<u32, u32>) -> BTreeMap<[u32; 2], f64> {
+    let mut areas = BTreeMap::new();
+    for tet in part {
+        for (face, other) in mesh.neighbours(*tet as usize).into_iter().enumerate() {
             let other = other.and_then(|other| nearest.get(&(other as u32)));
             // each face once
-            if other.is_some() && other < nearest.get(&tet) {
-                sum += norm(area_vector(
-                    &face_nodes(&mesh.tets()[tet as usize], face).map(|n| mesh.points()[n as usize]),
-                ));
+            if let (Some(&own), Some(&other)) = (nearest.get(tet), other)
+                && other < own
+            {
+                let corners = face_nodes(&mesh.tets()[*tet as usize], face).map(|n| mesh.points()[n as usize]);
+                *areas.entry([other, own]).or_insert(0.0) += norm(area_vector(&corners));
             }
         }
     }
-    sum
+    areas
 }

@@ -1,6 +1,6 @@
 //! The mesh: tetrahedra with tagged boundary facets and material regions.
 
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 
 use crate::tables::{ascending, distinct};
 use crate::tolerances::FACING;
@@ -98,7 +98,7 @@ impl TetMesh {
         check::no_dangling(points.len(), &tets, &mids)?;
         let table = FaceTable::new(points.len(), &tets);
         let neighbours = table.neighbours(tets.len())?;
-        let (facets, owners) = place_facets(points.len(), &tets, &table, facets)?;
+        let (facets, owners) = place_facets(&points, &tets, &table, facets)?;
         let mesh = Self {
             regions: vec![0; tets.len()],
             points,
@@ -252,13 +252,14 @@ impl TetMesh {
 }
 
 /// Turns facets outward and finds their tetrahedra. Leaves out faces of cracks that have all corners at the tip, and are
-/// closed: facets inside that are listed from both sides, beside others of their tag.
+/// closed: facets inside that are listed from both sides, at whose corners others of their tags face each other.
 fn place_facets(
-    nodes: usize,
+    points: &[Vec3],
     tets: &[[u32; 4]],
     table: &FaceTable,
     facets: Vec<Facet>,
 ) -> Result<(Vec<Facet>, Vec<u32>), MeshError> {
+    let nodes = points.len();
     let (mut placed, mut owners) = (Vec::with_capacity(facets.len()), Vec::with_capacity(facets.len()));
     let mut taken = HashMap::with_capacity(facets.len());
     let mut inside: BTreeMap<[u32; 3], Vec<(usize, [usize; 2])>> = BTreeMap::new();
@@ -292,20 +293,27 @@ fn place_facets(
         placed.push(Facet { nodes, ..*facet });
         owners.push(tet as u32);
     }
-    let on_tags: HashSet<(FacetTag, u32)> = match inside.is_empty() {
-        true => HashSet::new(),
-        false => placed
-            .iter()
-            .flat_map(|f: &Facet| f.nodes.map(|node| (f.tag, node)))
-            .collect(),
-    };
+    // normals of what is around inner ones
+    let mut around: BTreeMap<(FacetTag, u32), Vec<Vec3>> = BTreeMap::new();
+    for facet in placed.iter().filter(|_| !inside.is_empty()) {
+        let normal = vec3::unit(vec3::area_vector(&facet.nodes.map(|n| points[n as usize])));
+        facet
+            .nodes
+            .into_iter()
+            .for_each(|node| around.entry((facet.tag, node)).or_default().push(normal));
+    }
     let is_closed = |found: &[(usize, [usize; 2])]| {
-        let tips = |&(facet, _): &(usize, _)| {
+        let normals = found.iter().flat_map(|&(facet, _)| {
             let Facet { nodes, tag } = facets[facet];
-            // a corner of the crack may have no other facet
-            nodes.iter().filter(|node| on_tags.contains(&(tag, **node))).count() >= 2
-        };
-        found.len() == 2 && found.iter().all(tips)
+            nodes
+                .into_iter()
+                .filter_map(|node| around.get(&(tag, node)))
+                .flatten()
+                .collect::<Vec<_>>()
+        });
+        let normals: Vec<&Vec3> = normals.collect();
+        let faces = |a: &&&Vec3| normals.iter().any(|b| vec3::dot(***a, **b) < -FACING);
+        found.len() == 2 && normals.iter().find(faces).is_some()
     };
     let faults = inside.values().filter(|found| !is_closed(found)).flatten();
     match faults.min() {

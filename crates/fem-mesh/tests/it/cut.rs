@@ -278,6 +278,33 @@ fn ragged_cracks_leave_sound_meshes() {
     assert!(cracks > 100);
 }
 
+/// Layers between cracks stay whole: both skins of one are no two sides of a crack.
+#[test]
+fn layers_between_cracks_stay_whole() {
+    for thick in [1, 2] {
+        let layers = 6;
+        let lengths = [2.0, 1.0, f64::from(layers * thick) / 12.0];
+        let mut mesh = Brick::new(lengths, [24, 12, (layers * thick) as usize])
+            .build()
+            .expect("brick");
+        for k in 1..layers {
+            let at = f64::from(k * thick) / 12.0;
+            let is_on = |face: [[f64; 3]; 3]| face.iter().all(|p| (p[2] - at).abs() < 1e-9 && p[0] < 1.5);
+            let tags = [100 + 2 * k, 101 + 2 * k].map(|tag| FacetTag(tag as u32));
+            mesh = mesh
+                .crack(is_on, |tet| middle(&mesh, tet)[2] < at, tags)
+                .expect("crack")
+                .0;
+        }
+        let groups = vec![0; mesh.tets().len()];
+        for (count, most) in [(1, 6), (4, 20), (16, 40)] {
+            let parts = even_parts(&mesh, &groups, PartCount::Exactly(count)).expect("parts");
+            let found = parts.iter().max().map_or(0, |part| part + 1);
+            assert!(found <= most, "{thick} cells thick, {count} parts: {found}");
+        }
+    }
+}
+
 /// A ring whose ends were not merged has nodes on tagged facets, but none of these face each other.
 #[test]
 fn what_nobody_merged_is_no_crack() {
