@@ -27,8 +27,8 @@ pub(super) fn split_at_cracks(mesh: &TetMesh, parts: &mut [u32]) {
         }
         let own = members.get_or_insert_with(|| Lists::by_key(count, parts)).of(part);
         let mut nearest = crack.nearest_sides(mesh, own);
-        let necks = crack.join(&necks(mesh, own, &nearest), &mut nearest);
-        if crack.area < NECK * necks {
+        let neck = crack.join(&necks(mesh, own, &nearest), &mut nearest);
+        if crack.area < NECK * neck {
             continue;
         }
         let sides = distinct(nearest.values().copied());
