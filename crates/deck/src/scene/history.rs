@@ -124,9 +124,13 @@ impl Track {
         amplitude.is_some_and(|amplitude| timeline.model.amplitudes.at(amplitude).total)
     }
 
-    /// Takes back what a step says.
+    /// Takes back what a step says; what nothing else is said of is held where it is at rest.
     pub(super) fn forget(&mut self, step: usize) {
         self.events.retain(|event| event.0 != step);
+        if self.events.is_empty() {
+            let (value, amplitude) = (0.0, None);
+            self.set(step, Given { value, amplitude });
+        }
     }
 
     /// Whether nothing changes it from a step on.

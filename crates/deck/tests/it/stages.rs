@@ -341,6 +341,9 @@ fn what_is_held_stays_and_what_is_given_early_is_reached() {
     let [early, plainly] = [moved, "*BOUNDARY\nN1, 1, 3\nN2, 1\n"]
         .map(|given| in_steps(2, ("1., 1.", ""), &[held]).replace("*STEP", &format!("{given}*STEP")));
     assert_close(&at_end(&early), at_end(&plainly), "before the first step");
+    // and is released as what is held otherwise
+    let released = |deck: &str| at_end(&(deck.to_owned() + "*STEP\n*STATIC\n1., 1.\n" + RELEASED + "*END STEP\n"));
+    assert_close(&released(&early), released(&plainly), "released");
     let whole = in_steps(2, ("0.5, 1.", ""), &[moved]);
     let early = in_steps(2, ("0.5, 1.", ""), &[""]).replace("*STEP", &format!("{moved}*STEP"));
     let [wanted, found] = [&whole, &early].map(|deck| displacements(scene(deck)));
