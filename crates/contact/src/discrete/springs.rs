@@ -3,10 +3,10 @@
 use super::creases::area_vector;
 use super::supports::Supports;
 use crate::error::ContactError;
-use crate::scene::{Place, Scene};
+use crate::scene::{Place, Scene, Spring};
 use crate::tolerances::NO_SPRING;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
-use signorini_fem_mesh::{Surface, vec3};
+use signorini_fem_mesh::{Surface, TetMesh, vec3};
 use signorini_tfeti::NodalSpring;
 use std::collections::BTreeMap;
 
@@ -24,35 +24,7 @@ impl Springs {
         let mut springs = Self::default();
         let mut sum: BTreeMap<u32, Matrix3<f64>> = BTreeMap::new();
         for spring in &scene.springs {
-            let mut own: BTreeMap<u32, Matrix3<f64>> = BTreeMap::new();
-            let surface = match &spring.place {
-                Place::Tag(tag) => Some(Surface::new(&scene.mesh, &[*tag])?),
-                Place::Nodes(nodes) => {
-                    let stiffness = spring.matrix([0.0; 3]);
-                    let stiffness = Matrix3::from_fn(|i, j| stiffness[i][j]);
-                    nodes
-                        .iter()
-                        .for_each(|node| *own.entry(*node).or_default() += stiffness);
-                    None
-                }
-            };
-            let facets = surface
-                .iter()
-                .flat_map(|s| s.triangles().iter().zip(s.facets()).map(move |f| (s, f)));
-            for (surface, (triangle, &facet)) in facets {
-                let vector = area_vector(&scene.mesh, surface, triangle);
-                let area = vec3::norm(vector);
-                let stiffness = spring.matrix(vector.map(|c| c / area));
-                let share = Matrix3::from_fn(|i, j| stiffness[i][j]) * (area / 3.0);
-                // what a uniform stress does to nodes: nothing to the corners of a quadratic facet
-                let nodes = match scene.mesh.order() {
-                    1 => scene.mesh.facets()[facet as usize].nodes,
-                    _ => scene.mesh.facet_mids(facet as usize),
-                };
-                for node in nodes {
-                    *own.entry(node).or_default() += share;
-                }
-            }
+            let mut own = at_nodes(&scene.mesh, spring)?;
             for (node, stiffness) in &mut own {
                 let free = free_part(supports, *node);
                 *stiffness = free * *stiffness * free;
@@ -75,6 +47,36 @@ impl Springs {
         }
         Ok(springs)
     }
+}
+
+/// The stiffness of a spring at its nodes, N/m.
+fn at_nodes(mesh: &TetMesh, spring: &Spring) -> Result<BTreeMap<u32, Matrix3<f64>>, ContactError> {
+    let mut own: BTreeMap<u32, Matrix3<f64>> = BTreeMap::new();
+    let tag = match &spring.place {
+        Place::Tag(tag) => *tag,
+        Place::Nodes(nodes) => {
+            let stiffness = spring.matrix([0.0; 3]);
+            for node in nodes {
+                *own.entry(*node).or_default() += stiffness;
+            }
+            return Ok(own);
+        }
+    };
+    let surface = Surface::new(mesh, &[tag])?;
+    for (triangle, &facet) in surface.triangles().iter().zip(surface.facets()) {
+        let vector = area_vector(mesh, &surface, triangle);
+        let area = vec3::norm(vector);
+        let share = spring.matrix(vector.map(|c| c / area)) * (area / 3.0);
+        // what a uniform stress does to nodes: nothing to the corners of a quadratic facet
+        let nodes = match mesh.order() {
+            1 => mesh.facets()[facet as usize].nodes,
+            _ => mesh.facet_mids(facet as usize),
+        };
+        for node in nodes {
+            *own.entry(node).or_default() += share;
+        }
+    }
+    Ok(own)
 }
 
 /// The projection of a node on the directions that no support fixes.

@@ -40,18 +40,16 @@ impl Partition {
     /// The subdomains of a mesh; refuses a zero count, and where parts are to stay as they are,
     /// numbers with gaps and parts in pieces.
     pub(crate) fn decompose(&self, mesh: &TetMesh, materials: &Materials) -> Result<Decomposition, ContactError> {
-        let even = |count| -> Result<Decomposition, ContactError> {
-            let parts = even_parts(mesh, &same_material(mesh, materials)?, count)?;
+        let cut = |groups: &[u32], count| -> Result<Decomposition, ContactError> {
+            let parts = even_parts(mesh, groups, count)?;
             Ok(Decomposition::from_parts(mesh, &parts)?)
         };
+        let even = |count| cut(&same_material(mesh, materials)?, count);
         let tets = mesh.tets().len();
         let own = if mesh.order() == 2 { QUADRATIC } else { TETS };
         match self {
-            Self::Automatic if tets < 2 * own => {
-                // bodies in one piece, but for cracks
-                let parts = even_parts(mesh, &vec![0; tets], PartCount::Exactly(1))?;
-                Ok(Decomposition::from_parts(mesh, &parts)?)
-            }
+            // bodies in one piece, but for cracks
+            Self::Automatic if tets < 2 * own => cut(&vec![0; tets], PartCount::Exactly(1)),
             Self::Automatic => even(PartCount::About((tets / own).min(MOST))),
             Self::Subdomains(count) => even(PartCount::Exactly(*count)),
             Self::Whole => Ok(Decomposition::whole(mesh)),

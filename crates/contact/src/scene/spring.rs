@@ -2,15 +2,16 @@
 
 use super::support::Place;
 use crate::error::ContactError;
+use nalgebra::Matrix3;
 use signorini_fem_mesh::{FacetTag, vec3};
 
 /// An elastic foundation (Winkler) under the facets with a tag: at each point the ground reacts with a stress
 /// proportional to the displacement, in tension and compression; or springs between [single nodes](Self::along) and the
 /// ground. They resist rigid motions like supports.
 ///
-/// Stiffness of a foundation is in N/m³: stress (Pa) over displacement (m). A layer of thickness `t` without lateral expansion has `E
-/// (1 - nu) / ((1 + nu) (1 - 2 nu) t)` along the normal. At a node it acts with a third of the areas of its facets, in
-/// a mesh of order 2 at mid-nodes only. If a support fixes a direction of a node, the spring acts at right angles to
+/// Stiffness of a foundation is in N/m³: stress (Pa) over displacement (m). A layer of thickness `t` without lateral
+/// expansion has `E (1 - nu) / ((1 + nu) (1 - 2 nu) t)` along the normal. At a node it acts with a third of the areas of
+/// its facets, in a mesh of order 2 at mid-nodes only. If a support fixes a direction of a node, the spring acts at right angles to
 /// it. Contact nodes may have springs (at edges); springs much softer or stiffer than the body then cost many products.
 #[derive(Debug, Clone, PartialEq)]
 #[must_use]
@@ -73,15 +74,13 @@ impl Spring {
         }
     }
 
-    /// Stiffness at a facet with this unit normal, or at a node, as the rows of a matrix, N/m³ or N/m.
-    pub(crate) fn matrix(&self, normal: [f64; 3]) -> [[f64; 3]; 3] {
+    /// Stiffness at a facet with this unit normal, or at a node, N/m³ or N/m.
+    pub(crate) fn matrix(&self, normal: [f64; 3]) -> Matrix3<f64> {
+        let along = |unit: [f64; 3], k: f64| Matrix3::from_fn(|i, j| k * unit[i] * unit[j]);
         match self.stiffness {
-            Stiffness::Normal(k) => normal.map(|a| normal.map(|b| k * a * b)),
-            Stiffness::Components([x, y, z]) => [[x, 0.0, 0.0], [0.0, y, 0.0], [0.0, 0.0, z]],
-            Stiffness::Along(direction, k) => {
-                let unit = vec3::unit(scaled(direction));
-                unit.map(|a| unit.map(|b| k * a * b))
-            }
+            Stiffness::Normal(k) => along(normal, k),
+            Stiffness::Components(k) => Matrix3::from_diagonal(&k.into()),
+            Stiffness::Along(direction, k) => along(vec3::unit(scaled(direction)), k),
         }
     }
 

@@ -8,6 +8,14 @@ const LOW: FacetTag = FacetTag(50);
 const UP: FacetTag = FacetTag(51);
 const TIP: f64 = 0.6;
 
+/// The mesh, or that of order 2 with the same tetrahedra.
+fn of_order(order: usize, mesh: TetMesh) -> TetMesh {
+    match order {
+        1 => mesh,
+        _ => mesh.raise_order().expect("order 2"),
+    }
+}
+
 /// A block of 1.6 m x 0.9 m x 0.9 m, cut open at half its height beyond the tip, by so much a metre.
 fn cracked(order: usize, opening: f64) -> TetMesh {
     let whole = block([1.6, 0.9, 0.9], [4, 1, 2]);
@@ -45,11 +53,7 @@ fn cracked(order: usize, opening: f64) -> TetMesh {
         }
     }
     let mesh = TetMesh::new(points, tets, facets).expect("cracked");
-    if order == 2 {
-        mesh.raise_order().expect("order 2")
-    } else {
-        mesh
-    }
+    of_order(order, mesh)
 }
 
 /// Uniform pressure passes, at the tip as elsewhere, whatever side has the points.
@@ -116,10 +120,7 @@ fn plate(order: usize, contact: Option<Contact>, squeeze: History, shear: Histor
     let whole = whole.build().expect("brick");
     let is_on = |face: [[f64; 3]; 3]| face.iter().all(|[x, _, z]| x.abs() < 1.01 && *z == 0.0);
     let is_lower = |tet: usize| vec3::centroid(&whole.tet_points(tet))[2] < 0.0;
-    let mut mesh = whole.crack(is_on, is_lower, [LOW, UP]).expect("crack").0;
-    if order == 2 {
-        mesh = mesh.raise_order().expect("order 2");
-    }
+    let mesh = of_order(order, whole.crack(is_on, is_lower, [LOW, UP]).expect("crack").0);
     let mut outer: Vec<u32> = [brick::X_MIN, brick::X_MAX, brick::Z_MIN, brick::Z_MAX]
         .into_iter()
         .flat_map(|tag| mesh.nodes_on(tag))
@@ -227,10 +228,7 @@ fn every_way_finds_the_same_crack() {
         let whole = block([2.0, 1.0, 1.0], [8, 3, 4]);
         let is_on = |face: [[f64; 3]; 3]| face.iter().all(|[x, _, z]| *x > TIP - 0.2 && *z == 0.5);
         let is_lower = |tet: usize| vec3::centroid(&whole.tet_points(tet))[2] < 0.5;
-        let mut mesh = whole.crack(is_on, is_lower, [LOW, UP]).expect("crack").0;
-        if order == 2 {
-            mesh = mesh.raise_order().expect("order 2");
-        }
+        let mesh = of_order(order, whole.crack(is_on, is_lower, [LOW, UP]).expect("crack").0);
         let plain = || {
             Scene::new(mesh.clone(), uniform(YOUNG, 0.3))
                 .with_support(Support::fixed(brick::Z_MIN))
@@ -301,11 +299,7 @@ fn random_cracks_do_not_feel_partitions() {
         let mesh = mesh
             .map_points(|[x, y, z]| [x, y, z + bend * x * y * (1.0 - z)])
             .expect("bent");
-        let mesh = if order == 2 {
-            mesh.raise_order().expect("order 2")
-        } else {
-            mesh
-        };
+        let mesh = of_order(order, mesh);
         let mut any = |size: f64| [0; 3].map(|_| dice.random_range(-size..size));
         let (top, side) = (any(1e6), any(1e6));
         let coefficient = dice.random_range(0.0..0.8);

@@ -112,11 +112,6 @@ impl Track {
         }
     }
 
-    /// Takes the removal by a step back: values stay as they were.
-    pub(super) fn keep(&mut self, step: usize) {
-        self.events.retain(|event| *event != (step, None));
-    }
-
     /// Whether the last value follows an amplitude in total time.
     pub(super) fn follows(&self, timeline: &Timeline) -> bool {
         let last = self.events.iter().rev().find_map(|event| event.1);

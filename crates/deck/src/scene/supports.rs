@@ -135,7 +135,7 @@ impl Table {
     /// Ends a component before a step.
     fn release(&mut self, key: Key, step: usize) {
         if let Some(mut held) = self.held.remove(&key) {
-            held.track.keep(step);
+            held.track.forget(step);
             held.span[1] = Some(step);
             self.released.push((key, held));
         }

@@ -53,6 +53,20 @@ fn assert_close(found: &[[f64; 3]], wanted: impl IntoIterator<Item = [f64; 3]>, 
     }
 }
 
+/// What CalculiX prints at the nodes 3, 9 and 26, with seven digits.
+fn assert_printed(found: &[[f64; 3]], printed: [[f64; 3]; 3], what: &str) {
+    for (label, wanted) in [3, 9, 26].into_iter().zip(printed) {
+        for c in 0..3 {
+            let off = (found[label - 1][c] - wanted[c]).abs();
+            assert!(
+                off <= 0.6e-6 * wanted[c].abs(),
+                "{what}, node {label}: {:?}",
+                found[label - 1]
+            );
+        }
+    }
+}
+
 /// A bar is stretched and bent by one end, released and pressed, held elsewhere, and released there again: what CalculiX
 /// 2.20 prints of the same deck, with seven digits.
 #[test]
@@ -101,16 +115,7 @@ fn steps_release_and_add_supports_as_in_calculix() {
         assert!(spans.contains(&span), "{spans:?}");
     }
     for (k, (u, printed)) in displacements_to(1e-10, scene).iter().zip(printed).enumerate() {
-        for (label, wanted) in [3, 9, 26].into_iter().zip(printed) {
-            for c in 0..3 {
-                let off = (u[label - 1][c] - wanted[c]).abs();
-                assert!(
-                    off <= 0.6e-6 * wanted[c].abs(),
-                    "step {k}, node {label}: {:?}",
-                    u[label - 1]
-                );
-            }
-        }
+        assert_printed(u, printed, &format!("step {k}"));
     }
 }
 
@@ -296,18 +301,8 @@ fn fixed_nodes_stay_as_in_calculix() {
             [1.281595e-4, -2.257273e-5, -1.266966e-2],
         ],
     ];
-    let steps = displacements(scene(&deck));
-    for (step, u) in steps.iter().enumerate() {
-        for (label, wanted) in [3, 9, 26].into_iter().zip(printed[step / 3]) {
-            for c in 0..3 {
-                let off = (u[label - 1][c] - wanted[c]).abs();
-                assert!(
-                    off <= 1e-6 * wanted[c].abs(),
-                    "step {step}, node {label}: {:?}",
-                    u[label - 1]
-                );
-            }
-        }
+    for (step, u) in displacements_to(1e-10, scene(&deck)).iter().enumerate() {
+        assert_printed(u, printed[step / 3], &format!("step {step}"));
     }
     // what is given again, or given a value
     for (lines, why) in [

@@ -12,7 +12,7 @@ use crate::tolerances::{MOST_SWEEPS, SWEEP_MOVES};
 use crate::vec3::{self, Vec3};
 
 use super::cracks::split_at_cracks;
-use super::parts::{expect_parts, renumbered, split_by};
+use super::parts::{expect_parts, split_by};
 use super::subdomains::DecompositionError;
 
 /// Makes parts compact, those of a graph partitioner for instance: solvers on subdomains take the fewer steps the
@@ -36,9 +36,7 @@ pub fn compact_parts(mesh: &TetMesh, groups: &[u32], parts: &[u32]) -> Result<Ve
     expect_parts(mesh, groups)?;
     expect_parts(mesh, parts)?;
     let groups = connected_sets(mesh.neighbour_table(), |a, b| groups[a] == groups[b]);
-    let mut parts = compact(mesh, &groups, parts);
-    split_at_cracks(mesh, &mut parts);
-    Ok(renumbered(&parts))
+    Ok(split_at_cracks(mesh, &compact(mesh, &groups, parts)))
 }
 
 /// As [`compact_parts`], with groups that hang together, numbers with gaps, and parts on both sides of a crack.

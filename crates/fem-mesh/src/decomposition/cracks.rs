@@ -5,16 +5,18 @@
 
 use std::collections::{BTreeMap, HashMap, VecDeque};
 
-use crate::mesh::{TetMesh, face_nodes};
+use crate::mesh::{TetMesh, face_each_other, face_nodes};
 use crate::tables::{DisjointSets, Lists, distinct};
-use crate::tolerances::{BEHIND, CRACK, FACING, NECK, SMALL_PIECE};
+use crate::tolerances::{BEHIND, CRACK, NECK, SMALL_PIECE};
 use crate::vec3::{Vec3, area_vector, centroid, dot, norm, scale, sub};
 
-use super::parts::split_by;
+use super::parts::{renumbered, split_by};
 
 /// Splits parts by the faces of cracks, if these are large against the neck around their tips: each tetrahedron goes with
-/// the face to which the fewest steps lead. Small pieces join their neighbours.
-pub(super) fn split_at_cracks(mesh: &TetMesh, parts: &mut [u32]) {
+/// the face to which the fewest steps lead. Small pieces join their neighbours. The parts are numbered anew, by their first
+/// tetrahedra.
+pub(super) fn split_at_cracks(mesh: &TetMesh, parts: &[u32]) -> Vec<u32> {
+    let mut parts = renumbered(parts);
     let count = parts.iter().max().map_or(0, |&p| p as usize + 1);
     let of_facets: Vec<u32> = (0..mesh.facets().len()).map(|f| parts[mesh.facet_owner(f)]).collect();
     let facets = Lists::by_key(count, &of_facets);
@@ -25,7 +27,7 @@ pub(super) fn split_at_cracks(mesh: &TetMesh, parts: &mut [u32]) {
         if crack.area == 0.0 {
             continue;
         }
-        let own = members.get_or_insert_with(|| Lists::by_key(count, parts)).of(part);
+        let own = members.get_or_insert_with(|| Lists::by_key(count, &parts)).of(part);
         let mut nearest = crack.nearest_sides(mesh, own);
         let neck = crack.join(&necks(mesh, own, &nearest), &mut nearest);
         if crack.area < NECK * neck {
@@ -41,16 +43,17 @@ pub(super) fn split_at_cracks(mesh: &TetMesh, parts: &mut [u32]) {
         }
         next += sides.len() as u32;
     }
-    if let Some(members) = members {
-        join_small(mesh, &members, parts);
+    match members {
+        Some(members) => renumbered(&join_small(mesh, &members, &parts)),
+        None => parts,
     }
 }
 
 /// Makes parts of what hangs together, since a side may come to a part at several places, and gives what is small to the
 /// neighbour that shares most faces with it; `members` are the parts before.
-fn join_small(mesh: &TetMesh, members: &Lists<u32>, parts: &mut [u32]) {
+fn join_small(mesh: &TetMesh, members: &Lists<u32>, parts: &[u32]) -> Vec<u32> {
     let pieces = split_by(mesh, parts);
-    parts.copy_from_slice(&pieces);
+    let mut joined = pieces.clone();
     let tets = Lists::by_key(pieces.iter().max().map_or(0, |&p| p as usize + 1), &pieces);
     let mut is_small = vec![false; tets.count()];
     for part in 0..members.count() {
@@ -73,10 +76,11 @@ fn join_small(mesh: &TetMesh, members: &Lists<u32>, parts: &mut [u32]) {
             others.sort_unstable();
             let runs = others.chunk_by(|a, b| a == b);
             if let Some(most) = runs.max_by_key(|run| (!run[0].0, run.len(), std::cmp::Reverse(run[0].1))) {
-                tets.iter().for_each(|tet| parts[*tet as usize] = most[0].1);
+                tets.iter().for_each(|tet| joined[*tet as usize] = most[0].1);
             }
         }
     }
+    joined
 }
 
 /// An axis at right angles to no plane that meshes have many facets in.
@@ -113,10 +117,7 @@ impl Crack {
                 normals.entry(node).or_default().push(all[k].normal);
             }
         }
-        let is_tip = |node: u32| {
-            let here = &normals[&node];
-            here.iter().any(|a| here.iter().any(|b| dot(*a, *b) < -FACING))
-        };
+        let is_tip = |node: u32| face_each_other(&normals[&node], &normals[&node]);
         let inner = |k: usize| all[k].nodes.into_iter().filter(|node| !is_tip(*node));
         let nodes = distinct(faces.iter().flat_map(|k| inner(*k)));
         let local = |node: u32| nodes.partition_point(|n| *n < node);
@@ -147,23 +148,20 @@ impl Crack {
         let mut sets = DisjointSets::new(all.len());
         let mut order: Vec<([u32; 2], f64)> = necks.iter().map(|(pair, area)| (*pair, *area)).collect();
         order.sort_by(|a, b| b.1.total_cmp(&a.1).then(a.0.cmp(&b.0)));
-        for (pair, _) in &order {
-            let mut joined = sets.clone();
-            let [a, b] = pair.map(local);
-            joined.join(a, b);
-            let mut apart = self.apart.iter().map(|pair| pair.map(local));
-            if apart.all(|[a, b]| joined.first(a) != joined.first(b)) {
-                sets = joined;
+        // where cracks cross a side may face itself: none is joined then
+        let crosses = self.apart.iter().any(|[a, b]| a == b);
+        for (pair, _) in order.iter().filter(|_| !crosses) {
+            let [a, b] = pair.map(|side| sets.first(local(side)));
+            let mut apart = self.apart.iter().map(|pair| pair.map(|side| sets.first(local(side))));
+            if !apart.any(|pair| pair == [a, b] || pair == [b, a]) {
+                sets.join(a, b);
             }
         }
-        nearest
-            .values_mut()
-            .for_each(|side| *side = all[sets.first(local(*side))]);
-        let between = order.iter().filter(|(pair, _)| {
-            let [a, b] = pair.map(|side| sets.clone().first(local(side)));
-            a != b
-        });
-        between.map(|(_, area)| area).sum()
+        let joined: Vec<u32> = (0..all.len()).map(|side| all[sets.first(side)]).collect();
+        nearest.values_mut().for_each(|side| *side = joined[local(*side)]);
+        let is_left = |pair: &[u32; 2]| joined[local(pair[0])] != joined[local(pair[1])];
+        let left = order.iter().filter(|(pair, _)| is_left(pair));
+        left.map(|(_, area)| area).sum()
     }
 
     /// For each tetrahedron of the part the side to which the fewest steps through faces lead.
@@ -218,7 +216,7 @@ impl Place {
         let size = self.size.min(other.size);
         let gap = dot(way, self.normal);
         let is_near = norm(way) <= CRACK * size && gap >= -BEHIND * size;
-        is_near && dot(self.normal, other.normal) < -FACING
+        is_near && face_each_other(&[self.normal], &[other.normal])
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::compact::{compact, join_pieces};
 use super::cracks::split_at_cracks;
-use super::parts::{expect_parts, renumbered};
+use super::parts::expect_parts;
 use super::subdomains::DecompositionError;
 use crate::mesh::{TetMesh, connected_sets, extent};
 use crate::tables::Lists;
@@ -79,20 +79,16 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
         }
     }
     join_pieces(mesh, &groups, &mut slabs);
-    let mut parts = match whole.iter().all(|w| *w) {
-        true => slabs,
-        false => {
-            let mut parts = compact(mesh, &groups, &slabs);
-            // boxes stay: their faces are plane, and along ragged ones long cells hang loose
-            for tet in (0..tets).filter(|&tet| whole[groups[tet] as usize]) {
-                parts[tet] = tets as u32 + slabs[tet];
-            }
-            parts
+    let mut parts = slabs;
+    if whole.contains(&false) {
+        let slabs = std::mem::take(&mut parts);
+        parts = compact(mesh, &groups, &slabs);
+        // boxes stay: their faces are plane, and along ragged ones long cells hang loose
+        for tet in (0..tets).filter(|&tet| whole[groups[tet] as usize]) {
+            parts[tet] = tets as u32 + slabs[tet];
         }
-    };
-    parts = renumbered(&parts);
-    split_at_cracks(mesh, &mut parts);
-    Ok(renumbered(&parts))
+    }
+    Ok(split_at_cracks(mesh, &parts))
 }
 
 /// Whether cells are graded so strongly along all axes that many are flat.

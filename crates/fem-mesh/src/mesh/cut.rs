@@ -1,7 +1,7 @@
 //! Meshes that are cut open inside.
 
 use crate::tables::DisjointSets;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::cells::EDGES;
 use super::check;
@@ -158,14 +158,13 @@ impl TetMesh {
         if faces.is_empty() {
             return Err(MeshError::NoCut);
         }
-        let mut copies: BTreeMap<u32, Vec<Vec<usize>>> = opened.into_iter().map(|(n, tets)| (n, vec![tets])).collect();
-        if self.order() == 2 {
-            copies.extend(self.copies_of_mids(&copies));
-        }
-        let copied: Vec<u32> = copies
-            .iter()
-            .flat_map(|(node, all)| all.iter().map(|_| *node))
-            .collect();
+        let mids = match self.order() {
+            2 => self.copies_of_mids(&opened),
+            _ => Vec::new(),
+        };
+        let mut copies: Vec<(u32, Vec<usize>)> = opened.into_iter().chain(mids).collect();
+        copies.sort_by_key(|copy| copy.0);
+        let copied: Vec<u32> = copies.iter().map(|copy| copy.0).collect();
         check::numbered("nodes", self.points.len() + copied.len())?;
         let mut out = Self {
             neighbours,
@@ -178,12 +177,9 @@ impl TetMesh {
             out.owners.push(tet as u32);
         }
         let mut numbers: BTreeMap<(usize, u32), u32> = BTreeMap::new();
-        for (&node, tets) in copies
-            .iter()
-            .flat_map(|(node, all)| all.iter().map(move |tets| (node, tets)))
-        {
+        for (node, tets) in copies {
             let number = out.points.len() as u32;
-            numbers.extend(tets.iter().map(|tet| ((*tet, node), number)));
+            numbers.extend(tets.into_iter().map(|tet| ((tet, node), number)));
             out.points.push(self.points[node as usize]);
         }
         for (&(tet, node), &number) in &numbers {
@@ -198,19 +194,13 @@ impl TetMesh {
         Ok((out, copied))
     }
 
-    /// The tetrahedra for each copy of a mid-node, from those of the copies of corners: where the ends of its edge become
-    /// different nodes, it does. The first keeps it, an edge that stays if there is one.
-    fn copies_of_mids(&self, corners: &BTreeMap<u32, Vec<Vec<usize>>>) -> BTreeMap<u32, Vec<Vec<usize>>> {
-        let mut is_copied: BTreeSet<(usize, u32)> = BTreeSet::new();
-        for (&node, tets) in corners
-            .iter()
-            .flat_map(|(node, all)| all.iter().map(move |tets| (node, tets)))
-        {
-            is_copied.extend(tets.iter().map(|tet| (*tet, node)));
-        }
-        let ends = |tet: usize, edge: usize| EDGES[edge].map(|k| is_copied.contains(&(tet, self.tets[tet][k])));
+    /// The copies of mid-nodes, each with its tetrahedra, from the corners that have a copy: where the ends of an edge become
+    /// different nodes, its mid-node does. The first keeps it, an edge that stays if there is one.
+    fn copies_of_mids(&self, corners: &BTreeMap<u32, Vec<usize>>) -> Vec<(u32, Vec<usize>)> {
+        let is_copied = |tet: usize, node: u32| corners.get(&node).is_some_and(|tets| tets.binary_search(&tet).is_ok());
+        let ends = |tet: usize, edge: usize| EDGES[edge].map(|k| is_copied(tet, self.tets[tet][k]));
         let mut edges: BTreeMap<u32, BTreeMap<[bool; 2], Vec<usize>>> = BTreeMap::new();
-        for &(tet, _) in &is_copied {
+        for &tet in corners.values().flatten() {
             let mids = self.mids[tet].iter().enumerate();
             let moved = mids.filter(|(edge, _)| ends(tet, *edge) != [false; 2]);
             edges.extend(moved.map(|(_, mid)| (*mid, BTreeMap::new())));
@@ -227,7 +217,7 @@ impl TetMesh {
             }
         }
         let all = edges.into_iter();
-        let all = all.map(|(mid, found)| (mid, found.into_values().skip(1).collect::<Vec<_>>()));
-        all.filter(|(_, copies)| !copies.is_empty()).collect()
+        all.flat_map(|(mid, found)| found.into_values().skip(1).map(move |tets| (mid, tets)))
+            .collect()
     }
 }

@@ -2,6 +2,9 @@
 
 use crate::tables::Lists;
 
+use crate::tolerances::FACING;
+use crate::vec3::{Vec3, dot};
+
 use super::error::MeshError;
 
 /// Faces of a tetrahedron, each opposite to the node of its number and numbered counter-clockwise
@@ -128,4 +131,9 @@ pub(crate) fn connected_sets(neighbours: &[[u32; 4]], joined: impl Fn(usize, usi
         sets += 1;
     }
     label
+}
+
+/// Whether some of these unit normals and some of the others face each other, as those on both sides of a crack do.
+pub(crate) fn face_each_other(normals: &[Vec3], others: &[Vec3]) -> bool {
+    normals.iter().any(|a| others.iter().any(|b| dot(*a, *b) < -FACING))
 }

@@ -37,7 +37,7 @@ pub(crate) use curved::{NODES, curved_facet, shape, tangents};
 pub use curved::{facet_normals, facet_shape};
 #[doc(hidden)]
 pub use cylindrical::cylindrical;
-pub(crate) use faces::{NONE, connected_sets, face_nodes};
+pub(crate) use faces::{NONE, connected_sets, face_each_other, face_nodes};
 pub(crate) use quadratic::quadratic_tets;
 pub(crate) use tet_mesh::facet_area_vector;
 #[doc(hidden)]

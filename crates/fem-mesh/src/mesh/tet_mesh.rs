@@ -3,13 +3,12 @@
 use std::collections::{BTreeMap, HashMap};
 
 use crate::tables::{ascending, distinct};
-use crate::tolerances::FACING;
 use crate::vec3::{self, Vec3};
 
 use super::check;
 use super::curved;
 use super::error::MeshError;
-use super::faces::{FaceTable, NONE, connected_sets, face_nodes};
+use super::faces::{FaceTable, NONE, connected_sets, face_each_other, face_nodes};
 
 /// The number of a part of the boundary, by which supports, loads and contacts refer to it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
@@ -126,11 +125,7 @@ impl TetMesh {
                 }
             }
         }
-        let face = |a: &usize, b: &usize| {
-            let facing = |own: &Vec3| normals[b].iter().any(|other| vec3::dot(*own, *other) < -FACING);
-            normals[a].iter().any(facing)
-        };
-        pairs.retain(|(a, b)| !face(a, b));
+        pairs.retain(|(a, b)| !face_each_other(&normals[a], &normals[b]));
     }
 
     /// Sets the material region of each tetrahedron.
@@ -303,17 +298,13 @@ fn place_facets(
             .for_each(|node| around.entry((facet.tag, node)).or_default().push(normal));
     }
     let is_closed = |found: &[(usize, [usize; 2])]| {
-        let normals = found.iter().flat_map(|&(facet, _)| {
+        let corners = found.iter().flat_map(|&(facet, _)| {
             let Facet { nodes, tag } = facets[facet];
-            nodes
-                .into_iter()
-                .filter_map(|node| around.get(&(tag, node)))
-                .flatten()
-                .collect::<Vec<_>>()
+            nodes.map(|node| (tag, node))
         });
-        let normals: Vec<&Vec3> = normals.collect();
-        let faces = |a: &&&Vec3| normals.iter().any(|b| vec3::dot(***a, **b) < -FACING);
-        found.len() == 2 && normals.iter().find(faces).is_some()
+        let normals = corners.filter_map(|corner| around.get(&corner)).flatten();
+        let normals: Vec<Vec3> = normals.copied().collect();
+        found.len() == 2 && face_each_other(&normals, &normals)
     };
     let faults = inside.values().filter(|found| !is_closed(found)).flatten();
     match faults.min() {

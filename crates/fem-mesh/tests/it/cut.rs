@@ -12,16 +12,20 @@ use signorini_fem_mesh::{Brick, Decomposition, Facet, FacetTag, MeshError, TetMe
 
 const TAGS: [FacetTag; 2] = [FacetTag(31), FacetTag(32)];
 
+/// The mesh, or that of order 2 with the same tetrahedra.
+fn of_order(order: usize, mesh: TetMesh) -> TetMesh {
+    match order {
+        1 => mesh,
+        _ => mesh.raise_order().expect("order 2"),
+    }
+}
+
 fn bar(order: usize) -> TetMesh {
     let mesh = Brick::new([2.0, 1.0, 1.0], [6, 3, 3])
         .perturbed(0.1, 5)
         .build()
         .expect("brick");
-    if order == 2 {
-        mesh.raise_order().expect("order 2")
-    } else {
-        mesh
-    }
+    of_order(order, mesh)
 }
 
 fn middle(mesh: &TetMesh, tet: usize) -> [f64; 3] {
@@ -136,11 +140,7 @@ fn in_plane(face: [[f64; 3]; 3]) -> bool {
 /// A block with layers that are plane.
 fn layers(order: usize) -> TetMesh {
     let mesh = Brick::new([2.0, 2.0, 1.0], [6, 6, 2]).build().expect("brick");
-    if order == 2 {
-        mesh.raise_order().expect("order 2")
-    } else {
-        mesh
-    }
+    of_order(order, mesh)
 }
 
 /// A crack inside a block: its tip is on both sides, all other nodes on one, and the block stays one body. One that leads
