@@ -7,8 +7,8 @@
 
 use super::normals::{differ, fixed_frame};
 use crate::error::ContactError;
-use crate::mortar::{MortarNode, mortar_nodes};
-use crate::scene::{Contact, Gap};
+use crate::mortar::{MortarNode, handed_on, mortar_nodes};
+use crate::scene::{Contact, Gap, Scene};
 use crate::tolerances::{BESIDE, COARSER, FACING, HARDER, LOCKING, MOST_TILT, OVERLAP, TILT};
 use rayon::prelude::*;
 use rstar::primitives::GeomWithData;
@@ -16,7 +16,7 @@ use rstar::{AABB, RTree};
 use signorini_fem_mesh::internal::ascending;
 use signorini_fem_mesh::{Hooke, Materials, Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Distance over the size of the facets up to which partners are looked for first: gaps are mostly small.
 const NEAR: f64 = 10.0;
@@ -69,6 +69,7 @@ impl Paired {
         materials: &Materials,
         index: usize,
         contact: &Contact,
+        crossing: &HashSet<u32>,
         rounding: f64,
     ) -> Result<Self, ContactError> {
         let surface = Surface::new(mesh, &contact.tags)?;
@@ -89,13 +90,15 @@ impl Paired {
             });
         }
         let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
-        if let Some(nodes) = nodes(mesh, index, contact, &paired.surface, fixed.as_ref(), &other, rounding)? {
+        let matching = nodes(mesh, index, contact, &paired.surface, fixed.as_ref(), &other, rounding)?;
+        if let Some(nodes) = matching.filter(|_| handed_on(&paired.surface, crossing).is_empty()) {
             paired.partners = Partners::Nodes(nodes);
             return Ok(paired);
         }
         let facet = |s: &Surface| s.total_area() / s.triangles().len() as f64;
         let [own, others] = [facet(&paired.surface), facet(&other.surface)];
-        let seen = |from: &Surface, to: &Surface| mortar_nodes(mesh, from, to, contact.tied, contact.crease);
+        let seen =
+            |from: &Surface, to: &Surface| mortar_nodes(mesh, from, to, (contact.tied, contact.crease), crossing);
         let there = || seen(&paired.surface, &other.surface);
         let back = || seen(&other.surface, &paired.surface);
         let is_curved = |s: &Surface| differ(s.frames().iter().map(|f| f.normal));
@@ -135,6 +138,23 @@ impl Paired {
         }
         Ok(paired)
     }
+}
+
+/// Nodes at which other contacts have conditions that may nearly depend on those of one between linear meshes: friction
+/// of either acts along normals of the other. Of two between bodies the first keeps its conditions.
+pub(super) fn crossing(scene: &Scene, index: usize) -> HashSet<u32> {
+    let own = &scene.contacts[index];
+    if own.tied || own.partner.is_empty() || scene.mesh.order() == 2 {
+        return HashSet::new();
+    }
+    let crosses = |(other, contact): &(usize, &Contact)| {
+        let keeps = contact.partner.is_empty() && *other != index || *other < index;
+        let rough = own.friction().is_some() || contact.friction().is_some();
+        keeps && rough && !contact.tied
+    };
+    let others = scene.contacts.iter().enumerate().filter(crosses);
+    let tags = others.flat_map(|(_, contact)| contact.tags.iter().chain(&contact.partner));
+    tags.flat_map(|tag| scene.mesh.nodes_on(*tag)).collect()
 }
 
 /// Whether a side goes on where the other one ends.
@@ -378,7 +398,7 @@ mod tests {
         for gap in [0.0, 1e-3, 0.02, 0.3] {
             let mesh = bent(gap);
             let contact = Contact::between(brick::Z_MIN, lower(brick::Z_MAX));
-            let paired = Paired::new(&mesh, &steel(), 0, &contact, 1e-12).expect("partners");
+            let paired = Paired::new(&mesh, &steel(), 0, &contact, &HashSet::new(), 1e-12).expect("partners");
             let (Partners::Nodes(found), surface) = (paired.partners, paired.surface) else {
                 panic!("meshes match");
             };
@@ -421,7 +441,7 @@ mod tests {
         let contact = Contact::between(above, below);
         for (inner, apart) in [(None, false), (Some([0.3, 0.3, 0.0]), true)] {
             let mesh = cone(None, 1.0, above).append(&cone(inner, -1.0, below)).expect("two");
-            let paired = Paired::new(&mesh, &steel(), 0, &contact, 1e-12).expect("partners");
+            let paired = Paired::new(&mesh, &steel(), 0, &contact, &HashSet::new(), 1e-12).expect("partners");
             assert_eq!(paired.is_apart(), apart);
         }
     }

@@ -4,7 +4,7 @@ use super::couplings::Couplings;
 use super::equations::equations;
 use super::faceted::{FacetedOverlaps, close_faceted};
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
-use super::partners::Paired;
+use super::partners::{Paired, crossing};
 use super::penetration::check_penetration;
 use super::points::{ContactPoint, conditions, of_contact, points};
 use super::springs::Springs;
@@ -69,8 +69,10 @@ impl DiscreteScene {
         let rounding = ROUNDING * scene.mesh.points().iter().flatten().fold(0.0, largest);
         let contacts = scene.contacts.iter().enumerate();
         let started = Instant::now();
-        let paired =
-            contacts.map(|(index, contact)| Paired::new(&scene.mesh, &scene.materials, index, contact, rounding));
+        let paired = contacts.map(|(index, contact)| {
+            let crossing = crossing(scene, index);
+            Paired::new(&scene.mesh, &scene.materials, index, contact, &crossing, rounding)
+        });
         let paired = paired.collect::<Result<Vec<_>, _>>()?;
         let search = started.elapsed();
         let mortar = paired.iter().enumerate().filter(|(_, p)| p.is_apart());

@@ -12,6 +12,7 @@
 //! is at least `1/2 |v - u*|² + 1/2 |u - u*|²`, `u*` the solution of the discrete problem with the slip bounds `r`.
 
 use super::admissible::{AdmissibleNode, Correction};
+use super::agreed::Agreement;
 use super::shared::{SharedNodes, Target};
 use super::sprung::SprungNodes;
 use crate::model::Model;
@@ -90,6 +91,8 @@ pub(crate) struct Caches {
     pub(super) weights: OnceLock<Weights>,
     /// Whether ties reach contact points.
     pub(super) ties_meet_points: OnceLock<bool>,
+    /// Where rows along surfaces depend on others.
+    pub(super) agreements: OnceLock<Vec<Agreement>>,
     /// Patches of the estimate of the discretisation error.
     pub(crate) recovery: OnceLock<StrainRecovery>,
     /// Lengths that results are compared with.

@@ -9,7 +9,7 @@ use crate::scene::{Friction, Scene};
 use crate::settings::Settings;
 use signorini_fem_mesh::vec3::{moved, norm, sub};
 use signorini_qp::{ProductSet, Segment};
-use signorini_tfeti::internal::CopyStiffness;
+use signorini_tfeti::internal::{CopyStiffness, Dependency};
 use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder, TfetiError, TiedRows};
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -43,6 +43,8 @@ pub(crate) struct Model {
     moved_stiffness: OnceLock<Vec<f64>>,
     /// Stiffness of the copies of each node, made with the first certificate.
     copies: OnceLock<CopyStiffness>,
+    /// Rows that depend on one another.
+    dependencies: OnceLock<Vec<Dependency>>,
 }
 
 impl Model {
@@ -148,6 +150,10 @@ impl Model {
         self.copies.get_or_init(|| self.tfeti.all_copy_stiffness())
     }
 
+    pub(crate) fn dependencies(&self) -> &[Dependency] {
+        self.dependencies.get_or_init(|| self.tfeti.gluing().dependencies())
+    }
+
     pub(crate) fn new(scene: Scene, settings: &Settings) -> Result<Self, ContactError> {
         let mut discrete = DiscreteScene::new(&scene)?;
         let (plan, forecast) = Plan::of(&scene, &discrete, settings)?;
@@ -210,6 +216,7 @@ impl Model {
             set,
             moved_stiffness: OnceLock::new(),
             copies: OnceLock::new(),
+            dependencies: OnceLock::new(),
         })
     }
 

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 use signorini_fem_mesh::internal::Lists;
 use signorini_fem_mesh::vec3::{add, area_vector, scale};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 /// What a node of the first side sees of the other one.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,8 +30,31 @@ pub(crate) struct MortarNode {
     pub(crate) frame: SurfaceFrame,
 }
 
-/// For each node of a surface what it sees of the other one; `None` where that is nothing, and at nodes on both sides, as
-/// the tip of a crack: their shape functions are shared out to the other corners of each facet.
+/// Of the nodes of a surface that other contacts `cross` those without a condition of this one, as at crosspoints of mortar
+/// methods: with conditions of both, rows along a surface nearly depend on one another, and active sets run in circles.
+/// The corners that have their shape functions instead must have facets of their own, else forces in a narrow strip
+/// would have no moment.
+pub(crate) fn handed_on(surface: &Surface, crossing: &HashSet<u32>) -> HashSet<u32> {
+    let nodes = |triangle: &[u32; 3]| triangle.map(|local| surface.nodes()[local as usize]);
+    let crosses = |node: &u32| crossing.contains(node);
+    let mut out: HashSet<u32> = surface.nodes().iter().copied().filter(crosses).collect();
+    if out.is_empty() {
+        return out;
+    }
+    let facets = || surface.triangles().iter().map(nodes);
+    let own: HashSet<u32> = facets().filter(|f| !f.iter().any(crosses)).flatten().collect();
+    for facet in facets() {
+        let mut others = facet.iter().filter(|node| !crosses(node)).peekable();
+        if others.peek().is_none() || others.any(|node| !own.contains(node)) {
+            facet.iter().for_each(|node| _ = out.remove(node));
+        }
+    }
+    out
+}
+
+/// For each node of a surface what it sees of the other one; `None` where that is nothing, at nodes that are
+/// [handed on](handed_on), and at nodes on both sides, as the tip of a crack: their shape functions are shared out to
+/// the other corners of each facet.
 ///
 /// Where sides that are `tied` are apart, as facets of curved sides are, displacements of the other side go on to the
 /// first one as in the tetrahedra behind it: linear ones, rotations among them, are the same on both sides, and what
@@ -43,8 +66,8 @@ pub(crate) fn mortar_nodes(
     mesh: &TetMesh,
     surface: &Surface,
     other: &Surface,
-    tied: bool,
-    crease: f64,
+    (tied, crease): (bool, f64),
+    crossing: &HashSet<u32>,
 ) -> Vec<Option<MortarNode>> {
     let triangles = in_order(mesh, surface);
     let covers = covers(mesh, &triangles, other, tied);
@@ -53,7 +76,8 @@ pub(crate) fn mortar_nodes(
     // tied sides need no normal, and means of displacements have their own
     let bends = !tied && mesh.order() == 1;
     let crease = crease.to_radians().cos();
-    let is_tip = |node: u32| other.local(node).is_some();
+    let shared = handed_on(surface, crossing);
+    let is_tip = |node: u32| other.local(node).is_some() || shared.contains(&node);
     let node = |(local, &own): (usize, &u32)| {
         if is_tip(own) {
             return None;

@@ -192,7 +192,7 @@ impl Simulation {
             ..Kept::default()
         };
         if history {
-            let rows = self.caches.agreed(model, &problem.offset, &recovered.rows);
+            let rows = self.caches.agreed(model, &problem.offset, recovered);
             kept.trace = traces(model, problem, &rows);
             let slides = |p: &PointState| p.state == ContactState::Slip;
             kept.sliding = recovered.points.iter().map(slides).collect();

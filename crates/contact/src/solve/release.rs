@@ -44,8 +44,8 @@ struct Place {
 
 impl Exchanges {
     pub(crate) fn new(model: &Model) -> Self {
-        let dependencies = model.tfeti.gluing().dependencies();
-        Self(dependencies.into_iter().map(|d| Exchange::new(model, &d)).collect())
+        let dependencies = model.dependencies().iter();
+        Self(dependencies.map(|d| Exchange::new(model, d)).collect())
     }
 
     /// Ends what the rows of a solved active set contradict; whether there was anything. `residual` is that of all
