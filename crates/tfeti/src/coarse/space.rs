@@ -248,6 +248,11 @@ impl CoarseData {
         self.with_transpose(y, out, true, motions, |x, v| *x = v, |_, x, v| *x = v);
     }
 
+    /// `x = x + G^T y`.
+    pub(crate) fn add_transpose(&self, y: &[f64], x: &mut [f64], motions: &mut [[f64; 6]]) {
+        self.with_transpose(y, x, true, motions, |x, v| *x += v, |_, x, v| *x += v);
+    }
+
     /// Hands `G^T y` to `interface(x, value)` and, on other rows, `other(row, x, value)`; to the latter without contact
     /// rows if there is no need of them.
     pub(crate) fn with_transpose(

@@ -1,20 +1,17 @@
 //! The projector of the active set method of `signorini-qp`: `G` weighted by the rows that are free.
 
-use crate::coarse::mobility::FreeMotion;
 use crate::coarse::space::{Coarse, CoarseScratch};
 use crate::coarse::weights::RowWeights;
 use crate::error::TfetiError;
 use crate::linalg::tiles::Digits;
 use crate::projector::factor::{CoarseFactor, Factor};
-use crate::projector::levels::Bases;
-use crate::projector::model::Model;
-use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
+use crate::projector::levels::{Basis, row_weights};
+use crate::projector::split::factor::{Fronts, SplitFactor};
 use crate::projector::split::fronts::ContactWeights;
 use crate::tolerances::{ROUNDED_MODE, ROUNDED_STEP, SHORT_ROWS, WORK};
 use signorini_qp::internal::{LineWeight, LooseMode};
 use signorini_qp::vector::{dot, norm};
 use signorini_qp::{EqualityProjector, QpError};
-use std::sync::Arc;
 
 /// How `G W G^T` is factored when the active set changes.
 #[doc(hidden)]
@@ -75,13 +72,6 @@ struct SplitParts {
     contact: ContactWeights,
 }
 
-/// The whole factor, or a model of it.
-#[derive(Debug)]
-enum Basis {
-    Split(Arc<SplitBase>),
-    Model(Arc<Model>),
-}
-
 impl ActiveSetProjector {
     /// For the coarse space of a system; `contact_rows` is the number of leading rows with constraints.
     ///
@@ -117,16 +107,14 @@ impl ActiveSetProjector {
             RowWeights::diagonal(metric.clone()).validate(ranges)?;
         }
         let weights = vec![0.0; contact_rows];
-        let bases = match kind {
-            ActiveSetFactor::Sparse => None,
-            ActiveSetFactor::Auto => coarse.bases(contact_rows, metric.as_deref(), None),
-            _ => coarse.bases(contact_rows, metric.as_deref(), Some(kind == ActiveSetFactor::Levels)),
+        let pays = |basis: &Basis| match basis {
+            Basis::Split(base) => base.pays(coarse.rows(), coarse.factor_size()),
+            Basis::Model(..) => true,
         };
-        let pays = |base: &SplitBase| kind != ActiveSetFactor::Auto || base.pays(coarse.rows(), coarse.factor_size());
-        let (basis, fixed) = match bases {
-            Some(Bases::Levels { model, always, free }) => (Some(Basis::Model(model)), Some((always, free))),
-            Some(Bases::One(base)) if pays(&base) => (Some(Basis::Split(base)), None),
-            _ => (None, None),
+        let basis = match kind {
+            ActiveSetFactor::Sparse => None,
+            ActiveSetFactor::Auto => coarse.basis(contact_rows, metric.as_deref(), None).filter(pays),
+            _ => coarse.basis(contact_rows, metric.as_deref(), Some(kind == ActiveSetFactor::Levels)),
         };
         let mut parts = SplitParts {
             basis,
@@ -134,10 +122,9 @@ impl ActiveSetProjector {
             fronts: Fronts::default(),
             contact: ContactWeights::default(),
         };
-        let own = row_weights(coarse, &weights, metric.as_deref());
-        let factor = match fixed {
-            Some((base, free)) => steady(coarse, base, own, free)?,
-            None => parts.factor(coarse, own, None)?,
+        let factor = match &parts.basis {
+            Some(Basis::Model(_, always)) => always.clone(),
+            _ => parts.factor(coarse, row_weights(coarse, &weights, metric.as_deref()), None)?,
         };
         let mut scratch = factor.scratch();
         let motions = factor.free_motions().iter();
@@ -175,7 +162,7 @@ impl ActiveSetProjector {
     /// Whether it has two levels.
     #[doc(hidden)]
     pub fn has_levels(&self) -> bool {
-        matches!(self.parts.basis, Some(Basis::Model(_)))
+        matches!(self.parts.basis, Some(Basis::Model(..)))
     }
 
     /// Whether a factor that is much larger than vectors are is stored in single precision, too: then what changes
@@ -201,12 +188,7 @@ impl ActiveSetProjector {
 
     /// Amplitudes of the rigid motions, `-(G W G^T)^-1 G W r`, with the weights of the last active set.
     pub fn amplitudes(&mut self, residual: &[f64], alpha: &mut [f64]) {
-        match self.active.is_model() {
-            true => self
-                .active
-                .amplitudes_with(&self.always, residual, alpha, &mut self.scratch),
-            false => self.active.amplitudes(residual, alpha, &mut self.scratch),
-        }
+        self.active.amplitudes(residual, alpha, &mut self.scratch);
     }
 
     /// An error if the right side does work on a free motion of a factor.
@@ -218,14 +200,6 @@ impl ActiveSetProjector {
                 motion: motion.to_string(),
             }),
             None => Ok(()),
-        }
-    }
-
-    /// Changes rows that are free on the last active set such that `G x = e`, zero if `None`.
-    fn restore(&mut self, x: &mut [f64], e: Option<&[f64]>) {
-        match self.active.is_model() {
-            true => self.active.project_with(&self.always, x, e, &mut self.scratch),
-            false => self.active.project(x, e, &mut self.scratch),
         }
     }
 
@@ -249,7 +223,7 @@ impl SplitParts {
         weights.validate(coarse.0.gluing.ranges())?;
         let allows = |basis: &Basis| match basis {
             Basis::Split(base) => base.allows(&weights.lines),
-            Basis::Model(model) => model.allows(&weights.lines),
+            Basis::Model(model, _) => model.allows(&weights.lines),
         };
         let usable = |basis: &&Basis| allows(basis) && coarse.0.free_motions(Some(&weights)).is_empty();
         if let Some(basis) = self.basis.as_ref().filter(usable) {
@@ -260,9 +234,9 @@ impl SplitParts {
                     let factor = base.factor(contact, spare, fronts);
                     factor.map(|factor| Factor::Split(base.clone(), factor))
                 }
-                Basis::Model(model) => {
+                Basis::Model(model, always) => {
                     let factor = model.factor(contact, spare, fronts);
-                    factor.map(|factor| Factor::Model(model.clone(), factor))
+                    factor.map(|factor| Factor::Model(model.clone(), factor, always.clone()))
                 }
             };
             if let Ok(factor) = factor {
@@ -271,39 +245,6 @@ impl SplitParts {
         }
         coarse.factor_weighted(weights)
     }
-}
-
-/// The factor of a basis in which nothing changes.
-fn steady(
-    coarse: &Coarse,
-    base: Arc<SplitBase>,
-    weights: RowWeights,
-    free: Vec<FreeMotion>,
-) -> Result<CoarseFactor, TfetiError> {
-    match base.factor(&ContactWeights::default(), None, &mut Fronts::default()) {
-        Ok(factor) => {
-            let factor = Factor::Split(base, factor);
-            Ok(CoarseFactor::new(coarse.clone(), factor, Some(weights), free))
-        }
-        Err(_) => coarse.factor_weighted(weights),
-    }
-}
-
-/// Weights of leading rows that are `free`, and of others; of contact rows only where all others weigh one.
-fn row_weights(coarse: &Coarse, free: &[f64], metric: Option<&[f64]>) -> RowWeights {
-    let contact = coarse.0.gluing.ranges().contact().end;
-    RowWeights::diagonal(match metric {
-        Some(metric) => {
-            let mut weights = metric.to_vec();
-            weights.iter_mut().zip(free).for_each(|(m, w)| *m *= w);
-            weights
-        }
-        None => {
-            let mut weights = free.to_vec();
-            weights.resize(free.len().max(contact), 1.0);
-            weights
-        }
-    })
 }
 
 impl EqualityProjector for ActiveSetProjector {
@@ -373,15 +314,11 @@ impl EqualityProjector for ActiveSetProjector {
     }
 
     fn project(&mut self, x: &mut [f64]) {
-        self.restore(x, None);
+        self.active.project(x, None, &mut self.scratch);
     }
 
     fn project_transpose(&mut self, g: &mut [f64]) {
-        let (alpha, scratch) = (&mut self.alpha, &mut self.scratch);
-        match self.active.is_model() {
-            true => self.active.project_transpose_with(&self.always, g, alpha, scratch),
-            false => self.active.project_transpose(g, alpha, scratch),
-        }
+        self.active.project_transpose(g, &mut self.alpha, &mut self.scratch);
     }
 
     fn rounds_steps(&self) -> bool {
@@ -393,25 +330,24 @@ impl EqualityProjector for ActiveSetProjector {
     }
 
     fn project_gradient(&mut self, g: &mut [f64]) {
-        if self.known.is_empty() || !self.active.is_model() {
+        let is_model = self.active.always().is_some();
+        if self.known.is_empty() || !is_model {
             self.project_transpose(g);
             self.known.clear();
-            if self.rounds_levels() && self.active.is_model() {
+            if self.rounds_levels() && is_model {
                 self.known.extend_from_slice(&self.alpha);
                 self.taken.clone_from(&self.scratch.first);
             }
             return;
         }
-        let (add, motions) = (|g: &mut f64, v: f64| *g += v, &mut self.scratch.motions);
-        let data = &self.coarse.0;
-        data.with_transpose(&self.known, g, true, motions, add, |_, g, v| add(g, v));
+        self.coarse.0.add_transpose(&self.known, g, &mut self.scratch.motions);
         self.step(|space| space.project_transpose(g));
         self.known.iter_mut().zip(&self.alpha).for_each(|(k, a)| *k += a);
         self.taken.copy_from_slice(&self.scratch.first);
     }
 
     fn project_gradient_again(&mut self, g: &mut [f64]) -> bool {
-        if self.known.is_empty() || !self.active.is_model() {
+        if self.known.is_empty() || self.active.always().is_none() {
             return false;
         }
         self.step(|space| {
@@ -438,13 +374,11 @@ impl EqualityProjector for ActiveSetProjector {
     }
 
     fn balance(&mut self, x: &mut [f64], e: &[f64]) {
-        self.restore(x, Some(e));
+        self.active.project(x, Some(e), &mut self.scratch);
     }
 
     fn compensate(&mut self, from: &[f64], change: &[f64], to: &mut [f64]) {
-        self.scratch.digits = self.digits;
-        self.always.compensate(from, change, to, &mut self.scratch);
-        self.scratch.digits = Digits::Double;
+        self.step(|space| space.always.compensate(from, change, to, &mut space.scratch));
     }
 
     fn repair(&mut self, x: &mut [f64], e: &[f64]) {

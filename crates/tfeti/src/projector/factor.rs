@@ -38,8 +38,8 @@ struct FactorData {
 pub(super) enum Factor {
     Sparse(Arc<SparseCholesky>),
     Split(Arc<SplitBase>, SplitFactor),
-    /// An approximation.
-    Model(Arc<Model>, ModelFactor),
+    /// An approximation, and the factor of the rows that are always free: with it projectors are [exact](super::levels).
+    Model(Arc<Model>, ModelFactor, CoarseFactor),
 }
 
 impl Coarse {
@@ -110,7 +110,7 @@ impl CoarseFactor {
     pub(super) fn into_split(self) -> Option<SplitFactor> {
         match Arc::into_inner(self.0).map(|data| data.factor) {
             Some(Factor::Split(_, factor)) => Some(factor),
-            Some(Factor::Model(_, factor)) => Some(factor.clusters),
+            Some(Factor::Model(_, factor, _)) => Some(factor.clusters),
             _ => None,
         }
     }
@@ -120,7 +120,7 @@ impl CoarseFactor {
         match &self.0.factor {
             Factor::Sparse(factor) => factor.stored(),
             Factor::Split(base, _) => base.stored(),
-            Factor::Model(model, _) => model.stored(),
+            Factor::Model(model, ..) => model.stored(),
         }
     }
 
@@ -157,7 +157,7 @@ impl CoarseFactor {
                 0
             }
             Factor::Split(base, _) => base.work(),
-            Factor::Model(model, _) => model.work(),
+            Factor::Model(model, ..) => model.work(),
         };
         scratch.split.resize(work, 0.0);
         scratch
@@ -178,7 +178,7 @@ impl CoarseFactor {
                 }
                 base.solve(factor, y, &mut s.split, changing, s.digits);
             }
-            Factor::Model(model, factors) => {
+            Factor::Model(model, factors, _) => {
                 if s.split.len() < model.work() {
                     s.split.resize(model.work(), 0.0);
                 }
@@ -194,9 +194,12 @@ impl CoarseFactor {
         s.first = first;
     }
 
-    /// Whether it approximates only.
-    pub(super) fn is_model(&self) -> bool {
-        matches!(self.0.factor, Factor::Model(..))
+    /// The factor of the rows that are always free, if this one is a model.
+    pub(super) fn always(&self) -> Option<&Self> {
+        match &self.0.factor {
+            Factor::Model(.., always) => Some(always),
+            _ => None,
+        }
     }
 
     /// Whether the factor is stored in single precision, too.
@@ -235,8 +238,12 @@ impl CoarseFactor {
         if let Some(e) = e {
             s.first.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
         }
-        self.solve_first(s, false);
-        self.subtract_weighted(x, s);
+        if self.always().is_some() {
+            self.take_by_contact(x, s);
+        }
+        let exact = self.always().unwrap_or(self);
+        exact.solve_first(s, false);
+        exact.subtract_weighted(x, s);
     }
 
     /// `to = from + c - W G^T (G W G^T)^-1 G c`, `c` a vector that is zero behind the leading entries `change`. Cheaper
@@ -293,7 +300,7 @@ impl CoarseFactor {
     /// `r = r - G^T (G W G^T)^-1 G W r`: the transpose of [`CoarseFactor::project`] with `e = 0`. Returns in `alpha`
     /// the amplitudes `-(G W G^T)^-1 G W r`, so that the result is `r + G^T alpha`.
     pub fn project_transpose(&self, r: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        if self.0.plain {
+        if self.0.plain && self.always().is_none() {
             keep(self.lines(), r, &mut s.pairs);
             for (line, old) in self.lines().iter().zip(&s.pairs) {
                 r[line.row..line.row + 2].copy_from_slice(&along(line, *old));
@@ -305,18 +312,19 @@ impl CoarseFactor {
         } else {
             self.amplitudes(r, alpha, s);
         }
-        let (add, motions) = (|r: &mut f64, v: f64| *r += v, &mut s.motions);
-        let data = &self.0.coarse.0;
-        data.with_transpose(alpha, r, true, motions, add, |_, r, v| add(r, v));
+        self.0.coarse.0.add_transpose(alpha, r, &mut s.motions);
     }
 
     /// Rigid amplitudes that make the residual of the rows `r + G^T alpha` smallest in the metric of `W`:
     /// `alpha = -(G W G^T)^-1 G W r` with `r = F lambda - d`. Give weight zero to the rows that are not satisfied with
     /// equality (open contact, sliding).
     pub fn amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+        if let Some(always) = self.always() {
+            always.amplitudes(r, alpha, s);
+            return self.take_from(r, alpha, s);
+        }
         if self.0.plain && self.lines().is_empty() {
-            self.plain_amplitudes(r, alpha, s);
-            return;
+            return self.plain_amplitudes(r, alpha, s);
         }
         s.dual.copy_from_slice(r);
         self.weigh(&mut s.dual);

@@ -24,14 +24,35 @@ use crate::tolerances::{FEW, GROWTH, MANY, OPERATION, ROW, SOLVES};
 use std::sync::Arc;
 
 /// What the factors of all active sets have in common.
-pub(super) enum Bases {
-    One(Arc<SplitBase>),
-    Levels {
-        model: Arc<Model>,
-        /// Of the rows that are always free, and of springs where these leave motions free.
-        always: Arc<SplitBase>,
-        free: Vec<FreeMotion>,
-    },
+#[derive(Debug)]
+pub(super) enum Basis {
+    /// What stays of the whole factor.
+    Split(Arc<SplitBase>),
+    /// A model of it, and the factor of the rows that are always free, with springs where these leave motions free.
+    Model(Arc<Model>, CoarseFactor),
+}
+
+/// Weights of leading rows that are `free`, and of others; of contact rows only where all others weigh one.
+pub(super) fn row_weights(coarse: &Coarse, free: &[f64], metric: Option<&[f64]>) -> RowWeights {
+    let contact = coarse.0.gluing.ranges().contact().end;
+    RowWeights::diagonal(match metric {
+        Some(metric) => {
+            let mut weights = metric.to_vec();
+            weights.iter_mut().zip(free).for_each(|(m, w)| *m *= w);
+            weights
+        }
+        None => {
+            let mut weights = free.to_vec();
+            weights.resize(free.len().max(contact), 1.0);
+            weights
+        }
+    })
+}
+
+/// A factor in which nothing changes.
+fn steady(base: Arc<SplitBase>) -> Option<Factor> {
+    let factor = base.factor(&ContactWeights::default(), None, &mut Fronts::default());
+    Some(Factor::Split(base, factor.ok()?))
 }
 
 /// Whether two levels pay for subdomains of which those that are `touching` have contact rows, with so many `rows` of
@@ -57,7 +78,7 @@ impl Coarse {
     /// What factors for changing weights of the first `rows` rows have in common, if these are contact rows and the
     /// factor can be split; by `levels` if that is told, or worth it. `metric` is the weight of each row where it
     /// counts, one if `None`.
-    pub(super) fn bases(&self, rows: usize, metric: Option<&[f64]>, levels: Option<bool>) -> Option<Bases> {
+    pub(super) fn basis(&self, rows: usize, metric: Option<&[f64]>, levels: Option<bool>) -> Option<Basis> {
         let data = &self.0;
         let gluing = &data.gluing;
         let ones = || vec![1.0; self.dim()];
@@ -78,17 +99,19 @@ impl Coarse {
         let wanted = levels.unwrap_or_else(|| two_levels_pay(&changing, gluing.ranges().total()));
         if wanted && rows > 0 && rows == gluing.ranges().contact().end {
             let free = data.free_motions(Some(&weights));
-            if let Some(bases) = self.two_levels(rows, &graph, &changing, (&values, free), &modes) {
-                return Some(bases);
+            let none = row_weights(self, &vec![0.0; rows], metric);
+            let levels = self.two_levels(rows, &graph, &changing, (&values, free), &modes, none);
+            if levels.is_some() {
+                return levels;
             }
         }
         let tree = cheapest_tree(&graph, data.mobility.centres(), &changing, None)?;
         let entries = data.matrix.entries(&graph, &values);
         let base = SplitBase::new(tree, entries, rows, &write, false, Some(self.exchange())).ok()?;
-        Some(Bases::One(Arc::new(base)))
+        Some(Basis::Split(Arc::new(base)))
     }
 
-    /// The bases by two levels, if they exist.
+    /// By two levels, if they exist; `weights` are those of the rows that are always free.
     fn two_levels(
         &self,
         rows: usize,
@@ -96,7 +119,8 @@ impl Coarse {
         changing: &[bool],
         (values, free): (&[f64], Vec<FreeMotion>),
         modes: &ModeTable<'_>,
-    ) -> Option<Bases> {
+        weights: RowWeights,
+    ) -> Option<Basis> {
         let data = &self.0;
         let (mobility, matrix) = (&data.mobility, &data.matrix);
         let grid = grid_of(mobility.centres());
@@ -117,8 +141,11 @@ impl Coarse {
             self.fixed_base(graph, &values)
         };
         let (model, always) = rayon::join(model, always);
-        let (model, always) = (Arc::new(model?), always?);
-        Some(Bases::Levels { model, always, free })
+        let (model, always) = (Arc::new(model?), steady(always?)?);
+        Some(Basis::Model(
+            model,
+            CoarseFactor::new(self.clone(), always, Some(weights), free),
+        ))
     }
 
     fn exchange(&self) -> &Arc<Exchange> {
@@ -143,21 +170,15 @@ impl Coarse {
         if !has_two_levels(&data.gluing, data.subdomains.count()) {
             return None;
         }
-        let base = self.fixed_base(&data.matrix.graph(), values)?;
-        let factor = base.factor(&ContactWeights::default(), None, &mut Fronts::default());
-        Some(Factor::Split(base, factor.ok()?))
+        steady(self.fixed_base(&data.matrix.graph(), values)?)
     }
 }
 
-/// Methods of a model; `exact` is the factor of the rows that are always free.
+/// Methods of a model.
 impl CoarseFactor {
-    /// `x = P x`, or the point with `G x = e` that is reached that way.
-    pub(super) fn project_with(&self, exact: &Self, x: &mut [f64], e: Option<&[f64]>, s: &mut CoarseScratch) {
+    /// `x = x - W_c G^T N g`, `g` the first vector of the memory, which becomes what is left of it.
+    pub(super) fn take_by_contact(&self, x: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.coarse().0;
-        data.product(x, None, &mut s.first, &mut s.sides);
-        if let Some(e) = e {
-            s.first.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
-        }
         s.second.copy_from_slice(&s.first);
         self.solve_first(s, false);
         let contact = data.gluing.ranges().contact().end;
@@ -166,16 +187,6 @@ impl CoarseFactor {
         x.iter_mut().zip(&s.dual[..contact]).for_each(|(x, c)| *x -= c);
         data.contact_product(&s.dual[..contact], &mut s.first);
         s.first.iter_mut().zip(&s.second).for_each(|(v, g)| *v = g - *v);
-        exact.solve_first(s, false);
-        exact.subtract_weighted(x, s);
-    }
-
-    /// `r = P^T r = r + G^T alpha`.
-    pub(super) fn project_transpose_with(&self, exact: &Self, r: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        self.amplitudes_with(exact, r, alpha, s);
-        let data = &self.coarse().0;
-        let (add, motions) = (|r: &mut f64, v: f64| *r += v, &mut s.motions);
-        data.with_transpose(alpha, r, true, motions, add, |_, r, v| add(r, v));
     }
 
     /// `r = P^T r` for an `r` that other weights of the contact rows have projected, with what their model has `taken`;
@@ -184,19 +195,11 @@ impl CoarseFactor {
         alpha.copy_from_slice(taken);
         self.take_from(r, alpha, s);
         taken.copy_from_slice(&s.first);
-        let (add, motions) = (|r: &mut f64, v: f64| *r += v, &mut s.motions);
-        let data = &self.coarse().0;
-        data.with_transpose(alpha, r, true, motions, add, |_, r, v| add(r, v));
-    }
-
-    /// These amplitudes `alpha`.
-    pub(super) fn amplitudes_with(&self, exact: &Self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        exact.amplitudes(r, alpha, s);
-        self.take_from(r, alpha, s);
+        self.coarse().0.add_transpose(alpha, r, &mut s.motions);
     }
 
     /// `alpha = alpha - N G W_c (r + G^T alpha)`; what the model takes is then the first vector of the memory.
-    fn take_from(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
+    pub(super) fn take_from(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.coarse().0;
         let contact = data.gluing.ranges().contact().end;
         data.contact_transpose(alpha, &mut s.dual[..contact], &mut s.motions);
