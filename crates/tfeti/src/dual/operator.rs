@@ -5,6 +5,7 @@ use crate::dual::inverses::ClassInverse;
 use crate::dual::part::RowPart;
 use crate::linalg::dense;
 use crate::rows::gluing::Gluing;
+use crate::subdomain::inverse::Inverse;
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::PRODUCT;
 use signorini_qp::{SymmetricOperator, vector};
@@ -122,8 +123,8 @@ impl SymmetricOperator for DualOperator {
                 } else if let Some(memory) = memory {
                     let base = &self.subdomains.bases[class];
                     let (nodes, dim) = (&self.map.classes[class].nodes, base.diagonal.len());
-                    if inverse.full.apply_at(&base.kernel, nodes, x, y, memory) {
-                        return;
+                    if let Inverse::Packed(factor) = &inverse.full {
+                        return factor.product(&base.kernel, nodes, x, y, &mut memory.numbers);
                     }
                     let full = &mut full[..dim * columns];
                     full.fill(0.0);

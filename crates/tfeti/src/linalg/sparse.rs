@@ -365,13 +365,8 @@ impl SparseCholesky {
 
     /// Work memory that solves with so many columns need.
     pub(crate) fn need(&self, columns: usize) -> MemoryNeed {
-        Self::need_of(&self.symbolic, columns)
-    }
-
-    /// The same, before there is a factor.
-    pub(crate) fn need_of(symbolic: &Symbolic, columns: usize) -> MemoryNeed {
-        let permuted = StackReq::new::<f64>(symbolic.0.nrows() * columns + 64);
-        let solve = symbolic.0.solve_in_place_scratch::<f64>(columns, Par::Seq);
+        let permuted = StackReq::new::<f64>(self.dim() * columns + 64);
+        let solve = self.symbolic.0.solve_in_place_scratch::<f64>(columns, Par::Seq);
         MemoryNeed {
             memory: solve.and(permuted),
             numbers: 0,

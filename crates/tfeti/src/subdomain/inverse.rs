@@ -48,21 +48,6 @@ impl Inverse {
         matches!(self, Self::Packed(_))
     }
 
-    /// `u = K+ f` for forces and displacements at some `nodes`, if it is stored for products with one column.
-    pub(crate) fn apply_at(
-        &self,
-        kernel: &Kernel,
-        nodes: &[u32],
-        f: &[f64],
-        u: &mut [f64],
-        memory: &mut SolveMemory,
-    ) -> bool {
-        if let Self::Packed(factor) = self {
-            factor.product(kernel, nodes, f, u, &mut memory.numbers);
-        }
-        self.is_packed()
-    }
-
     /// The same, stored for products with one column.
     pub(crate) fn packed(self, stiffness: &Columns) -> Self {
         match self {
