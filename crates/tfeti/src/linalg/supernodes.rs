@@ -22,6 +22,15 @@ pub(crate) struct Supernodes {
     height: usize,
 }
 
+/// The two halves of a solve.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Way {
+    /// `x = D^-1 L^-1 x`; adds to what is behind what that does to the rows there.
+    Forward,
+    /// `x = L^-T x`, given what is behind, which stays.
+    Backward,
+}
+
 #[derive(Debug, Clone)]
 pub(super) struct Supernode {
     pub(super) columns: Range<usize>,
@@ -97,33 +106,16 @@ impl Supernodes {
         });
     }
 
-    /// `x = D^-1 L^-1 x` for the columns' unknowns `x`; adds to `behind` what that does to the rows behind.
-    pub(crate) fn forward<T: Stored, X: Unknown>(&self, tiles: &[T], x: &mut [X], behind: &mut [X], buffer: &mut [X]) {
-        self.solve(tiles, x, behind, buffer, true);
-    }
-
-    /// `x = L^-T x` for the columns' unknowns, given those `behind`, which stay.
-    pub(crate) fn backward<T: Stored, X: Unknown>(&self, tiles: &[T], x: &mut [X], behind: &mut [X], buffer: &mut [X]) {
-        self.solve(tiles, x, behind, buffer, false);
-    }
-
-    /// [`forward`](Self::forward) or [`backward`](Self::backward).
-    fn solve<T: Stored, X: Unknown>(
-        &self,
-        tiles: &[T],
-        x: &mut [X],
-        behind: &mut [X],
-        buffer: &mut [X],
-        forward: bool,
-    ) {
-        let work = Work {
+    /// [`Forward`](Way::Forward) or [`Backward`](Way::Backward) for the columns' unknowns `x` and those `behind`.
+    pub(crate) fn solve<T: Stored, X: Unknown>(&self, way: Way, tiles: &[T], [x, behind, buffer]: [&mut [X]; 3]) {
+        Arch::new().dispatch(Solve {
+            way,
             factor: self,
             tiles,
             x,
             behind,
             buffer,
-        };
-        Arch::new().dispatch(Solve { work, forward });
+        });
     }
 }
 
@@ -186,8 +178,9 @@ impl WithSimd for Pack<'_> {
     }
 }
 
-/// A triangular solve: the factor, the columns' unknowns, those behind, and a buffer.
-struct Work<'a, T, X> {
+/// The arguments of [`Supernodes::solve`], likewise.
+struct Solve<'a, T, X> {
+    way: Way,
     factor: &'a Supernodes,
     tiles: &'a [T],
     x: &'a mut [X],
@@ -195,27 +188,21 @@ struct Work<'a, T, X> {
     buffer: &'a mut [X],
 }
 
-struct Solve<'a, T, X> {
-    work: Work<'a, T, X>,
-    forward: bool,
-}
-
 impl<T: Stored, X: Unknown> WithSimd for Solve<'_, T, X> {
     type Output = ();
 
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) {
-        let work = self.work;
-        match (self.forward, work.factor.unit) {
-            (true, 6) => work.forward::<S, 6>(simd),
-            (true, _) => work.forward::<S, 3>(simd),
-            (false, 6) => work.backward::<S, 6>(simd),
-            (false, _) => work.backward::<S, 3>(simd),
+        match (self.way, self.factor.unit) {
+            (Way::Forward, 6) => self.forward::<S, 6>(simd),
+            (Way::Forward, _) => self.forward::<S, 3>(simd),
+            (Way::Backward, 6) => self.backward::<S, 6>(simd),
+            (Way::Backward, _) => self.backward::<S, 3>(simd),
         }
     }
 }
 
-impl<T: Stored, X: Unknown> Work<'_, T, X> {
+impl<T: Stored, X: Unknown> Solve<'_, T, X> {
     #[inline(always)]
     fn forward<S: Simd, const U: usize>(mut self, simd: S) {
         let mut nodes = &self.factor.nodes[..];
@@ -348,11 +335,11 @@ mod tests {
             let mut buffer = vec![f64::NAN; supernodes.buffer()];
             let mut z = b[..own].to_vec();
             let mut behind = vec![0.0; all - own];
-            supernodes.forward(&tiles, &mut z, &mut behind, &mut buffer);
+            supernodes.solve(Way::Forward, &tiles, [&mut z, &mut behind, &mut buffer]);
             for (sum, b) in behind.iter().zip(&b[own..]) {
                 assert!((sum + b).abs() < 1e-9, "unit {unit}: {sum} {b}");
             }
-            supernodes.backward(&tiles, &mut z, &mut x[own..].to_vec(), &mut buffer);
+            supernodes.solve(Way::Backward, &tiles, [&mut z, &mut x[own..].to_vec(), &mut buffer]);
             for (z, x) in z.iter().zip(&x) {
                 assert!((z - x).abs() < 1e-12, "unit {unit}: {z} {x}");
             }

@@ -2,7 +2,7 @@
 
 use crate::linalg::elimination::{Group, grouped, patterns};
 use crate::linalg::sparse::{Columns, MemoryNeed, SparseCholesky, quotient};
-use crate::linalg::supernodes::Supernodes;
+use crate::linalg::supernodes::{Supernodes, Way};
 use crate::linalg::tiles::Tile;
 use crate::subdomain::kernel::{Kernel, add_wrench, displacement};
 use crate::tolerances::GROUP;
@@ -157,11 +157,16 @@ impl PackedFactor {
             for (x, &old) in x.iter_mut().zip(&self.order) {
                 *x = column[old as usize];
             }
-            self.groups.forward(&self.tiles, x, &mut [], buffer);
-            self.groups.backward(&self.tiles, x, &mut [], buffer);
+            self.solve_ordered(x, buffer);
             for (&x, &old) in x.iter().zip(&self.order) {
                 column[old as usize] = x;
             }
+        }
+    }
+
+    fn solve_ordered(&self, x: &mut [f64], buffer: &mut [f64]) {
+        for way in [Way::Forward, Way::Backward] {
+            self.groups.solve(way, &self.tiles, [&mut *x, &mut [], &mut *buffer]);
         }
     }
 
@@ -183,8 +188,7 @@ impl PackedFactor {
                 target[c] += f[c];
             }
         }
-        self.groups.forward(&self.tiles, x, &mut [], buffer);
-        self.groups.backward(&self.tiles, x, &mut [], buffer);
+        self.solve_ordered(x, buffer);
         let all = (0..kernel.nodes()).map(|node| (node, three(&x[at(node)..][..3])));
         let motion = rigid(kernel, all);
         for (&node, u) in nodes.iter().zip(u.chunks_exact_mut(3)) {

@@ -4,7 +4,7 @@
 //! read one that is rounded to single precision: half of the bytes. Arithmetic is in double precision, so that such a
 //! solve is symmetric and exact for a matrix next to the one given.
 
-use crate::linalg::supernodes::Supernodes;
+use crate::linalg::supernodes::{Supernodes, Way};
 use crate::linalg::tiles::{Digits, HALF, LANES, ShortTile, Stored, Tile};
 use crate::projector::split::alike::Bunch;
 use crate::projector::split::branches::{Branch, Pass};
@@ -215,37 +215,35 @@ impl SplitBase {
         let (r, [own, behind, buffer]) = (bunch.regions[0] as usize, bunch.divide(part));
         let (piece, steady) = (&self.pieces[r], T::of(&self.pieces[r].tiles));
         if bunch.width > 1 {
-            return together(bunch.width, &piece.steady, steady, [own, behind, buffer], true);
+            return together(bunch.width, Way::Forward, &piece.steady, steady, [own, behind, buffer]);
         }
         if !changing {
-            piece.steady.forward(steady, own, behind, buffer);
+            piece
+                .steady
+                .solve(Way::Forward, steady, [&mut *own, &mut *behind, &mut *buffer]);
         }
-        piece.changing.forward(T::of(&factor.tiles[r]), own, behind, buffer);
+        let changing = T::of(&factor.tiles[r]);
+        piece.changing.solve(Way::Forward, changing, [own, behind, buffer]);
     }
 
     fn substitute_one<T: Reads>(&self, bunch: &Bunch, factor: &SplitFactor, part: &mut [f64]) {
         let (r, [own, behind, buffer]) = (bunch.regions[0] as usize, bunch.divide(part));
         let (piece, steady) = (&self.pieces[r], T::of(&self.pieces[r].tiles));
         if bunch.width > 1 {
-            return together(bunch.width, &piece.steady, steady, [own, behind, buffer], false);
+            return together(bunch.width, Way::Backward, &piece.steady, steady, [own, behind, buffer]);
         }
-        piece.changing.backward(T::of(&factor.tiles[r]), own, behind, buffer);
-        piece.steady.backward(steady, own, behind, buffer);
+        let changing = T::of(&factor.tiles[r]);
+        piece
+            .changing
+            .solve(Way::Backward, changing, [&mut *own, &mut *behind, &mut *buffer]);
+        piece.steady.solve(Way::Backward, steady, [own, behind, buffer]);
     }
 }
 
-/// So many right sides at once, [forward](Supernodes::forward) or [backward](Supernodes::backward).
-fn together<T: Stored>(width: usize, factor: &Supernodes, tiles: &[T], parts: [&mut [f64]; 3], forward: bool) {
+/// So many right sides at once.
+fn together<T: Stored>(width: usize, way: Way, factor: &Supernodes, tiles: &[T], parts: [&mut [f64]; 3]) {
     match width {
-        HALF => several::<T, HALF>(factor, tiles, parts, forward),
-        _ => several::<T, LANES>(factor, tiles, parts, forward),
-    }
-}
-
-fn several<T: Stored, const W: usize>(factor: &Supernodes, tiles: &[T], parts: [&mut [f64]; 3], forward: bool) {
-    let [own, behind, buffer] = parts.map(|part| part.as_chunks_mut::<W>().0);
-    match forward {
-        true => factor.forward(tiles, own, behind, buffer),
-        false => factor.backward(tiles, own, behind, buffer),
+        HALF => factor.solve(way, tiles, parts.map(|part| part.as_chunks_mut::<HALF>().0)),
+        _ => factor.solve(way, tiles, parts.map(|part| part.as_chunks_mut::<LANES>().0)),
     }
 }
