@@ -6,7 +6,8 @@ use crate::error::TfetiError;
 use crate::linalg::tiles::Digits;
 use crate::projector::factor::{CoarseFactor, Factor};
 use crate::projector::levels::{Basis, row_weights};
-use crate::projector::split::factor::{Fronts, SplitFactor};
+use crate::projector::split::factor::SplitFactor;
+use crate::projector::split::front::Front;
 use crate::projector::split::fronts::ContactWeights;
 use crate::tolerances::{ROUNDED_MODE, ROUNDED_STEP, SHORT_ROWS, WORK};
 use signorini_qp::internal::{LineWeight, LooseMode};
@@ -68,7 +69,8 @@ struct SplitParts {
     basis: Option<Basis>,
     /// Leading rows with constraints.
     contact_rows: usize,
-    fronts: Fronts,
+    /// Work memory of factorisations.
+    fronts: Vec<Front>,
     contact: ContactWeights,
 }
 
@@ -119,7 +121,7 @@ impl ActiveSetProjector {
         let mut parts = SplitParts {
             basis,
             contact_rows,
-            fronts: Fronts::default(),
+            fronts: Vec::new(),
             contact: ContactWeights::default(),
         };
         let factor = match &parts.basis {

@@ -15,7 +15,7 @@ use crate::coarse::weights::RowWeights;
 use crate::processes::exchange::Exchange;
 use crate::projector::factor::{CoarseFactor, Factor};
 use crate::projector::model::Model;
-use crate::projector::split::factor::{Fronts, SplitBase};
+use crate::projector::split::factor::SplitBase;
 use crate::projector::split::fronts::ContactWeights;
 use crate::projector::split::order::grid_of;
 use crate::projector::split::tree::{CoarseTree, cheapest_tree};
@@ -51,7 +51,7 @@ pub(super) fn row_weights(coarse: &Coarse, free: &[f64], metric: Option<&[f64]>)
 
 /// A factor in which nothing changes.
 fn steady(base: Arc<SplitBase>) -> Option<Factor> {
-    let factor = base.factor(&ContactWeights::default(), None, &mut Fronts::default());
+    let factor = base.factor(&ContactWeights::default(), None, &mut Vec::new());
     Some(Factor::Split(base, factor.ok()?))
 }
 

@@ -10,7 +10,8 @@ use crate::coarse::clusters::Clusters;
 use crate::coarse::matrix::{CoarseMatrix, ModeTable};
 use crate::linalg::tiles::{Digits, LANES};
 use crate::processes::exchange::Exchange;
-use crate::projector::split::factor::{Fronts, SplitBase, SplitFactor};
+use crate::projector::split::factor::{SplitBase, SplitFactor};
+use crate::projector::split::front::Front;
 use crate::projector::split::fronts::{ContactTerms, ContactWeights};
 use crate::projector::split::order::grid_of;
 use crate::projector::split::tree::cheapest_tree;
@@ -219,7 +220,7 @@ impl Model {
         &self,
         weights: &ContactWeights,
         old: Option<SplitFactor>,
-        fronts: &mut Fronts,
+        fronts: &mut Vec<Front>,
     ) -> Result<ModelFactor, usize> {
         let mut contact = vec![0.0; BLOCK * self.table.blocks()];
         self.contact.add(0, LANES, weights, &mut contact);

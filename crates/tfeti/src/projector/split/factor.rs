@@ -61,10 +61,6 @@ pub(crate) struct SplitFactor {
     pub(crate) tiles: Vec<Tiles>,
 }
 
-/// Work memory of factorisations.
-#[derive(Debug, Default)]
-pub(crate) struct Fronts(Vec<Front>);
-
 impl SplitBase {
     /// From the matrix without its first `contact` rows, contact rows that `write` tells. Equal regions
     /// are stored once and solved together if it `shares` or nothing changes. Of the processes of an `exchange` each
@@ -222,17 +218,17 @@ impl SplitBase {
         both.is_none_or(|(branches, pass)| branches.is_done(branches.rank_of(r), pass))
     }
 
-    /// Factor for other weights of the contact rows; reuses the memory of `old`.
+    /// Factor for other weights of the contact rows; reuses the memory of `old`, and `fronts` as work memory.
     pub(crate) fn factor(
         &self,
         weights: &ContactWeights,
         old: Option<SplitFactor>,
-        fronts: &mut Fronts,
+        fronts: &mut Vec<Front>,
     ) -> Result<SplitFactor, usize> {
         let mut tiles = old.map(|old| old.tiles).unwrap_or_default();
         tiles.resize(self.pieces.len(), Tiles::default());
         tiles.iter_mut().for_each(Tiles::clear);
-        fronts.0.resize(self.tree.nodes.len(), Front::default());
+        fronts.resize(self.tree.nodes.len(), Front::default());
         let load = |k: usize, front: &mut Front| {
             let node = &self.tree.nodes[k];
             let behind = node.height() - node.width();
@@ -247,7 +243,7 @@ impl SplitBase {
             changing: true,
             load: &load,
         };
-        work.run(&mut fronts.0, &mut tiles)?;
+        work.run(fronts, &mut tiles)?;
         Ok(SplitFactor { tiles })
     }
 }
