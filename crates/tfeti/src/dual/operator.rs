@@ -21,7 +21,7 @@ pub struct DualOperator {
     pub(crate) map: Arc<BoundaryMap>,
     pub(crate) subdomains: Arc<Subdomains>,
     pub(crate) inverses: Arc<Vec<Option<ClassInverse>>>,
-    gluing: Arc<Gluing>,
+    pub(crate) gluing: Arc<Gluing>,
     parallel: bool,
     /// Where ranks keep parts of vectors.
     part: Option<Arc<RowPart>>,

@@ -17,7 +17,7 @@ use signorini_qp::vector;
 /// Scales the lumped blocks of classes all of whose elements are much stiffer than any of others; `None` for those
 /// with a Schur complement, which leaves eigenvalues near one, and those that another rank holds.
 pub(super) fn even_out(system: &Tfeti, map: &BoundaryMap, mut classes: Vec<Option<&mut BlockRows>>) {
-    let subdomains = &system.parts.subdomains;
+    let subdomains = &system.dual.subdomains;
     let moduli = || subdomains.bases.iter().map(|base| base.moduli);
     let [soft, stiff] = [1, 0].map(|k| moduli().flatten().map(move |r| r[k]));
     let (softest, stiffest) = (soft.fold(f64::INFINITY, f64::min), stiff.fold(0.0, f64::max));
@@ -57,10 +57,10 @@ pub(super) fn even_out(system: &Tfeti, map: &BoundaryMap, mut classes: Vec<Optio
 
 /// The largest eigenvalue of the inverse of a class times its block, by some steps of Lanczos.
 fn largest_eigenvalue(system: &Tfeti, map: &BoundaryMap, class: usize, block: &BlockRows) -> f64 {
-    let Some(inverse) = &system.parts.inverses[class] else {
+    let Some(inverse) = &system.dual.inverses[class] else {
         return 1.0;
     };
-    let (kernel, nodes) = (&system.parts.subdomains.bases[class].kernel, &map.classes[class].nodes);
+    let (kernel, nodes) = (&system.dual.subdomains.bases[class].kernel, &map.classes[class].nodes);
     let places = || nodes.iter().flat_map(|&n| [0, 1, 2].map(|c| 3 * n as usize + c));
     let mut memory = SolveMemory::new(inverse.full.need(1));
     let mut full = vec![0.0; 3 * kernel.nodes()];

@@ -93,12 +93,12 @@ impl Tfeti {
 
 impl DualPreconditioner {
     fn new(system: &Tfeti, kind: Kind) -> Result<Self, TfetiError> {
-        let map = system.parts.map.clone();
+        let map = system.dual.map.clone();
         let touched = ClassRows::of_classes(system);
         let mut classes: Vec<Option<BoundaryStiffness>> = (0..map.classes.len())
             .into_par_iter()
             .map(|k| {
-                let held = system.parts.subdomains.held(k);
+                let held = system.dual.subdomains.held(k);
                 let class = (&map.classes[k], &touched[k]);
                 held.map(|own| BoundaryStiffness::new(own, class, kind)).transpose()
             })

@@ -141,7 +141,7 @@ impl Scaling {
             out.joined = Some(JoinedGroups::new(system, joined, &compliance, &gives_way)?);
         }
         out.weights = system
-            .parts
+            .dual
             .map
             .copy_values(|subdomain, local| compliance[system.torn_range(subdomain).start / 3 + local]);
         Ok(out)

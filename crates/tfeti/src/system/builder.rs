@@ -21,7 +21,7 @@ use crate::subdomain::kernel::mean;
 use crate::subdomain::matrices::Subdomains;
 use crate::subdomain::ownership::Ownership;
 use crate::system::report::SetupReport;
-use crate::system::tfeti::{Parts, Tfeti};
+use crate::system::tfeti::Tfeti;
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 use std::sync::Arc;
 use std::time::Instant;
@@ -187,15 +187,8 @@ impl<'a> TfetiBuilder<'a> {
             analysed: known.map_or(factors, |_| 0),
             assembly_seconds,
         };
-        let inverses = Arc::new(inverses);
-        let dual = DualOperator::new(map.clone(), subdomains.clone(), inverses.clone(), gluing.clone());
-        let parts = Parts {
-            subdomains,
-            gluing,
-            map,
-            inverses,
-        };
-        Ok(Tfeti::new(parts, dual, coarse, report, decomposition, stiffness))
+        let dual = DualOperator::new(map, subdomains, Arc::new(inverses), gluing);
+        Ok(Tfeti::new(dual, coarse, report, decomposition, stiffness))
     }
 
     /// The rows, and the stiffness of copies by which they weigh these.

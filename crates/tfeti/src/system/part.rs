@@ -23,16 +23,16 @@ impl Tfeti {
     /// which vectors are whole.
     #[doc(hidden)]
     pub fn part(&self) -> Option<SystemPart> {
-        let (gluing, exchange) = (self.gluing(), self.parts.map.exchange());
+        let (gluing, exchange) = (self.gluing(), self.dual.map.exchange());
         let plain = gluing.is_aligned && self.copy_stiffness().is_plain() && !gluing.is_compliant();
         if exchange.ranks() == 1 || !plain || !gluing.dependent_nodes().is_empty() || self.row_weights().is_some() {
             return None;
         }
-        let subdomains = &self.parts.subdomains;
+        let subdomains = &self.dual.subdomains;
         let rank_of = |s: u32| self.rank_of(s as usize);
         let (rows, own) = RowPart::new(gluing, subdomains.ownership.exchange.clone(), &rank_of);
         let rows = Arc::new(rows);
-        let map = self.parts.map.of_part(&subdomains.classes, gluing, (&rows, &own));
+        let map = self.dual.map.of_part(&subdomains.classes, gluing, (&rows, &own));
         let map = Arc::new(map);
         Some(SystemPart {
             coarse: self.coarse().of_part(map.clone(), &own),

@@ -119,7 +119,7 @@ impl Tfeti {
 
     /// The same on the subdomains that are told; halves of them on two threads.
     fn add_some_transposed(&self, x: &[f64], f: &mut [f64], is_told: impl Fn(u32) -> bool + Sync) {
-        if !self.parts.map.is_large() {
+        if !self.dual.map.is_large() {
             return self.add_transposed(x, f, 0, is_told);
         }
         let middle = self.subdomains() as u32 / 2;

@@ -29,14 +29,14 @@ impl Tfeti {
     ///
     /// `out` has the length of `rows`; rows beyond the last are 0.
     pub fn row_compliance(&self, rows: Range<usize>, out: &mut [f64]) {
-        let parts = &self.parts;
-        let subdomains = &parts.subdomains;
+        let dual = &self.dual;
+        let subdomains = &dual.subdomains;
         let mut nodes = vec![Vec::new(); subdomains.bases.len()];
         for (subdomain, dof, _) in rows.clone().flat_map(|row| self.gluing().row(row)) {
             nodes[subdomains.class(subdomain)].push(dof / 3);
         }
         let of_class = |(class, nodes): (usize, Vec<usize>)| {
-            let inverse = parts.inverses[class].as_ref()?;
+            let inverse = dual.inverses[class].as_ref()?;
             Some(match &inverse.boundary {
                 Some(block) => Compliance::Block(block),
                 None => {
@@ -48,7 +48,7 @@ impl Tfeti {
         let compliance: Vec<Option<Compliance<'_>>> = nodes.into_par_iter().enumerate().map(of_class).collect();
         self.sum_terms(rows, out, |class, first, second| match &compliance[class] {
             Some(Compliance::Block(block)) => {
-                let nodes = &parts.map.classes[class].nodes;
+                let nodes = &dual.map.classes[class].nodes;
                 let place = |dof: usize| {
                     let node = nodes.binary_search(&((dof / 3) as u32));
                     node.ok().map(|node| 3 * node + dof % 3)
@@ -69,7 +69,7 @@ impl Tfeti {
     /// `out[k]` is a sum over all pairs of entries of row `k` in one subdomain; `term` is told its class, which it must
     /// hold, and both entries.
     fn sum_terms(&self, rows: Range<usize>, out: &mut [f64], term: impl Fn(usize, &Entry, &Entry) -> Option<f64>) {
-        let subdomains = &self.parts.subdomains;
+        let subdomains = &self.dual.subdomains;
         let ownership = &subdomains.ownership;
         let (mut terms, mut ends, mut pieces) = (Vec::new(), Vec::new(), Vec::new());
         for row in rows {
@@ -92,7 +92,7 @@ impl Tfeti {
 
     /// Smallest diagonal entry of `K+` times that of `K` at some of these nodes, by direction.
     fn sample_compliance(&self, class: usize, inverse: &Inverse, nodes: &[usize]) -> [f64; 3] {
-        let base = &self.parts.subdomains.bases[class];
+        let base = &self.dual.subdomains.bases[class];
         let mut memory = SolveMemory::new(inverse.need(1));
         let mut out = [f64::INFINITY; 3];
         let count = nodes.len().min(SAMPLE);
@@ -116,7 +116,7 @@ impl Tfeti {
     /// `out` has the length of `rows`; rows beyond the last are 0.
     pub fn row_stiffness(&self, rows: Range<usize>, out: &mut [f64]) {
         self.sum_terms(rows, out, |class, &(_, dof, value), &(_, other, factor)| {
-            let stiffness = &self.parts.subdomains.held(class)?.stiffness;
+            let stiffness = &self.dual.subdomains.held(class)?.stiffness;
             let at = stiffness.find(other, dof)?;
             Some(value * stiffness.values[at] * factor)
         });
@@ -143,7 +143,7 @@ impl Tfeti {
             return None;
         }
         let compliance = |(subdomain, dof, value): (usize, usize, f64)| {
-            let diagonal = self.parts.subdomains.of(subdomain).diagonal[dof];
+            let diagonal = self.dual.subdomains.of(subdomain).diagonal[dof];
             if diagonal > 0.0 { value * value / diagonal } else { 0.0 }
         };
         let weight = |row: usize| {

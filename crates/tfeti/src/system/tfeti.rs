@@ -1,8 +1,6 @@
 //! The T-FETI system of a body, built once and immutable.
 
 use crate::coarse::space::Coarse;
-use crate::dual::boundary::BoundaryMap;
-use crate::dual::inverses::ClassInverse;
 use crate::dual::operator::DualOperator;
 use crate::error::TfetiError;
 use crate::processes::exchange::{Exchange, Traffic};
@@ -11,23 +9,13 @@ use crate::rows::gluing::Gluing;
 use crate::subdomain::class::Classes;
 use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::subdomain::kernel::Kernel;
-use crate::subdomain::matrices::Subdomains;
 use crate::subdomain::ownership::pieces;
 use crate::system::report::SetupReport;
 use crate::tolerances::{PANEL, SUBDOMAINS};
 use rayon::prelude::*;
 use signorini_fem_mesh::Decomposition;
 use std::ops::Range;
-use std::sync::{Arc, OnceLock};
-
-/// What operators share.
-#[derive(Debug)]
-pub(crate) struct Parts {
-    pub(crate) subdomains: Arc<Subdomains>,
-    pub(crate) gluing: Arc<Gluing>,
-    pub(crate) map: Arc<BoundaryMap>,
-    pub(crate) inverses: Arc<Vec<Option<ClassInverse>>>,
-}
+use std::sync::OnceLock;
 
 /// A T-FETI system: the rows of `B`, the dual operator `F`, the coarse space `G` and what is needed to recover
 /// displacements. Immutable, and shared freely between threads.
@@ -35,8 +23,8 @@ pub(crate) struct Parts {
 /// *Torn* vectors hold the unknowns of all subdomains one after another (`3 local node + component`).
 #[derive(Debug)]
 pub struct Tfeti {
-    pub(crate) parts: Parts,
-    dual: DualOperator,
+    /// With all that operators share.
+    pub(crate) dual: DualOperator,
     coarse: Coarse,
     factor: OnceLock<CoarseFactor>,
     report: SetupReport,
@@ -55,7 +43,6 @@ pub struct Tfeti {
 
 impl Tfeti {
     pub(super) fn new(
-        parts: Parts,
         dual: DualOperator,
         coarse: Coarse,
         report: SetupReport,
@@ -67,14 +54,14 @@ impl Tfeti {
             offsets.push(offsets[offsets.len() - 1] + subdomain.dofs());
         }
         let nodes = decomposition.nodes();
-        let (classes, ownership) = (&parts.subdomains.classes, &parts.subdomains.ownership);
+        let (classes, ownership) = (&dual.subdomains.classes, &dual.subdomains.ownership);
         // some members of a class at a time, cut otherwise than panels
         let rank = |s: usize| {
             let (class, member) = classes.place(s);
             ownership.rank_of(class, member / PANEL * PANEL) as u32
         };
         let spread = ownership.exchange.ranks() > 1;
-        let torn_ranks: Vec<u32> = (0..if spread { parts.subdomains.count() } else { 0 })
+        let torn_ranks: Vec<u32> = (0..if spread { dual.subdomains.count() } else { 0 })
             .map(rank)
             .collect();
         let torn_pieces = pieces(&torn_ranks, 1).into_iter();
@@ -83,7 +70,6 @@ impl Tfeti {
                 .map(|(rank, own)| (rank, offsets[own.start]..offsets[own.end]))
                 .collect(),
             torn_ranks,
-            parts,
             dual,
             coarse,
             factor: OnceLock::new(),
@@ -97,7 +83,7 @@ impl Tfeti {
 
     /// The rows of `B`.
     pub fn gluing(&self) -> &Gluing {
-        &self.parts.gluing
+        &self.dual.gluing
     }
 
     /// How the copies of a node count in contact and support rows: by their stiffness in a body of several materials,
@@ -111,13 +97,13 @@ impl Tfeti {
     /// The stiffness of the copies of each node, whether or not they differ.
     #[doc(hidden)]
     pub fn all_copy_stiffness(&self) -> CopyStiffness {
-        CopyStiffness::new(&self.parts.subdomains, self.node_of.iter().copied())
+        CopyStiffness::new(&self.dual.subdomains, self.node_of.iter().copied())
     }
 
     /// The classes of subdomains.
     #[doc(hidden)]
     pub fn classes(&self) -> &Classes {
-        &self.parts.subdomains.classes
+        &self.dual.subdomains.classes
     }
 
     /// `F = B K+ B^T`.
@@ -151,7 +137,7 @@ impl Tfeti {
     /// The process that works with the matrices of a subdomain, by its rank.
     pub fn rank_of(&self, subdomain: usize) -> usize {
         let (class, member) = self.classes().place(subdomain);
-        self.parts.subdomains.ownership.rank_of(class, member)
+        self.dual.subdomains.ownership.rank_of(class, member)
     }
 
     /// Whether this process works on the part of torn vectors of a subdomain.
@@ -213,17 +199,17 @@ impl Tfeti {
     }
 
     pub(super) fn exchange(&self) -> &Exchange {
-        &self.parts.subdomains.ownership.exchange
+        &self.dual.subdomains.ownership.exchange
     }
 
     /// Number of subdomains.
     pub fn subdomains(&self) -> usize {
-        self.parts.subdomains.count()
+        self.dual.subdomains.count()
     }
 
     /// Length of dual vectors.
     pub fn dual_dim(&self) -> usize {
-        self.parts.gluing.ranges().total()
+        self.dual.gluing.ranges().total()
     }
 
     /// Length of torn vectors: the paper's `n_p`.
@@ -239,6 +225,6 @@ impl Tfeti {
     /// Rigid motions of a subdomain.
     #[doc(hidden)]
     pub fn kernel(&self, subdomain: usize) -> &Kernel {
-        self.parts.subdomains.kernel(subdomain)
+        self.dual.subdomains.kernel(subdomain)
     }
 }

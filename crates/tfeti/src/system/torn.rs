@@ -36,13 +36,13 @@ impl Tfeti {
         rigid: impl Fn(usize, &mut [f64]) + Sync,
         new: impl Fn(f64, f64) -> f64 + Sync,
     ) {
-        let parts = &self.parts;
+        let dual = &self.dual;
         self.by_class(y, |class, members, columns| {
-            let Some(base) = parts.subdomains.held(class) else {
+            let Some(base) = dual.subdomains.held(class) else {
                 let each = members.iter().zip(columns);
                 return each.for_each(|(&s, y)| rigid(s as usize, y));
             };
-            if parts.subdomains.classes.classes()[class].members.len() < SHARED {
+            if dual.subdomains.classes.classes()[class].members.len() < SHARED {
                 for (&s, y) in members.iter().zip(columns) {
                     let x = &x[self.torn_range(s as usize)];
                     for (j, target) in y.iter_mut().enumerate() {
@@ -77,16 +77,16 @@ impl Tfeti {
 
     /// `u = K+ f`, and `R alpha` if that is told, on the subdomains of this process, the others' are left alone.
     pub(super) fn displacement(&self, f: &[f64], alpha: Option<&[f64]>, u: &mut [f64]) {
-        let parts = &self.parts;
+        let dual = &self.dual;
         self.by_class(u, |class, members, columns| {
-            let base = &parts.subdomains.bases[class];
+            let base = &dual.subdomains.bases[class];
             let add_motion = |s: u32, target: &mut [f64]| {
                 if let Some(alpha) = alpha {
                     let own = &alpha[6 * s as usize..][..6];
                     self.kernel(s as usize).add_motion(1.0, own, target);
                 }
             };
-            let Some(ClassInverse { full: inverse, .. }) = &parts.inverses[class] else {
+            let Some(ClassInverse { full: inverse, .. }) = &dual.inverses[class] else {
                 // rigid
                 for (&s, target) in members.iter().zip(columns) {
                     target.fill(0.0);
