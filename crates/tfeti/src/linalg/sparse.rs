@@ -134,14 +134,9 @@ impl Symbolic {
     pub(crate) fn new(pattern: &Columns, block: usize) -> Result<Self, FactorError> {
         debug_assert!(block > 0 && pattern.dim.is_multiple_of(block));
         let (pointers, rows) = quotient(pattern, block);
-        let order = minimum_degree(&pointers, &rows)?.into_iter().map(|b| b as u32);
-        Self::ordered(pattern, &order.collect::<Vec<_>>(), block)
-    }
-
-    /// The same with a given order of the blocks, new to old.
-    pub(crate) fn ordered(pattern: &Columns, order: &[u32], block: usize) -> Result<Self, FactorError> {
-        let forward: Vec<usize> = (order.iter())
-            .flat_map(|&b| block * b as usize..block * (b as usize + 1))
+        let forward: Vec<usize> = minimum_degree(&pointers, &rows)?
+            .into_iter()
+            .flat_map(|b| block * b..block * (b + 1))
             .collect();
         let mut inverse = vec![0; forward.len()];
         for (new, &old) in forward.iter().enumerate() {

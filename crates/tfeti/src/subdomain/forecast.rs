@@ -2,7 +2,7 @@
 
 use crate::error::TfetiError;
 use crate::linalg::elimination::patterns;
-use crate::linalg::sparse::{Columns, FactorError, Symbolic, minimum_degree, quotient};
+use crate::linalg::sparse::{Columns, FactorError, Symbolic};
 use crate::subdomain::class::Classes;
 use crate::subdomain::cost::{ClassReport, InverseSettings, Size, choose};
 use crate::subdomain::packed;
@@ -195,15 +195,13 @@ pub(crate) fn coarse_graph(decomposition: &Decomposition) -> Vec<Vec<u32>> {
 fn coarse_factor(decomposition: &Decomposition) -> Result<(usize, f64), FactorError> {
     let mut lower = coarse_graph(decomposition);
     let pattern = Columns::of_blocks(&mut lower, 6);
-    let (pointers, rows) = quotient(&pattern, 6);
-    let order = minimum_degree(&pointers, &rows)?.into_iter().map(|b| b as u32);
-    let order: Vec<u32> = order.collect();
-    let stored = Symbolic::ordered(&pattern, &order, 6)?.stored();
+    let symbolic = Symbolic::new(&pattern, 6)?;
+    let order: Vec<u32> = symbolic.order().iter().step_by(6).map(|k| k / 6).collect();
     let mut graph = lower.clone();
     for (a, list) in lower.iter().enumerate() {
         list.iter().for_each(|&b| graph[b as usize].push(a as u32));
     }
     let columns = patterns(&graph, &order);
     let border = columns.iter().map(|below| 6.0 * below.len() as f64);
-    Ok((stored, border.map(|b| 6.0 * b * b + 36.0 * b + 72.0).sum()))
+    Ok((symbolic.stored(), border.map(|b| 6.0 * b * b + 36.0 * b + 72.0).sum()))
 }
