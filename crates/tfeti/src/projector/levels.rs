@@ -67,11 +67,17 @@ pub(super) fn two_levels_pay(touching: &[bool], rows: usize) -> bool {
 
 /// The same for the rows of `B`.
 pub(crate) fn has_two_levels(gluing: &Gluing, subdomains: usize) -> bool {
-    let mut touching = vec![false; subdomains];
-    for e in gluing.ranges().contact().flat_map(|row| gluing.nodal(row)) {
-        touching[e.subdomain as usize] = true;
-    }
+    let touching = touched(gluing, gluing.ranges().contact().end, subdomains);
     two_levels_pay(&touching, gluing.ranges().total())
+}
+
+/// Which subdomains the first `rows` rows touch, contact rows.
+fn touched(gluing: &Gluing, rows: usize, subdomains: usize) -> Vec<bool> {
+    let mut touched = vec![false; subdomains];
+    for e in (0..rows).flat_map(|row| gluing.nodal(row)) {
+        touched[e.subdomain as usize] = true;
+    }
+    touched
 }
 
 impl Coarse {
@@ -87,10 +93,7 @@ impl Coarse {
         if rows > gluing.ranges().interface.start || !data.free_motions(all).is_empty() {
             return None;
         }
-        let mut changing = vec![false; data.subdomains.count()];
-        for e in (0..rows).flat_map(|row| gluing.nodal(row)) {
-            changing[e.subdomain as usize] = true;
-        }
+        let changing = touched(gluing, rows, data.subdomains.count());
         let graph = data.matrix.graph();
         let modes = ModeTable::new(&data.subdomains);
         weights.diagonal[..rows].fill(0.0);
