@@ -10,8 +10,9 @@
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// Entries summed by one leaf of the reduction tree.
-const CHUNK: usize = 8192;
+/// Entries summed by one leaf of the reduction tree: for those who keep parts of a vector.
+#[doc(hidden)]
+pub const CHUNK: usize = 8192;
 
 /// Length from which kernels use the rayon pool.
 pub const PARALLEL: usize = 8 * CHUNK;
@@ -21,8 +22,7 @@ const LANES: usize = 8;
 /// `x · y`.
 #[must_use]
 pub fn dot(x: &[f64], y: &[f64]) -> f64 {
-    let n = x.len().min(y.len());
-    dot_with(x, y, n >= PARALLEL)
+    dots([(x, y)])[0]
 }
 
 /// `x · y` of each pair in one pass.
@@ -34,10 +34,6 @@ pub fn dots<const K: usize>(pairs: [(&[f64], &[f64]); K]) -> [f64; K] {
     });
     sums.0
 }
-
-/// Entries that a sum adds up one after another before it adds such sums: for those who keep parts of a vector.
-#[doc(hidden)]
-pub const CHUNK_LENGTH: usize = CHUNK;
 
 /// The dot product of vectors from those of their chunks, with the same bits as [`dot`].
 #[doc(hidden)]
@@ -181,11 +177,6 @@ fn each(y: &mut [f64], f: impl Fn(&mut f64) + Sync + Send) {
     }
 }
 
-fn dot_with(x: &[f64], y: &[f64], parallel: bool) -> f64 {
-    let n = x.len().min(y.len());
-    reduce(0..n, parallel, &|r| leaf(&x[r.clone()], &y[r], |a, b| a * b))
-}
-
 /// Where the tree over `n > CHUNK` entries is cut: a multiple of the chunk length.
 fn cut(n: usize) -> usize {
     n.div_ceil(CHUNK).div_ceil(2) * CHUNK
@@ -277,26 +268,18 @@ mod tests {
     }
 
     #[test]
-    fn chunks_joined_have_the_bits_of_the_whole() {
+    fn chunks_joined_have_the_bits_of_the_whole_on_any_number_of_threads() {
         for n in [0, 9, CHUNK, 3 * CHUNK + 5, 6 * CHUNK, 20 * CHUNK + 17] {
             let (x, y) = (wave(n, 0.37), wave(n, 0.11));
             let sums: Vec<f64> = x.chunks(CHUNK).zip(y.chunks(CHUNK)).map(|(x, y)| dot(x, y)).collect();
-            assert_eq!(join(&sums).to_bits(), dot(&x, &y).to_bits());
-        }
-    }
-
-    #[test]
-    fn thread_count_changes_no_bit() {
-        let n = 20 * CHUNK + 17;
-        let (x, y) = (wave(n, 0.37), wave(n, 0.11));
-        let serial = dot_with(&x, &y, false);
-        for threads in [1, 2, 5] {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .expect("pool");
-            let d = pool.install(|| dot(&x, &y));
-            assert_eq!(d.to_bits(), serial.to_bits());
+            for threads in [1, 2, 5] {
+                let pool = rayon::ThreadPoolBuilder::new()
+                    .num_threads(threads)
+                    .build()
+                    .expect("pool");
+                let whole = pool.install(|| dot(&x, &y));
+                assert_eq!(join(&sums).to_bits(), whole.to_bits());
+            }
         }
     }
 

@@ -7,7 +7,7 @@
 use crate::processes::exchange::Exchange;
 use crate::rows::gluing::{Glob, Gluing};
 use signorini_fem_mesh::internal::distinct;
-use signorini_qp::vector::{CHUNK_LENGTH, dot, join};
+use signorini_qp::vector::{CHUNK, dot, join};
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -34,11 +34,11 @@ struct Unit {
 
 impl Unit {
     fn chunks(&self) -> Range<usize> {
-        self.rows.start / CHUNK_LENGTH..self.rows.end.div_ceil(CHUNK_LENGTH)
+        self.rows.start / CHUNK..self.rows.end.div_ceil(CHUNK)
     }
 
     fn within(&self, chunk: usize) -> usize {
-        let [start, end] = [chunk, chunk + 1].map(|k| (k * CHUNK_LENGTH).clamp(self.rows.start, self.rows.end));
+        let [start, end] = [chunk, chunk + 1].map(|k| (k * CHUNK).clamp(self.rows.start, self.rows.end));
         end - start
     }
 }
@@ -74,7 +74,7 @@ impl RowPart {
     pub(crate) fn new(gluing: &Gluing, exchange: Arc<Exchange>, rank_of: &dyn Fn(u32) -> usize) -> (Self, Gluing) {
         let (ranks, rank, contact) = (exchange.ranks(), exchange.rank(), gluing.ranges().interface.start);
         let units = units(gluing, ranks, rank_of);
-        let chunks = gluing.ranges().total().div_ceil(CHUNK_LENGTH);
+        let chunks = gluing.ranges().total().div_ceil(CHUNK);
         let mut counts = vec![vec![0; ranks]; chunks];
         for unit in &units {
             for chunk in unit.chunks() {
@@ -120,8 +120,8 @@ impl RowPart {
             for chunk in (0..chunks).filter(|&chunk| owner[chunk] == r) {
                 out.order[chunk] = at;
                 if r == rank {
-                    let first = chunk * CHUNK_LENGTH;
-                    let length = CHUNK_LENGTH.min(gluing.ranges().total() - first);
+                    let first = chunk * CHUNK;
+                    let length = CHUNK.min(gluing.ranges().total() - first);
                     let place = out.place(first).unwrap_or(0);
                     out.own.push((at, place..place + length));
                 }
