@@ -6,6 +6,7 @@ use crate::tolerances::SLID;
 use crate::vector;
 
 use super::balance::Search;
+use super::blocks::ActiveSet;
 use super::compliance::Compliance;
 use super::natural_map::NaturalMap;
 use super::problem::ActiveSetProblem;
@@ -127,29 +128,10 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         self.step *= self.compliance.share() / before.share();
     }
 
-    /// Classifies the blocks by the natural map.
-    pub(crate) fn classify(&mut self) {
+    /// Tells the active set what the natural map makes of the blocks here.
+    pub(crate) fn tell_map(&mut self, tell: fn(&mut ActiveSet, &ProductSet, &[f64], &NaturalMap<'_>)) {
         let map = natural_map(self.problem, &self.work.residual, self.step);
-        self.work.active.classify(self.set, self.x, &map);
-    }
-
-    /// Tells the next classification what the natural map makes of the blocks here.
-    pub(crate) fn foresee(&mut self) {
-        let map = natural_map(self.problem, &self.work.residual, self.step);
-        self.work.active.foresee(self.set, self.x, &map);
-    }
-
-    /// The same, and how far discs slip.
-    pub(crate) fn foresee_slips(&mut self) {
-        self.foresee();
-        let map = natural_map(self.problem, &self.work.residual, self.step);
-        self.work.active.foresee_slips(self.set, self.x, &map);
-    }
-
-    /// The same where the point has moved since the residual was computed.
-    pub(crate) fn foresee_moved(&mut self) {
-        let map = natural_map(self.problem, &self.work.residual, self.step);
-        self.work.active.foresee_moved(self.set, self.x, &map);
+        tell(&mut self.work.active, self.set, self.x, &map);
     }
 
     /// The residual on the active set from `residual`.

@@ -7,6 +7,7 @@ use crate::tolerances::{
 };
 use crate::vector;
 
+use super::blocks::ActiveSet;
 use super::iterate::natural_map;
 use super::natural_map::settle_bounds;
 use super::run::{Place, Run};
@@ -23,9 +24,10 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         let at = &mut self.at;
         at.work.before.copy_from_slice(&at.x[..constrained]);
         if slipping {
-            at.foresee_slips();
+            at.tell_map(ActiveSet::foresee);
+            at.tell_map(ActiveSet::foresee_slips);
         } else if self.repairs_suffice && unsure {
-            at.foresee();
+            at.tell_map(ActiveSet::foresee);
         }
         self.moved.followed = (self.safeguard.is_none() || place.solved) && self.has_settled();
         if self.repairs_suffice {
@@ -33,7 +35,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         } else {
             self.settle_loose(false, self.moved.followed)?;
             if unsure && !slipping {
-                self.at.foresee_moved();
+                self.at.tell_map(ActiveSet::foresee_moved);
             }
         }
         let at = &mut self.at;

@@ -11,6 +11,7 @@ use crate::tolerances::{
 };
 use crate::vector;
 
+use super::blocks::ActiveSet;
 use super::cg::Goal;
 use super::compliance::{Compliance, Path};
 use super::descent::DescentSafeguard;
@@ -187,7 +188,7 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         let rounding = if nothing { ROUNDED * self.reach } else { 0.0 };
         let (at, settings) = (&mut self.at, self.settings);
         at.residual();
-        at.classify();
+        at.tell_map(ActiveSet::classify);
         let sparing = self.safeguard.is_some() && self.repairs_suffice;
         match at.hold_modes(sparing) {
             Ok(true) if at.projector.project_gradient_again(&mut at.work.residual) => {}
