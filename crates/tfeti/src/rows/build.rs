@@ -57,29 +57,10 @@ impl Gluing {
         builder.dependent(contact, &found, (&merged, &equations));
         builder.interface(nodes);
         builder.tied(contact, &found.tied)?;
-        let tied = builder.gluing.nodal_rows() - builder.gluing.ranges.contact().len();
         builder.equations(&equations);
         builder.rigid(rigid);
         builder.dirichlet(&merged);
         builder.springs(springs)?;
-        let behind = gluing.nodal_rows() - gluing.ranges.contact().len();
-        let interface = gluing.ranges.interface.start;
-        let supports = interface + 3 * gluing.blocks();
-        gluing.ranges.interface.end = supports;
-        gluing.ranges.tied = supports..supports + tied;
-        gluing.ranges.equations = supports + tied..supports + tied + equations.len();
-        gluing.ranges.rigid = gluing.ranges.equations.end..gluing.ranges.equations.end + rigid.len();
-        gluing.ranges.dirichlet = gluing.ranges.rigid.end..supports + behind;
-        for tied in &mut gluing.tied {
-            tied.rows.start += supports - interface;
-            tied.rows.end += supports - interface;
-        }
-        gluing.equations.iter_mut().for_each(|e| e.row += supports - interface);
-        for case in &mut gluing.prescribed {
-            let later = case.iter_mut().filter(|v| v.0 as usize >= interface);
-            later.for_each(|v| v.0 += (supports - interface) as u32);
-            case.sort_by_key(|v| v.0);
-        }
         let torn = decomposition.torn_dofs();
         let of_contact = contact.iter().map(|p| if p.friction || p.tied { 3 } else { 1 });
         gluing.paper_rows = torn.saturating_sub(3 * nodes) + 3 * merged.nodes.len() + of_contact.sum::<usize>();
@@ -127,10 +108,16 @@ impl Builder<'_> {
         self.entries.extend(entries);
     }
 
+    /// Number of the next row.
+    fn next(&self) -> usize {
+        self.gluing.nodal_row(self.gluing.nodal_rows())
+    }
+
     fn close(&mut self, node: u32) -> usize {
+        let row = self.next();
         self.gluing.nodal.push(self.entries.drain(..));
         self.gluing.row_nodes.push(node);
-        self.gluing.nodal_rows() - 1
+        row
     }
 
     fn contact_row(&mut self, point: &ContactConstraint, row: &ContactRow, prescribed: &[(u32, [f64; 3])]) -> usize {
@@ -204,7 +191,7 @@ impl Builder<'_> {
     fn tied(&mut self, contact: &[ContactConstraint], tied: &[PointRows]) -> Result<(), TfetiError> {
         for p in tied {
             let of = &contact[p.point];
-            let first = self.gluing.nodal_rows();
+            let first = self.next();
             let mut directions = Vec::with_capacity(3);
             for row in std::iter::once(&p.normal).chain(&p.tangential) {
                 self.relative(p.point, of, row)?;
@@ -213,11 +200,12 @@ impl Builder<'_> {
             }
             self.gluing.tied.push(TiedRows {
                 point: p.point,
-                rows: first..self.gluing.nodal_rows(),
+                rows: first..self.next(),
                 directions,
             });
             self.gluing.is_aligned &= is_aligned(of, p);
         }
+        self.gluing.ranges.tied = self.gluing.ranges.interface.end..self.next();
         Ok(())
     }
 
@@ -255,6 +243,7 @@ impl Builder<'_> {
                 scale: scale * own.factor,
             });
         }
+        self.gluing.ranges.equations = self.gluing.ranges.tied.end..self.next();
     }
 
     /// What a tied row does to the motion that its side has beside that of the partner.
@@ -340,6 +329,7 @@ impl Builder<'_> {
                 }
             }
         }
+        self.gluing.ranges.interface.end += 3 * self.gluing.blocks();
     }
 
     /// Row `j` of a node's Helmert matrix.
@@ -378,6 +368,7 @@ impl Builder<'_> {
                 scale,
             });
         }
+        self.gluing.ranges.dirichlet = self.gluing.ranges.rigid.end..self.next();
         Ok(())
     }
 
@@ -389,6 +380,7 @@ impl Builder<'_> {
                 self.gluing.prescribed[case as usize].push((number as u32, row.scale * value));
             }
         }
+        self.gluing.ranges.rigid = self.gluing.ranges.equations.end..self.next();
     }
 
     fn dirichlet(&mut self, merged: &MergedSupports) {
