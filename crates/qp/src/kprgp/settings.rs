@@ -5,6 +5,8 @@ use crate::problem::SymmetricOperator;
 use crate::report::{Products, Status, Steps};
 use crate::settings::settings;
 
+use super::objective::Objective;
+
 /// How the active set is enlarged when a conjugate gradient step leaves the set.
 ///
 /// Both first go to the boundary along the conjugate direction.
@@ -82,6 +84,12 @@ impl Vectors {
             phi: vec![0.0; n],
             stale: 0,
         }
+    }
+
+    /// The gradient at `x`, from `x`; one product.
+    pub(crate) fn compute_gradient(&mut self, objective: &mut impl Objective, x: &[f64]) {
+        objective.gradient(x, &mut self.g);
+        self.stale = 0;
     }
 }
 

@@ -87,8 +87,7 @@ pub fn kprgp<A: SymmetricOperator, S: ConvexSet + ?Sized>(
     };
     let v = &mut work.vectors;
     set.project(x);
-    objective.gradient(x, &mut v.g);
-    v.stale = 0;
+    v.compute_gradient(&mut objective, x);
     let load = vector::norm(b);
     objective.tolerance = tolerance * if load > 0.0 { load } else { vector::norm(&v.g) };
     if objective.tolerance.is_nan() {
@@ -152,7 +151,7 @@ pub(crate) fn iterate<O: Objective, S: ConvexSet + ?Sized>(
             if !drifted(run.o.norm(), run.x, run.v.stale, tolerance) {
                 break Status::Converged;
             }
-            run.compute_gradient();
+            run.v.compute_gradient(run.o, run.x);
             run.products.restart += 1;
             run.restart();
             if run.norms.projected() > run.o.tolerance() {
@@ -215,11 +214,6 @@ struct Run<'a, O, S: ?Sized> {
 }
 
 impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
-    fn compute_gradient(&mut self) {
-        self.o.gradient(self.x, &mut self.v.g);
-        self.v.stale = 0;
-    }
-
     fn split(&mut self) {
         self.norms = (self.set).split(self.x, &self.v.g, self.fixed, &mut self.v.phi);
     }
@@ -348,7 +342,7 @@ impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
 
     fn project(&mut self) -> f64 {
         self.set.project(self.x);
-        self.compute_gradient();
+        self.v.compute_gradient(self.o, self.x);
         vector::decrease(&self.v.p, &self.v.ap, self.x, &self.v.g)
     }
 

@@ -189,7 +189,7 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, A, C, S> 
         let (load, rounding) = reference(&mut self.o, &mut self.v.ap, &mut self.products);
         self.least = self.least.max(rounding / self.o.cost.norm);
         self.set.project(self.x);
-        self.compute_gradient();
+        self.v.compute_gradient(&mut self.o, self.x);
         self.products.initial += 1;
         // without a load the set alone pushes
         let reference = if load > 0.0 { load } else { vector::norm(&self.v.g) };
@@ -198,11 +198,6 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, A, C, S> 
         self.o.cap = settings.gradient_cap * reference;
         self.set_equality_tolerance();
         Ok(())
-    }
-
-    fn compute_gradient(&mut self) {
-        self.o.gradient(self.x, &mut self.v.g);
-        self.v.stale = 0;
     }
 
     fn set_equality_tolerance(&mut self) {
@@ -243,7 +238,7 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, A, C, S> 
             if !drifted(self.o.norm(), self.x, self.v.stale, self.o.floor) {
                 return Verdict::End(Status::Converged);
             }
-            self.compute_gradient();
+            self.v.compute_gradient(&mut self.o, self.x);
             self.products.restart += 1;
         }
         if done || inner == Status::Stagnated {
@@ -285,7 +280,7 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, A, C, S> 
     /// After a change of the set: the gradient at the projected `x`.
     fn follow_set(&mut self) {
         if vector::distance_squared(self.x, &self.v.p) > 0.0 {
-            self.compute_gradient();
+            self.v.compute_gradient(&mut self.o, self.x);
             self.products.restart += 1;
         }
         self.before = None;
