@@ -95,11 +95,7 @@ impl Coarse {
     /// The same space for vectors of which each rank keeps a part, with the `rows` of this one.
     pub(crate) fn of_part(&self, map: Arc<BoundaryMap>, rows: &Gluing) -> Self {
         let data = &self.0;
-        let classes = &data.subdomains.classes;
-        let rank = |s: usize| {
-            let (class, member) = classes.place(s);
-            data.subdomains.ownership.rank_of(class, member) as u32
-        };
+        let rank = |s: usize| data.subdomains.rank_of(s) as u32;
         let ranks = (0..data.subdomains.count()).map(rank).collect();
         Self(Arc::new(CoarseData {
             tables: RigidTables::new(&map, data.subdomains.clone(), rows, ranks),

@@ -45,18 +45,8 @@ pub(crate) fn invert(
     let patterns: Vec<Option<Symbolic>> = each().map(symbolic).collect::<Result<_, _>>()?;
     let stored = |pattern: &Option<Symbolic>| pattern.as_ref().map_or(0, Symbolic::stored) as f64;
     let mut factors: Vec<f64> = patterns.iter().map(stored).collect();
-    let ownership = &subdomains.ownership;
-    let pieces = (0..factors.len()).map(|k| (ownership.rank_of(k, 0), k..k + 1));
-    ownership.exchange.complete(&mut factors, &pieces.collect::<Vec<_>>());
-    let size = |k: usize| match classes[k].is_rigid {
-        true => Size::rigid(classes[k].members.len()),
-        false => Size {
-            dim: 3 * classes[k].nodes,
-            boundary: 3 * map.classes[k].nodes.len(),
-            members: classes[k].members.len(),
-            factor: factors[k] as usize,
-        },
-    };
+    subdomains.ownership.complete(&mut factors);
+    let size = |k: usize| Size::new(&classes[k], map.classes[k].nodes.len(), factors[k] as usize);
     let sizes: Vec<Size> = (0..bases.len()).map(size).collect();
     let dense = choose(&sizes, settings)?;
     let inverse = |k: usize| {

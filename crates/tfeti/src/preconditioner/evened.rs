@@ -34,11 +34,7 @@ pub(super) fn even_out(system: &Tfeti, map: &BoundaryMap, mut classes: Vec<Optio
                 .map_or(1.0, |own| largest_eigenvalue(system, map, k, own))
         })
         .collect();
-    let ownership = &subdomains.ownership;
-    let pieces: Vec<_> = (0..classes.len())
-        .map(|k| (ownership.rank_of(k, 0), k..k + 1))
-        .collect();
-    ownership.exchange.complete(&mut largest, &pieces);
+    subdomains.ownership.complete(&mut largest);
     // softer ones first, with the largest eigenvalue of all up to each
     let mut order: Vec<usize> = (0..classes.len()).collect();
     order.sort_by(|&a, &b| ranges[a][1].total_cmp(&ranges[b][1]).then(a.cmp(&b)));

@@ -98,9 +98,6 @@ impl Spread {
 
     /// Brings what other ranks read of a vector to them.
     fn tell(&self, x: &mut [f64], message: &mut [f64]) {
-        if self.rows.len() == 1 {
-            return;
-        }
         let (x, message) = (x.as_chunks_mut::<6>().0, message.as_chunks_mut::<6>().0);
         let rank = self.exchange.rank();
         let places = |r: usize| (self.parts[r].start / 6..).zip(self.told[r].iter().map(|&s| s as usize));

@@ -1,6 +1,7 @@
 //! Which generalised inverse is cheaper for a class: a dense one on the boundary or a sparse factor.
 
 use crate::error::TfetiError;
+use crate::subdomain::class::Class;
 use crate::tolerances::{BANDWIDTH, CACHE, FLOPS, PANEL, PRODUCTS};
 
 /// Choice of the generalised inverse.
@@ -89,13 +90,16 @@ pub(crate) struct Size {
 }
 
 impl Size {
-    /// Of a class without matrices.
-    pub(crate) fn rigid(members: usize) -> Self {
-        let [dim, boundary, factor] = [0; 3];
+    /// From the nodes that `B` touches and the numbers of the factor; a rigid class has no matrices.
+    pub(crate) fn new(class: &Class, nodes: usize, factor: usize) -> Self {
+        let [dim, boundary, factor] = match class.is_rigid {
+            true => [0; 3],
+            false => [3 * class.nodes, 3 * nodes, factor],
+        };
         Self {
             dim,
             boundary,
-            members,
+            members: class.members.len(),
             factor,
         }
     }

@@ -84,19 +84,8 @@ impl<'a> Forecast<'a> {
                 }
             }
             let boundary = boundary.iter().filter(|b| **b).count();
-            let members = class.members.len();
-            copies += members * boundary;
-            if class.is_rigid {
-                sizes.push(Size::rigid(members));
-                continue;
-            }
-            let (dim, boundary, factor) = (3 * class.nodes, 3 * boundary, symbolic.stored());
-            sizes.push(Size {
-                dim,
-                boundary,
-                members,
-                factor,
-            });
+            copies += class.members.len() * boundary;
+            sizes.push(Size::new(class, boundary, symbolic.stored()));
         }
         let dense = choose(&sizes, settings).unwrap_or_else(|_| vec![false; sizes.len()]);
         let report = |(k, size): (usize, &Size)| {

@@ -135,6 +135,11 @@ impl Subdomains {
         self.classes.place(subdomain).0
     }
 
+    pub(crate) fn rank_of(&self, subdomain: usize) -> usize {
+        let (class, member) = self.classes.place(subdomain);
+        self.ownership.rank_of(class, member)
+    }
+
     /// Matrices of a subdomain.
     pub(crate) fn of(&self, subdomain: usize) -> &ClassBase {
         &self.bases[self.class(subdomain)]
@@ -147,9 +152,6 @@ impl Subdomains {
 
 /// Brings the diagonals of all classes to all ranks.
 fn share_diagonals(ownership: &Ownership, bases: &mut [ClassBase]) {
-    if ownership.exchange.ranks() == 1 {
-        return;
-    }
     let (mut all, mut pieces) = (Vec::new(), Vec::new());
     for (class, base) in bases.iter().enumerate() {
         let start = all.len();

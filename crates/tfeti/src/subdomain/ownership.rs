@@ -77,4 +77,10 @@ impl Ownership {
         let panels = &self.ranks[class];
         panels[panels.partition_point(|(_, end)| *end <= member)].0
     }
+
+    /// Brings a number of each class to all ranks.
+    pub(crate) fn complete(&self, values: &mut [f64]) {
+        let pieces = (0..values.len()).map(|class| (self.rank_of(class, 0), class..class + 1));
+        self.exchange.complete(values, &pieces.collect::<Vec<_>>());
+    }
 }

@@ -136,8 +136,7 @@ impl Tfeti {
 
     /// The process that works with the matrices of a subdomain, by its rank.
     pub fn rank_of(&self, subdomain: usize) -> usize {
-        let (class, member) = self.classes().place(subdomain);
-        self.dual.subdomains.ownership.rank_of(class, member)
+        self.dual.subdomains.rank_of(subdomain)
     }
 
     /// Whether this process works on the part of torn vectors of a subdomain.
