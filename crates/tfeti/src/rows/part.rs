@@ -2,6 +2,7 @@
 
 use super::gluing::{Glob, Gluing};
 use super::ranges::RowRanges;
+use std::ops::Range;
 
 impl Gluing {
     /// The rows of the globs and of the other rows that are marked, in their order; all contact rows have to be. Only
@@ -19,19 +20,19 @@ impl Gluing {
             out.globs.push(Glob { first_block, ..*glob });
         }
         let (own, contact) = (&self.ranges, self.ranges.interface.start);
-        let end = contact + 3 * out.blocks();
-        let kept = |rows: std::ops::Range<usize>| nodal[rows].iter().filter(|kept| **kept).count();
-        let tied = end..end + kept(contact..contact + own.tied.len());
-        let behind = contact + own.tied.len();
-        let equations = tied.end..tied.end + kept(behind..behind + own.equations.len());
-        let behind = behind + own.equations.len();
-        let rigid = equations.end..equations.end + kept(behind..behind + own.rigid.len());
+        let (mut marks, mut end) = (nodal[contact..].iter(), contact + 3 * out.blocks());
+        let interface = contact..end;
+        let mut kept = |rows: &Range<usize>| {
+            let start = end;
+            end += marks.by_ref().take(rows.len()).filter(|kept| **kept).count();
+            start..end
+        };
         out.ranges = RowRanges {
-            interface: contact..end,
-            dirichlet: rigid.end..end + out.nodal_rows() - contact,
-            tied,
-            equations,
-            rigid,
+            interface,
+            tied: kept(&own.tied),
+            equations: kept(&own.equations),
+            rigid: kept(&own.rigid),
+            dirichlet: kept(&own.dirichlet),
             ..own.clone()
         };
         out
