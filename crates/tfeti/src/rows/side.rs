@@ -6,6 +6,7 @@ use crate::tolerances::{SAME, UNIT};
 use nalgebra::Matrix3;
 use signorini_fem_mesh::SurfaceFrame;
 use signorini_fem_mesh::vec3::{dot, skewed};
+use std::collections::HashMap;
 
 /// One side of a contact constraint: nodes with weights that sum to one. It moves by the weighted mean of their
 /// displacements.
@@ -213,8 +214,7 @@ impl ContactConstraint {
 
 /// Checks contact constraints against a mesh with so many nodes, and that none is said twice.
 pub(super) fn check_constraints(points: &[ContactConstraint], nodes: usize) -> Result<(), TfetiError> {
-    // Last point of each smallest node, and the point of the same node before each point; plus one, 0 for none.
-    let (mut last, mut before) = (vec![0; nodes], vec![0; points.len()]);
+    let mut of_smallest: HashMap<u32, Vec<&ContactConstraint>> = HashMap::new();
     for (index, point) in points.iter().enumerate() {
         point.check(index, nodes)?;
         let twice = TfetiError::ContactNodeTwice {
@@ -225,16 +225,11 @@ pub(super) fn check_constraints(points: &[ContactConstraint], nodes: usize) -> R
         if own.any(|n| other.iter().any(|o| o.0 == n.0)) {
             return Err(twice);
         }
-        let last: &mut u32 = &mut last[all.min().unwrap_or(0) as usize];
-        let mut earlier = *last as usize;
-        while earlier > 0 {
-            if points[earlier - 1].is_same(point) {
-                return Err(twice);
-            }
-            earlier = before[earlier - 1] as usize;
+        let earlier = of_smallest.entry(all.min().unwrap_or(0)).or_default();
+        if earlier.iter().any(|other| other.is_same(point)) {
+            return Err(twice);
         }
-        before[index] = *last;
-        *last = index as u32 + 1;
+        earlier.push(point);
     }
     Ok(())
 }
