@@ -12,7 +12,7 @@ use crate::projector::split::tree::{CoarseTree, cheapest_tree};
 use crate::subdomain::forecast::{CoarseForecast, Forecast, coarse_graph};
 use crate::subdomain::kernel::mean;
 use crate::tolerances::LAYER;
-use signorini_fem_mesh::internal::{DisjointSets, distinct};
+use signorini_fem_mesh::internal::DisjointSets;
 use signorini_fem_mesh::vec3::sub;
 use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
@@ -40,7 +40,7 @@ pub fn forecast_levels(
     // rows that do not change are like those of supports
     let mut supports = if follows { vec![0; count] } else { contact };
     supported.flat_map(copies).for_each(|s| supports[s] += 1);
-    let graph = neighbours(&coarse_graph(decomposition));
+    let graph = coarse_graph(decomposition);
     let points = forecast.mesh.points();
     let centre = |nodes: &[u32]| mean(nodes.iter().map(|&n| points[n as usize]));
     let centres: Vec<[f64; 3]> = decomposition.subdomains().iter().map(|s| centre(&s.nodes)).collect();
@@ -115,18 +115,6 @@ fn count_tree(tree: &mut CoarseTree, graph: &[Vec<u32>], write: &EntryBits<'_>) 
     let first = share(tree, graph, write);
     let own = || first.iter().enumerate().map(|(r, &equal)| r == equal);
     (tree.stored(own()), tree.operations(own()))
-}
-
-/// Neighbours without itself, from those of higher number.
-fn neighbours(higher: &[Vec<u32>]) -> Vec<Vec<u32>> {
-    let mut out: Vec<Vec<u32>> = vec![Vec::new(); higher.len()];
-    for (a, list) in higher.iter().enumerate() {
-        for &b in list.iter().filter(|b| **b as usize > a) {
-            out[a].push(b);
-            out[b as usize].push(a as u32);
-        }
-    }
-    out.into_iter().map(distinct).collect()
 }
 
 fn hash(value: &impl Hash) -> u64 {

@@ -7,6 +7,7 @@ use crate::subdomain::class::Classes;
 use crate::subdomain::cost::{ClassReport, InverseSettings, Size, choose};
 use crate::subdomain::packed;
 use rayon::prelude::*;
+use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::{Decomposition, Materials, TetMesh};
 
 /// Forecast of memory and work of a T-FETI system: what [`SetupReport`](crate::SetupReport) will say.
@@ -160,11 +161,9 @@ fn nodal_pattern<const N: usize>(nodes: usize, tets: &[[u32; N]]) -> Columns {
     Columns::of_blocks(&mut graph, 3)
 }
 
-/// For each subdomain itself and those of higher number with which it shares a node, be it a corner only.
+/// The subdomains with which each shares a node, be it a corner only, ascending.
 pub(crate) fn coarse_graph(decomposition: &Decomposition) -> Vec<Vec<u32>> {
-    let count = decomposition.subdomains().len() as u32;
-    // the lower triangle, as the matrix is stored
-    let mut lower: Vec<Vec<u32>> = (0..count).map(|s| vec![s]).collect();
+    let mut graph: Vec<Vec<u32>> = vec![Vec::new(); decomposition.subdomains().len()];
     let mut before: Vec<u32> = Vec::new();
     for node in 0..decomposition.nodes() {
         let copies = decomposition.copies(node);
@@ -173,23 +172,21 @@ pub(crate) fn coarse_graph(decomposition: &Decomposition) -> Vec<Vec<u32>> {
         if copies.len() > 1 && !before.iter().copied().eq(own()) {
             before = own().collect();
             for &a in &before {
-                lower[a as usize].extend(before.iter().filter(|b| **b > a));
+                graph[a as usize].extend(before.iter().filter(|b| **b != a));
             }
         }
     }
-    lower
+    graph.into_iter().map(distinct).collect()
 }
 
 /// Numbers and operations of the factor of the coarse matrix.
 fn coarse_factor(decomposition: &Decomposition) -> Result<(usize, f64), FactorError> {
-    let mut lower = coarse_graph(decomposition);
-    let pattern = Columns::of_blocks(&mut lower, 6);
+    let graph = coarse_graph(decomposition);
+    // the lower triangle, as the matrix is stored
+    let lower = |(a, list): (u32, &Vec<u32>)| [a].into_iter().chain(list.iter().copied().filter(|b| *b > a)).collect();
+    let pattern = Columns::of_blocks(&mut (0..).zip(&graph).map(lower).collect::<Vec<_>>(), 6);
     let symbolic = Symbolic::new(&pattern, 6)?;
     let order: Vec<u32> = symbolic.order().iter().step_by(6).map(|k| k / 6).collect();
-    let mut graph = lower.clone();
-    for (a, list) in lower.iter().enumerate() {
-        list.iter().for_each(|&b| graph[b as usize].push(a as u32));
-    }
     let columns = patterns(&graph, &order);
     let border = columns.iter().map(|below| 6.0 * below.len() as f64);
     Ok((symbolic.stored(), border.map(|b| 6.0 * b * b + 36.0 * b + 72.0).sum()))
