@@ -11,7 +11,7 @@ use crate::tolerances::BRANCHES;
 use std::ops::Range;
 use std::sync::Arc;
 
-/// Which regions are worked on: those of branches, or the top.
+/// Which regions are worked on: those of branches, or the top. Without branches all are of the first pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pass {
     Branches,

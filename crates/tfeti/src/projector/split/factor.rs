@@ -208,14 +208,14 @@ impl SplitBase {
     }
 
     /// Whether regions of a pass are within this one, and whether it is one.
-    fn enters(&self, r: usize, pass: Option<Pass>) -> bool {
-        let both = self.branches.as_ref().zip(pass);
-        both.is_none_or(|(branches, pass)| branches.is_entered(r, pass))
+    fn enters(&self, r: usize, pass: Pass) -> bool {
+        let branches = self.branches.as_ref();
+        branches.is_none_or(|branches| branches.is_entered(r, pass))
     }
 
-    fn does(&self, r: usize, pass: Option<Pass>) -> bool {
-        let both = self.branches.as_ref().zip(pass);
-        both.is_none_or(|(branches, pass)| branches.is_done(branches.rank_of(r), pass))
+    fn does(&self, r: usize, pass: Pass) -> bool {
+        let branches = self.branches.as_ref();
+        branches.is_none_or(|branches| branches.is_done(branches.rank_of(r), pass))
     }
 
     /// Factor for other weights of the contact rows; reuses the memory of `old`, and `fronts` as work memory.
@@ -284,16 +284,16 @@ impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
     fn run(&self, fronts: &mut [Front], tiles: &mut [Tiles]) -> Result<(), usize> {
         let root = self.base.pieces.len().wrapping_sub(1);
         let Some(branches) = &self.base.branches else {
-            return self.grow(root, None, fronts, tiles);
+            return self.grow(root, Pass::Branches, fronts, tiles);
         };
-        let own = self.grow(root, Some(Pass::Branches), fronts, tiles);
+        let own = self.grow(root, Pass::Branches, fronts, tiles);
         branches.gather_updates(own, &self.base.tree, self.changing, fronts)?;
-        self.grow(root, Some(Pass::Top), fronts, tiles)
+        self.grow(root, Pass::Top, fronts, tiles)
     }
 
     /// Works on a region after those within, as far as they belong to a `pass`. `fronts` and `tiles` are those of the
     /// regions within and its own.
-    fn grow(&self, r: usize, pass: Option<Pass>, fronts: &mut [Front], tiles: &mut [Tiles]) -> Result<(), usize> {
+    fn grow(&self, r: usize, pass: Pass, fronts: &mut [Front], tiles: &mut [Tiles]) -> Result<(), usize> {
         let (tree, pieces) = (&self.base.tree, &self.base.pieces);
         let Some(region) = tree.regions.get(r).filter(|_| self.base.enters(r, pass)) else {
             return Ok(());
