@@ -66,7 +66,7 @@ impl Bunches {
         let (mut height, mut around) = (vec![0_usize; count], vec![None; count]);
         let mut families: Vec<Vec<u32>> = vec![Vec::new(); count];
         for (r, region) in tree.regions.iter().enumerate() {
-            for child in region.region.children.into_iter().flatten() {
+            for child in region.children.into_iter().flatten() {
                 height[r] = height[r].max(height[child] + 1);
                 around[child] = Some(r as u32);
             }
@@ -82,7 +82,7 @@ impl Bunches {
                 .filter(|(r, f)| height[*r] == h && !f.is_empty())
             {
                 let together = family.len() >= ALIKE_REGIONS;
-                let (own, behind) = (6 * tree.regions[r].region.own.len(), 6 * tree.regions[r].behind.len());
+                let (own, behind) = (6 * tree.regions[r].own.len(), 6 * tree.regions[r].behind.len());
                 let mut sorted = family.clone();
                 sorted.sort_by_key(|&r| rank(r as usize));
                 for family in sorted.chunk_by(|a, b| rank(*a as usize) == rank(*b as usize)) {

@@ -74,8 +74,8 @@ impl Branches {
                 let branch = Branch {
                     rank,
                     root,
-                    blocks: region.region.start..region.region.own.end,
-                    unknowns: unknowns..unknowns + 6 * (region.region.own.end - region.region.start),
+                    blocks: region.start..region.own.end,
+                    unknowns: unknowns..unknowns + 6 * (region.own.end - region.start),
                     sums: sums..sums + 6 * region.behind.len(),
                     crossing: (region.first_node..end).filter(crosses).collect(),
                 };
@@ -209,11 +209,11 @@ fn divided(tree: &CoarseTree, ranks: usize) -> Vec<Vec<usize>> {
             least = longest;
             best = loads.into_iter().map(|load| load.1).collect();
         }
-        let Some(at) = branches.iter().position(|&r| tree.regions[r].region.children.is_some()) else {
+        let Some(at) = branches.iter().position(|&r| tree.regions[r].children.is_some()) else {
             break;
         };
         let cut = branches.remove(at);
-        let children: Vec<usize> = tree.regions[cut].region.children.into_iter().flatten().collect();
+        let children: Vec<usize> = tree.regions[cut].children.into_iter().flatten().collect();
         top += cost(cut) - children.iter().map(|&r| cost(r)).sum::<f64>();
         branches.extend(children);
     }

@@ -253,14 +253,14 @@ impl Piece {
         let group = |nodes: std::ops::Range<usize>| {
             let mut out = Supernodes::new(6);
             for node in &tree.nodes[nodes] {
-                let first = region.region.own.start;
+                let first = region.own.start;
                 let columns = 6 * (node.columns.start - first)..6 * (node.columns.end - first);
                 out.push(columns, node.border.iter().map(|&p| region.local(p)));
             }
             out
         };
         let (steady, changing) = (group(region.steady.clone()), group(region.changing.clone()));
-        let children = || region.region.children.into_iter().flatten().map(|k| &before[k]);
+        let children = || region.children.into_iter().flatten().map(|k| &before[k]);
         let own = tree.nodes[region.changing.clone()].iter();
         Self {
             is_steady: region.changing.is_empty() && children().all(|c| c.is_steady),
@@ -298,7 +298,7 @@ impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
         let Some(region) = tree.regions.get(r).filter(|_| self.base.enters(r, pass)) else {
             return Ok(());
         };
-        if let Some([left, right]) = region.region.children {
+        if let Some([left, right]) = region.children {
             let nodes = tree.regions[right].first_node - region.first_node;
             let own = region.steady.start - region.first_node;
             let (a, b) = fronts[..own].split_at_mut(nodes);

@@ -37,7 +37,7 @@ pub(super) fn shared_tiles(
                 node[start + k - region.first_node]
             };
         }
-        let children = region.region.children.into_iter().flatten();
+        let children = region.children.into_iter().flatten();
         heights[r] = children.map(|c| heights[c] + 1).max().unwrap_or(0);
     }
     let own = |r: usize| tree.regions[r].steady.start..tree.regions[r].changing.end;
@@ -133,7 +133,7 @@ pub(crate) fn share(tree: &mut CoarseTree, graph: &[Vec<u32>], write: &EntryBits
     for r in 0..tree.regions.len() {
         let region = &tree.regions[r];
         // places that do not depend on the order of elimination: later blocks by their numbers
-        let own = region.region.own.clone();
+        let own = region.own.clone();
         let mut at: Vec<u32> = region.behind.clone();
         at.sort_unstable_by_key(|&p| tree.blocks[p as usize]);
         let all = || (own.start as u32..own.end as u32).chain(at.iter().copied());
@@ -170,7 +170,7 @@ pub(crate) fn share(tree: &mut CoarseTree, graph: &[Vec<u32>], write: &EntryBits
 fn follow(tree: &mut CoarseTree, r: usize, equal: usize, ranks: &[u32], all: &[u32]) {
     let other = &tree.regions[equal];
     let nodes = other.steady.start..other.changing.end;
-    let count = other.region.own.len() as u32;
+    let count = other.own.len() as u32;
     let place = |p: &u32| match other.local(*p) {
         k if k < count => k,
         k => ranks[(k - count) as usize],
@@ -194,7 +194,7 @@ fn key(
 ) -> Vec<u64> {
     let at = |p: &u32| u64::from(place[*p as usize]);
     let mut key = vec![region.behind.len() as u64];
-    for child in region.region.children.into_iter().flatten() {
+    for child in region.children.into_iter().flatten() {
         let behind = &tree.regions[child].behind;
         key.extend([first[child] as u64, behind.len() as u64]);
         key.extend(behind.iter().map(at));
@@ -205,7 +205,7 @@ fn key(
         key.extend(node.border.iter().map(at));
         key[start..].sort_unstable();
     }
-    for q in region.region.own.clone() {
+    for q in region.own.clone() {
         let a = tree.blocks[q];
         for &b in graph[a as usize].iter().chain([&a]) {
             let p = tree.place[b as usize];
@@ -234,19 +234,14 @@ mod tests {
         let offset = |a: u32, b: u32| [0, 1, 2].map(|c| (centres[b as usize][c] - centres[a as usize][c]) as i64);
         let shape = |tree: &CoarseTree, r: usize| {
             let region = &tree.regions[r];
-            let first = *tree.blocks[region.region.start..region.region.own.end]
-                .iter()
-                .min()
-                .unwrap();
+            let first = *tree.blocks[region.start..region.own.end].iter().min().unwrap();
             let list = |blocks: &mut dyn Iterator<Item = u32>| {
                 let mut all: Vec<[i64; 3]> = blocks.map(|b| offset(first, b)).collect();
                 all.sort_unstable();
                 all
             };
-            let own = tree.blocks[region.region.own.clone()].iter().copied();
-            let within = tree.blocks[region.region.start..region.region.own.start]
-                .iter()
-                .copied();
+            let own = tree.blocks[region.own.clone()].iter().copied();
+            let within = tree.blocks[region.start..region.own.start].iter().copied();
             let behind = region.behind.iter().map(|&p| tree.blocks[p as usize]);
             [list(&mut { own }), list(&mut { within }), list(&mut { behind })]
         };

@@ -169,7 +169,7 @@ impl SplitBase {
         for bunch in self.bunches.all.iter().filter(|bunch| self.is_here(bunch)) {
             let part = &work[bunch.numbers.clone()];
             for (lane, &r) in bunch.regions.iter().enumerate() {
-                let blocks = &self.tree.blocks[self.tree.regions[r as usize].region.own.clone()];
+                let blocks = &self.tree.blocks[self.tree.regions[r as usize].own.clone()];
                 for (i, &block) in blocks.iter().enumerate() {
                     for c in 0..6 {
                         y[6 * block as usize + c] = part[(6 * i + c) * bunch.width + lane];
@@ -184,7 +184,7 @@ impl SplitBase {
     fn gather(&self, bunch: &Bunch, y: &[f64], part: &mut [f64]) {
         part[..bunch.rows() * bunch.width].fill(0.0);
         for (lane, &r) in bunch.regions.iter().enumerate() {
-            let blocks = &self.tree.blocks[self.tree.regions[r as usize].region.own.clone()];
+            let blocks = &self.tree.blocks[self.tree.regions[r as usize].own.clone()];
             for (i, &block) in blocks.iter().enumerate() {
                 for c in 0..6 {
                     part[(6 * i + c) * bunch.width + lane] = y[6 * block as usize + c];
@@ -197,7 +197,7 @@ impl SplitBase {
     fn take_sums(&self, bunch: &Bunch, below: &[f64], part: &mut [f64]) {
         let bunches = &self.bunches;
         for (lane, &r) in bunch.regions.iter().enumerate() {
-            for child in self.tree.regions[r as usize].region.children.into_iter().flatten() {
+            for child in self.tree.regions[r as usize].children.into_iter().flatten() {
                 let [k, column] = bunches.of[child];
                 let other = &bunches.all[k as usize];
                 let from = &below[other.numbers.start..];

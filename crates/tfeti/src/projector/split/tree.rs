@@ -40,7 +40,12 @@ pub(crate) struct Node {
 /// A region with its nodes. *Places* of a region count its own blocks, then the blocks behind it.
 #[derive(Debug)]
 pub(crate) struct TreeRegion {
-    pub(crate) region: Region,
+    /// Position of the first block of the first region within.
+    pub(crate) start: usize,
+    /// Own blocks.
+    pub(crate) own: Range<usize>,
+    /// The regions on both sides of the cut.
+    pub(crate) children: Option<[usize; 2]>,
     /// First of the regions within, or itself.
     pub(crate) first_region: usize,
     /// First node of the regions within, or its own.
@@ -66,7 +71,7 @@ fn place_among(own: &Range<usize>, later: &[u32], position: u32) -> u32 {
 impl TreeRegion {
     /// Place of a position.
     pub(crate) fn local(&self, position: u32) -> u32 {
-        place_among(&self.region.own, &self.behind, position)
+        place_among(&self.own, &self.behind, position)
     }
 }
 
@@ -188,7 +193,7 @@ impl CoarseTree {
         };
         let sum = |nodes: Range<usize>| self.nodes_cost(nodes);
         let own = root.steady.start..root.changing.end;
-        let middle = (root.region.children).map_or(0, |[_, right]| self.regions[right].first_node);
+        let middle = (root.children).map_or(0, |[_, right]| self.regions[right].first_node);
         sum(own.clone()) + sum(0..middle).max(sum(middle..own.start))
     }
 
@@ -228,14 +233,14 @@ impl CoarseTree {
 
     /// Takes over the places of what is behind the regions within from an `equal` region.
     pub(crate) fn copy_children(&mut self, r: usize, equal: usize) {
-        let children = |r: usize| self.regions[r].region.children.into_iter().flatten();
+        let children = |r: usize| self.regions[r].children.into_iter().flatten();
         for (child, other) in children(r).zip(children(equal)).collect::<Vec<_>>() {
             self.regions[child].lift = self.regions[other].lift.clone();
         }
     }
 
     fn lift_children(&mut self, r: usize) {
-        for child in self.regions[r].region.children.into_iter().flatten() {
+        for child in self.regions[r].children.into_iter().flatten() {
             let region = &self.regions[r];
             self.regions[child].lift = self.regions[child].behind.iter().map(|&p| region.local(p)).collect();
         }
@@ -288,7 +293,9 @@ impl CoarseTree {
             changing: end..end,
             behind,
             lift: Vec::new(),
-            region,
+            start: region.start,
+            own: region.own,
+            children: region.children,
         };
         self.regions.push(region);
         self.lift_children(self.regions.len() - 1);
@@ -407,7 +414,7 @@ mod tests {
         assert_eq!(next, graph.len());
         for region in &tree.regions {
             let nodes = &tree.nodes[region.steady.start..region.changing.end];
-            let own = region.region.own.len();
+            let own = region.own.len();
             for &p in nodes.iter().flat_map(|n| &n.border) {
                 let local = region.local(p) as usize;
                 assert!(local < own || region.behind[local - own] == p);
