@@ -37,20 +37,13 @@ pub(crate) struct Panel {
     pub(crate) nodal: Range<usize>,
 }
 
-/// Consecutive panels that share one work memory.
-#[derive(Debug, Clone)]
-pub(crate) struct Lane {
-    pub(crate) panels: Range<usize>,
-    pub(super) copy: usize,
-}
-
 /// The tables.
 #[derive(Debug, Default)]
 pub(crate) struct BoundaryMap {
     pub(crate) classes: Vec<BoundaryClass>,
     pub(crate) panels: Vec<Panel>,
-    /// Panels of this rank, in lanes.
-    pub(crate) lanes: Vec<Lane>,
+    /// Panels of this rank, in lanes: consecutive ones share a work memory.
+    pub(super) lanes: Vec<Range<usize>>,
     pub(super) exchange: Arc<Exchange>,
     /// Parts of boundary vectors that the ranks set.
     pub(super) parts: Vec<Range<usize>>,
@@ -102,7 +95,7 @@ impl BoundaryMap {
     /// Panels of this rank.
     pub(crate) fn own_panels(&self) -> &[Panel] {
         match (self.lanes.first(), self.lanes.last()) {
-            (Some(first), Some(last)) => &self.panels[first.panels.start..last.panels.end],
+            (Some(first), Some(last)) => &self.panels[first.start..last.end],
             _ => &[],
         }
     }
@@ -262,9 +255,9 @@ impl BoundaryMap {
     /// Work memory of [`by_panels`](Self::by_panels); `more` tells how many numbers a panel needs besides those on the
     /// boundary, and what memory of solves.
     pub(crate) fn scratch(&self, more: impl Fn(&Panel) -> Option<(usize, MemoryNeed)>) -> PanelScratch {
-        let lane = |lane: &Lane| {
+        let lane = |panels: &Range<usize>| {
             let (mut gathered, mut full, mut need) = (0, 0, None);
-            for panel in &self.panels[lane.panels.clone()] {
+            for panel in &self.panels[panels.clone()] {
                 gathered = gathered.max(3 * panel.copies.len());
                 if let Some((numbers, own)) = more(panel) {
                     full = full.max(numbers);
@@ -294,9 +287,9 @@ impl BoundaryMap {
         s: &mut PanelScratch,
         work: &PanelWork<'_>,
     ) {
-        let task = |lane: &Lane, s: &mut LaneScratch, part: &mut [f64]| {
+        let task = |panels: &Range<usize>, s: &mut LaneScratch, part: &mut [f64]| {
             let mut rest = part;
-            for panel in &self.panels[lane.panels.clone()] {
+            for panel in &self.panels[panels.clone()] {
                 let (out, tail) = std::mem::take(&mut rest).split_at_mut(3 * panel.copies.len());
                 rest = tail;
                 let gathered = &mut s.gathered[..out.len()];
@@ -304,7 +297,7 @@ impl BoundaryMap {
                 work(panel, gathered, out, &mut s.full, s.memory.as_mut());
             }
         };
-        let offset = |lane: &Lane| 3 * lane.copy;
+        let offset = |panels: &Range<usize>| 3 * self.panels[panels.start].copies.start;
         let own = self.parts[self.exchange.rank()].clone();
         over_lanes(
             &self.lanes,

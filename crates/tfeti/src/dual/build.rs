@@ -1,6 +1,6 @@
 //! Building the gather tables.
 
-use super::boundary::{BoundaryClass, BoundaryMap, Lane, Panel, shares};
+use super::boundary::{BoundaryClass, BoundaryMap, Panel, shares};
 use super::cut::{Cut, CutBuilder, Place};
 use super::part::RowPart;
 use crate::rows::gluing::Gluing;
@@ -106,11 +106,7 @@ impl BoundaryMap {
             }
             self.parts.push(3 * first.1..3 * self.copies);
             if rank == ownership.exchange.rank() {
-                let panels = &self.panels;
-                let lane = |own: Range<usize>| Lane {
-                    copy: panels[first.0 + own.start].copies.start,
-                    panels: first.0 + own.start..first.0 + own.end,
-                };
+                let lane = |own: Range<usize>| first.0 + own.start..first.0 + own.end;
                 self.lanes = shares(&work, 1, work.len()).into_iter().map(lane).collect();
             }
         }

@@ -29,7 +29,8 @@ pub(crate) struct GlobTables {
     node_arms: Vec<NodeArms>,
     /// For each run one for each side.
     coefficients: Vec<f64>,
-    tasks: Vec<Task>,
+    /// Consecutive globs with about equal work.
+    tasks: Vec<Range<usize>>,
     /// Sides of each subdomain.
     sides: Lists<u32>,
 }
@@ -45,14 +46,6 @@ struct Piece {
     arms: u32,
     node_arms: u32,
     coefficients: u32,
-}
-
-/// Consecutive globs.
-#[derive(Debug)]
-struct Task {
-    globs: Range<usize>,
-    block: usize,
-    side: usize,
 }
 
 impl GlobTables {
@@ -108,12 +101,7 @@ impl GlobTables {
         }
         let work = |p: &Piece| u64::from(p.runs * (p.nodes + 4 * p.count) + 8);
         let work: Vec<u64> = out.globs.iter().map(work).collect();
-        let task = |globs: Range<usize>| Task {
-            block: out.globs[globs.start].blocks as usize,
-            side: out.globs[globs.start].side as usize,
-            globs,
-        };
-        out.tasks = shares(&work, GLOB_TASK, PARTS).into_iter().map(task).collect();
+        out.tasks = shares(&work, GLOB_TASK, PARTS);
         out.sides = Lists::by_key(subdomains, &out.subdomains);
         out
     }
@@ -160,11 +148,11 @@ impl GlobTables {
 
     /// Wrenches of the interface rows `x` on each side, about the mean of its nodes.
     pub(crate) fn wrenches(&self, x: &[f64], out: &mut [Wrench], parallel: bool) {
-        let offset = |task: &Task| task.side;
+        let offset = |task: &Range<usize>| self.globs[task.start].side as usize;
         over_tasks(&self.tasks, out, &offset, parallel, &|task, out| {
             Arch::new().dispatch(Wrenches {
                 tables: self,
-                task,
+                globs: &self.globs[task.clone()],
                 x,
                 out,
             });
@@ -179,11 +167,11 @@ impl GlobTables {
         parallel: bool,
         each: &(impl Fn(&mut f64, f64) + Sync),
     ) {
-        let offset = |task: &Task| 3 * task.block;
+        let offset = |task: &Range<usize>| 3 * self.globs[task.start].blocks as usize;
         over_tasks(&self.tasks, x, &offset, parallel, &|task, x| {
             Arch::new().dispatch(Motions {
                 tables: self,
-                task,
+                globs: &self.globs[task.clone()],
                 motions,
                 x,
                 each,
@@ -219,10 +207,10 @@ struct NodeArms {
 /// Force and moment, each with one unused number.
 pub(crate) type Wrench = [[f64; 4]; 2];
 
-/// The arguments of [`GlobTables::wrenches`] for one task, for the dispatcher to vector instructions.
+/// The arguments of [`GlobTables::wrenches`] for some globs, for the dispatcher to vector instructions.
 struct Wrenches<'a> {
     tables: &'a GlobTables,
-    task: &'a Task,
+    globs: &'a [Piece],
     x: &'a [f64],
     out: &'a mut [Wrench],
 }
@@ -234,7 +222,7 @@ impl WithSimd for Wrenches<'_> {
     fn with_simd<S: Simd>(self, _: S) {
         let tables = self.tables;
         let mut rest = self.out;
-        for piece in &tables.globs[self.task.globs.clone()] {
+        for piece in self.globs {
             let count = piece.count as usize;
             let (out, tail) = std::mem::take(&mut rest).split_at_mut(count);
             rest = tail;
@@ -292,10 +280,10 @@ fn add_node([force, first, second]: [[f64; 4]; 3], x: &[f64], arms: &NodeArms) -
     ]
 }
 
-/// The arguments of [`GlobTables::motions`] for one task.
+/// The arguments of [`GlobTables::motions`] likewise.
 struct Motions<'a, F> {
     tables: &'a GlobTables,
-    task: &'a Task,
+    globs: &'a [Piece],
     motions: &'a [[f64; 6]],
     x: &'a mut [f64],
     each: &'a F,
@@ -309,7 +297,7 @@ impl<F: Fn(&mut f64, f64)> WithSimd for Motions<'_, F> {
         let (tables, motions) = (self.tables, self.motions);
         let mut rest = self.x;
         let mut kept = [[0.0; 6]; KEPT];
-        for piece in &tables.globs[self.task.globs.clone()] {
+        for piece in self.globs {
             let count = piece.count as usize;
             let sides = piece.side as usize..piece.side as usize + count;
             let (owners, levers) = (&tables.subdomains[sides.clone()], &tables.levers[sides]);
