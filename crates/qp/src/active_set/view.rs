@@ -48,9 +48,7 @@ impl<'a> ActiveSetView<'a> {
             }
         });
     }
-}
 
-impl ActiveSetView<'_> {
     /// Hands each component to `f` that the method adds something to the diagonal of `A` at, and this: the curvature of
     /// circles on which points slide, and springs on a path.
     pub fn for_each_added(&self, mut f: impl FnMut(usize, f64)) {
