@@ -6,7 +6,7 @@ use crate::coarse::products::{RigidTables, Wrench};
 use crate::coarse::weights::RowWeights;
 use crate::dual::boundary::BoundaryMap;
 use crate::error::TfetiError;
-use crate::linalg::sparse::{SolveMemory, Symbolic};
+use crate::linalg::sparse::{MemoryNeed, SolveMemory, Symbolic};
 use crate::linalg::tiles::Digits;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::matrices::Subdomains;
@@ -149,7 +149,7 @@ impl Coarse {
             first: vec![0.0; rows],
             second: vec![0.0; rows],
             dual: vec![0.0; self.dim()],
-            memory: SolveMemory::none(),
+            memory: SolveMemory::new(MemoryNeed::NONE),
             digits: Digits::Double,
             split: Vec::new(),
             pairs: Vec::with_capacity(self.0.gluing.ranges().discs.len() / 2),

@@ -79,12 +79,11 @@ pub struct PanelScratch {
 struct LaneScratch {
     gathered: Vec<f64>,
     full: Vec<f64>,
-    memory: Option<SolveMemory>,
+    memory: SolveMemory,
 }
 
 /// What a product does to a panel.
-pub(crate) type PanelWork<'a> =
-    dyn Fn(&Panel, &mut [f64], &mut [f64], &mut [f64], Option<&mut SolveMemory>) + Sync + 'a;
+pub(crate) type PanelWork<'a> = dyn Fn(&Panel, &mut [f64], &mut [f64], &mut [f64], &mut SolveMemory) + Sync + 'a;
 
 impl BoundaryMap {
     /// Length of dual vectors.
@@ -254,20 +253,19 @@ impl BoundaryMap {
 
     /// Work memory of [`by_panels`](Self::by_panels); `more` tells how many numbers a panel needs besides those on the
     /// boundary, and what memory of solves.
-    pub(crate) fn scratch(&self, more: impl Fn(&Panel) -> Option<(usize, MemoryNeed)>) -> PanelScratch {
+    pub(crate) fn scratch(&self, more: impl Fn(&Panel) -> (usize, MemoryNeed)) -> PanelScratch {
         let lane = |panels: &Range<usize>| {
-            let (mut gathered, mut full, mut need) = (0, 0, None);
+            let (mut gathered, mut full, mut need) = (0, 0, MemoryNeed::NONE);
             for panel in &self.panels[panels.clone()] {
                 gathered = gathered.max(3 * panel.copies.len());
-                if let Some((numbers, own)) = more(panel) {
-                    full = full.max(numbers);
-                    need = Some(need.map_or(own, |n: MemoryNeed| n.or(own)));
-                }
+                let (numbers, own) = more(panel);
+                full = full.max(numbers);
+                need = need.or(own);
             }
             LaneScratch {
                 gathered: vec![0.0; gathered],
                 full: vec![0.0; full],
-                memory: need.map(SolveMemory::new),
+                memory: SolveMemory::new(need),
             }
         };
         PanelScratch {
@@ -294,7 +292,7 @@ impl BoundaryMap {
                 rest = tail;
                 let gathered = &mut s.gathered[..out.len()];
                 self.spread(x, panel, gathered);
-                work(panel, gathered, out, &mut s.full, s.memory.as_mut());
+                work(panel, gathered, out, &mut s.full, &mut s.memory);
             }
         };
         let offset = |panels: &Range<usize>| 3 * self.panels[panels.start].copies.start;

@@ -4,6 +4,7 @@ use crate::dual::boundary::{BoundaryMap, Panel, PanelScratch};
 use crate::dual::inverses::ClassInverse;
 use crate::dual::part::RowPart;
 use crate::linalg::dense;
+use crate::linalg::sparse::MemoryNeed;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::inverse::Inverse;
 use crate::subdomain::matrices::Subdomains;
@@ -102,11 +103,14 @@ impl SymmetricOperator for DualOperator {
     }
 
     fn scratch(&self) -> PanelScratch {
-        self.map.scratch(|panel| {
-            let (inverse, columns) = (self.inverses[panel.class].as_ref()?, panel.columns.len());
-            let dim = self.subdomains.bases[panel.class].diagonal.len();
-            let full = if inverse.full.is_packed() { 0 } else { dim * columns };
-            inverse.boundary.is_none().then(|| (full, inverse.full.need(columns)))
+        self.map.scratch(|panel| match &self.inverses[panel.class] {
+            Some(ClassInverse { full, boundary: None }) => {
+                let columns = panel.columns.len();
+                let dim = self.subdomains.bases[panel.class].diagonal.len();
+                let numbers = if full.is_packed() { 0 } else { dim * columns };
+                (numbers, full.need(columns))
+            }
+            _ => (0, MemoryNeed::NONE),
         })
     }
 
@@ -119,19 +123,18 @@ impl SymmetricOperator for DualOperator {
                     return y.fill(0.0);
                 };
                 if let Some(matrix) = &inverse.boundary {
-                    multiply_members(y, x, matrix, columns, x.len() / columns);
-                } else if let Some(memory) = memory {
-                    let base = &self.subdomains.bases[class];
-                    let (nodes, dim) = (&self.map.classes[class].nodes, base.diagonal.len());
-                    if let Inverse::Packed(factor) = &inverse.full {
-                        return factor.product(&base.kernel, nodes, x, y, &mut memory.numbers);
-                    }
-                    let full = &mut full[..dim * columns];
-                    full.fill(0.0);
-                    for_places(nodes, dim, columns, |own, at| full[at] = x[own]);
-                    inverse.full.apply(&base.kernel, full, columns, memory);
-                    for_places(nodes, dim, columns, |own, at| y[own] = full[at]);
+                    return multiply_members(y, x, matrix, columns, x.len() / columns);
                 }
+                let base = &self.subdomains.bases[class];
+                let (nodes, dim) = (&self.map.classes[class].nodes, base.diagonal.len());
+                if let Inverse::Packed(factor) = &inverse.full {
+                    return factor.product(&base.kernel, nodes, x, y, &mut memory.numbers);
+                }
+                let full = &mut full[..dim * columns];
+                full.fill(0.0);
+                for_places(nodes, dim, columns, |own, at| full[at] = x[own]);
+                inverse.full.apply(&base.kernel, full, columns, memory);
+                for_places(nodes, dim, columns, |own, at| y[own] = full[at]);
             });
         self.gluing.add_compliance(x, y);
     }

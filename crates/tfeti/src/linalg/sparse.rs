@@ -235,12 +235,14 @@ pub(crate) struct MemoryNeed {
 }
 
 impl MemoryNeed {
+    pub(crate) const NONE: Self = Self {
+        memory: StackReq::EMPTY,
+        numbers: 0,
+    };
+
     /// Memory of a packed factor.
     pub(crate) fn numbers(numbers: usize) -> Self {
-        Self {
-            memory: StackReq::EMPTY,
-            numbers,
-        }
+        Self { numbers, ..Self::NONE }
     }
 
     /// Memory that serves both.
@@ -258,11 +260,6 @@ impl SolveMemory {
             memory: MemBuffer::new(need.memory),
             numbers: vec![0.0; need.numbers],
         }
-    }
-
-    /// None yet.
-    pub(crate) fn none() -> Self {
-        Self::new(MemoryNeed::numbers(0))
     }
 
     /// This memory, made anew if it is too small.

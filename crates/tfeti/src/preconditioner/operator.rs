@@ -166,9 +166,10 @@ impl SymmetricOperator for DualPreconditioner {
     }
 
     fn scratch(&self) -> DualPreconditionerScratch {
-        let panels = self
-            .map
-            .scratch(|panel| self.classes[panel.class].as_ref()?.need(panel.columns.len()));
+        let panels = self.map.scratch(|panel| match &self.classes[panel.class] {
+            Some(class) => class.need(panel.columns.len()),
+            None => (0, MemoryNeed::NONE),
+        });
         let dual = if self.scaling.is_some() { self.dim() } else { 0 };
         DualPreconditionerScratch {
             panels,
@@ -284,10 +285,10 @@ impl BoundaryStiffness {
     }
 
     /// Numbers and memory of solves that products with so many members need.
-    fn need(&self, members: usize) -> Option<(usize, MemoryNeed)> {
+    fn need(&self, members: usize) -> (usize, MemoryNeed) {
         match self {
-            Self::Schur { factor, .. } => Some((factor.dim() * members, factor.need(members))),
-            _ => None,
+            Self::Schur { factor, .. } => (factor.dim() * members, factor.need(members)),
+            _ => (0, MemoryNeed::NONE),
         }
     }
 
@@ -295,15 +296,14 @@ impl BoundaryStiffness {
     fn dense(&self) -> Vec<f64> {
         let dim = self.dim();
         let (mut out, mut x, mut y) = (vec![0.0; dim * dim], vec![0.0; dim * PANEL], vec![0.0; dim * PANEL]);
-        let (interior, need) = self.need(PANEL).unzip();
-        let mut interior = vec![0.0; interior.unwrap_or(0)];
-        let mut memory = need.map(SolveMemory::new);
+        let (interior, need) = self.need(PANEL);
+        let (mut interior, mut memory) = (vec![0.0; interior], SolveMemory::new(need));
         for start in (0..dim).step_by(PANEL) {
             let columns = PANEL.min(dim - start);
             let (x, y) = (&mut x[..dim * columns], &mut y[..dim * columns]);
             x.fill(0.0);
             (0..columns).for_each(|j| x[(start + j) * columns + j] = 1.0);
-            self.apply(x, y, columns, None, (&mut interior, memory.as_mut()));
+            self.apply(x, y, columns, None, (&mut interior, &mut memory));
             for (i, row) in y.chunks_exact(columns).enumerate() {
                 row.iter()
                     .enumerate()
@@ -321,7 +321,7 @@ impl BoundaryStiffness {
         y: &mut [f64],
         members: usize,
         other: Option<&SparseCholesky>,
-        (interior, memory): (&mut [f64], Option<&mut SolveMemory>),
+        (interior, memory): (&mut [f64], &mut SolveMemory),
     ) {
         match self {
             Self::Dense(values) => multiply_members(y, x, values, members, y.len() / members),
@@ -343,9 +343,7 @@ impl BoundaryStiffness {
                         x.iter().enumerate().for_each(|(m, x)| interior[m * dim + i] += v * x);
                     }
                 }
-                if let Some(memory) = memory {
-                    factor.solve(interior, members, memory);
-                }
+                factor.solve(interior, members, memory);
                 for (j, y) in y.chunks_exact_mut(members).enumerate() {
                     let (rows, values) = coupling.column(j);
                     for (&i, v) in rows.iter().zip(values) {
