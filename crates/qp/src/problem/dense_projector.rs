@@ -136,11 +136,7 @@ impl EqualityProjector for DenseProjector {
     fn compensate(&mut self, from: &[f64], change: &[f64], to: &mut [f64]) {
         to.copy_from_slice(from);
         to.iter_mut().zip(change).for_each(|(t, c)| *t += c);
-        self.subtract(true, to, |own, _, defect| {
-            for (i, s) in defect.iter_mut().enumerate() {
-                *s = own.row(i).iter().zip(change).map(|(g, c)| g * c).sum();
-            }
-        });
+        self.subtract(true, to, |own, _, defect| own.times(change, false, defect));
     }
 
     fn repair(&mut self, x: &mut [f64], e: &[f64]) {
