@@ -112,7 +112,7 @@ impl Clusters {
             let right = product(block, &self.maps[b as usize]);
             product(&transposed(&self.maps[a as usize]), &right)
         };
-        fine.joined(values, self.count(), |s| Some(self.of[s as usize]), block)
+        fine.joined(values, self.count(), &self.of, block)
     }
 }
 

@@ -7,7 +7,7 @@ use crate::rows::gluing::{BlockEntry, Gluing};
 use crate::subdomain::kernel::{Block, Kernel, transposed};
 use crate::subdomain::matrices::{ClassBase, Subdomains};
 use rayon::prelude::*;
-use signorini_fem_mesh::internal::Lists;
+use signorini_fem_mesh::internal::{Lists, distinct};
 
 /// Pattern of the coarse matrix and the part that the interface rows contribute with weight one.
 #[derive(Debug)]
@@ -156,35 +156,29 @@ impl CoarseMatrix {
         }
     }
 
-    /// A matrix of `count` parts to which the subdomains belong, or of which they are none, with the sums of what
-    /// `block` makes of the blocks of a matrix with these values.
+    /// A matrix of `count` parts to which the subdomains belong, with the sums of what `block` makes of the blocks of a
+    /// matrix with these values.
     pub(crate) fn joined(
         &self,
         values: &[f64],
         count: usize,
-        part: impl Fn(u32) -> Option<u32>,
+        parts: &[u32],
         block: impl Fn(u32, u32, &Block) -> Block,
     ) -> (Self, Vec<f64>) {
         let mut lower: Vec<Vec<u32>> = (0..count as u32).map(|c| vec![c]).collect();
         self.for_blocks(values, |a, b, _| {
-            if let (Some(a), Some(b)) = (part(a), part(b)) {
-                lower[a.min(b) as usize].push(a.max(b));
-            }
-        });
-        lower.iter_mut().for_each(|list| {
-            list.sort_unstable();
-            list.dedup();
+            let [a, b] = [a, b].map(|s| parts[s as usize]);
+            lower[a.min(b) as usize].push(a.max(b));
         });
         let columns = lower.into_iter().map(|list| {
+            let list = distinct(list);
             let values = vec![0.0; 36 * list.len()];
             (list, values)
         });
         let matrix = Self::of_columns(columns);
         let mut sums = vec![0.0; matrix.pattern().values.len()];
         self.for_blocks(values, |a, b, own| {
-            let (Some(p), Some(q)) = (part(a), part(b)) else {
-                return;
-            };
+            let [p, q] = [a, b].map(|s| parts[s as usize]);
             let own = block(a, b, own);
             matrix.add_block(p, q, &own, &mut sums);
             if p == q && a != b {
