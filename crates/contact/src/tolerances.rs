@@ -259,6 +259,12 @@ pub(crate) const STIFF_MEANS: f64 = 1.0;
 /// direction move it twice.
 pub(crate) const SHARED_ROWS: f64 = 0.5;
 
+/// Differences of gaps around a node, over the root of its area, up to which sides are flush there.
+pub(crate) const FLUSH: f64 = 1e-6;
+
+/// Part of the largest displacement from which on an overlap at nodes that contacts hand on is told.
+pub(crate) const EDGE_OVERLAP: f64 = 0.01;
+
 /// What a release would change, over the error of a solved active set, from which on it is worth it.
 pub(crate) const CONTRADICTION: f64 = 10.0;
 

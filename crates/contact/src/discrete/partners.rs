@@ -7,9 +7,9 @@
 
 use super::normals::{differ, fixed_frame};
 use crate::error::ContactError;
-use crate::mortar::{MortarNode, handed_on, mortar_nodes};
+use crate::mortar::{MortarNode, mortar_nodes};
 use crate::scene::{Contact, Gap, Scene};
-use crate::tolerances::{BESIDE, COARSER, FACING, HARDER, LOCKING, MOST_TILT, OVERLAP, TILT};
+use crate::tolerances::{BESIDE, COARSER, FACING, FLUSH, HARDER, LOCKING, MOST_TILT, OVERLAP, TILT};
 use rayon::prelude::*;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
@@ -90,15 +90,26 @@ impl Paired {
             });
         }
         let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
-        let matching = nodes(mesh, index, contact, &paired.surface, fixed.as_ref(), &other, rounding)?;
-        if let Some(nodes) = matching.filter(|_| handed_on(&paired.surface, crossing).is_empty()) {
+        if let Some(nodes) = nodes(mesh, index, contact, &paired.surface, fixed.as_ref(), &other, rounding)? {
             paired.partners = Partners::Nodes(nodes);
             return Ok(paired);
         }
         let facet = |s: &Surface| s.total_area() / s.triangles().len() as f64;
         let [own, others] = [facet(&paired.surface), facet(&other.surface)];
-        let seen =
-            |from: &Surface, to: &Surface| mortar_nodes(mesh, from, to, (contact.tied, contact.crease), crossing);
+        let seen = |from: &Surface, to: &Surface| {
+            let of = |crossing: &HashSet<u32>| mortar_nodes(mesh, from, to, (contact.tied, contact.crease), crossing);
+            let all = of(&HashSet::new());
+            let mut flush = crossing.clone();
+            flush.retain(|node| is_flush(mesh, contact, from, &all, *node));
+            if flush.is_empty() {
+                return all;
+            }
+            let nodes = from.nodes().iter().zip(all).zip(of(&flush));
+            let keeps = |((node, own), kept): ((&u32, Option<MortarNode>), Option<MortarNode>)| {
+                kept.or_else(|| own.filter(|_| flush.contains(node)).map(MortarNode::handed_on))
+            };
+            nodes.map(keeps).collect()
+        };
         let there = || seen(&paired.surface, &other.surface);
         let back = || seen(&other.surface, &paired.surface);
         let is_curved = |s: &Surface| differ(s.frames().iter().map(|f| f.normal));
@@ -147,14 +158,43 @@ pub(super) fn crossing(scene: &Scene, index: usize) -> HashSet<u32> {
     if own.tied || own.partner.is_empty() || scene.mesh.order() == 2 {
         return HashSet::new();
     }
+    let times = scene.analysis.times();
     let crosses = |(other, contact): &(usize, &Contact)| {
         let keeps = contact.partner.is_empty() && *other != index || *other < index;
         let rough = own.friction().is_some() || contact.friction().is_some();
-        keeps && rough && !contact.tied
+        let meet = || times.iter().any(|t| own.span.has(*t) && contact.span.has(*t));
+        keeps && rough && !contact.tied && meet()
     };
     let others = scene.contacts.iter().enumerate().filter(crosses);
     let tags = others.flat_map(|(_, contact)| contact.tags.iter().chain(&contact.partner));
     tags.flat_map(|tag| scene.mesh.nodes_on(*tag)).collect()
+}
+
+/// Whether a gap is the same at a node and around it: where sides open from an edge on, that edge alone may touch.
+fn is_flush(mesh: &TetMesh, contact: &Contact, surface: &Surface, seen: &[Option<MortarNode>], node: u32) -> bool {
+    let Some(own) = surface.local(node) else {
+        return false;
+    };
+    let gap = |local: usize| {
+        let seen = seen[local].as_ref()?;
+        let along =
+            |&(node, weight): &(u32, f64)| weight * vector::dot(&mesh.points()[node as usize], &seen.frame.normal);
+        let mean = |nodes: &[(u32, f64)]| nodes.iter().map(along).sum::<f64>();
+        Some(mean(&seen.partner) - mean(&seen.own))
+    };
+    let within = FLUSH * surface.areas()[own].sqrt();
+    let mut around = surface
+        .triangles()
+        .iter()
+        .filter(|triangle| triangle.contains(&(own as u32)));
+    match contact.gap {
+        Gap::None | Gap::Constant(_) => true,
+        Gap::Measured => around.all(|triangle| {
+            let mut gaps = triangle.iter().map(|local| gap(*local as usize));
+            gaps.all(|other| other.zip(gap(own)).is_some_and(|(a, b)| (a - b).abs() <= within))
+        }),
+        Gap::Field(_) | Gap::Obstacle => false,
+    }
 }
 
 /// Whether a side goes on where the other one ends.

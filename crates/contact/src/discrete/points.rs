@@ -128,7 +128,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                     Some(Side::node(partners[local].node))
                 }
                 Partners::Mortar(nodes) => {
-                    let Some(seen) = &nodes[local] else {
+                    let Some(seen) = nodes[local].as_ref().filter(|seen| !seen.is_handed_on) else {
                         continue;
                     };
                     (one[0].frame, one[0].area) = (seen.frame, seen.area);
@@ -183,6 +183,35 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
         out.extend(mids.map(|mid| tied_mid(scene, (index, surface), fixed, &mid)));
     }
     Ok(out)
+}
+
+/// A node without a condition because another contact has one, and what it faces.
+#[derive(Debug)]
+pub(crate) struct HandedOn {
+    /// Position of its contact in the scene.
+    pub(crate) contact: usize,
+    pub(crate) node: u32,
+    pub(crate) partner: Side,
+    pub(crate) normal: [f64; 3],
+}
+
+/// Those of all contacts.
+pub(super) fn handed_on(paired: &[Paired]) -> Vec<HandedOn> {
+    let mut out = Vec::new();
+    for (contact, paired) in paired.iter().enumerate() {
+        let Partners::Mortar(nodes) = &paired.partners else {
+            continue;
+        };
+        let nodes = paired.surface.nodes().iter().zip(nodes);
+        let own = nodes.filter_map(|(node, seen)| Some((*node, seen.as_ref().filter(|s| s.is_handed_on)?)));
+        out.extend(own.map(|(node, seen)| HandedOn {
+            contact,
+            node,
+            partner: Side::new(seen.partner.clone()),
+            normal: paired.fixed.unwrap_or(seen.frame).normal,
+        }));
+    }
+    out
 }
 
 /// The tie of a mid-node. Normal and area are those of the ends of its edge, in the mean.

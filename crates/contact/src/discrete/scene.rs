@@ -6,7 +6,7 @@ use super::faceted::{FacetedOverlaps, close_faceted};
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
 use super::partners::{Paired, crossing};
 use super::penetration::check_penetration;
-use super::points::{ContactPoint, conditions, of_contact, points};
+use super::points::{ContactPoint, HandedOn, conditions, handed_on, of_contact, points};
 use super::springs::Springs;
 use super::supports::Supports;
 use super::turn::check_turn;
@@ -49,6 +49,8 @@ pub(crate) struct DiscreteScene {
     pub(crate) rounding: f64,
     /// Contacts whose meshes do not match, and whether the other side than the scene names first has the points.
     pub(crate) apart: Vec<(usize, bool)>,
+    /// Nodes of theirs that other contacts cross.
+    pub(crate) handed_on: Vec<HandedOn>,
     /// Their overlaps about as deep as facets are beside their curve.
     pub(crate) faceted: FacetedOverlaps,
     /// How long it took to find the sides of the contacts.
@@ -90,6 +92,7 @@ impl DiscreteScene {
             conditions.retain(|c| c.sides.partner.is_none() || !bonded.contains(&c.node()));
         }
         let faceted = close_faceted(scene, &paired, &mut conditions, rounding)?;
+        let handed_on = handed_on(&paired);
         let surfaces: Vec<Surface> = paired.into_iter().map(|p| p.surface).collect();
         let times = scene.analysis.times();
         let poses: Vec<Vec<Pose>> = scene.contacts.iter().map(|c| c.poses(times)).collect();
@@ -127,6 +130,7 @@ impl DiscreteScene {
             equations,
             equation_rows,
             surfaces,
+            handed_on,
             conditions,
             points,
             stands,

@@ -4,41 +4,17 @@
 //! Both sides of a tie may touch, and stick; so may a node in an edge between two contacts. The solver lets ties,
 //! supports and gaps err by its tolerance, and so would the positions at which friction sticks: in the next step no
 //! displacement would be in all of them, and friction would work against the rest. So what they are off is taken out: of
-//! ties by the smallest change in a norm weighted by stiffness, of [`Dependency`]s by the smallest change of the
+//! ties by the smallest change in a norm weighted by stiffness, of rows that depend on one another by the smallest change of the
 //! positions themselves.
 
+use super::dependent::Agreement;
 use super::duality_gap::{Caches, Weights};
 use super::shared::ties_meet_points;
 use crate::model::Model;
 use crate::result::{ContactState, Recovered};
 use crate::step::entry_or_zero;
-use crate::tolerances::NULL_RANK;
-use nalgebra::{DMatrix, DVector};
-use signorini_tfeti::internal::Dependency;
+use nalgebra::DVector;
 use std::borrow::Cow;
-use std::ops::Range;
-
-/// A dependency with rows along surfaces.
-#[derive(Debug)]
-pub(super) struct Agreement {
-    rows: Vec<usize>,
-    /// Its vectors, one a row.
-    null: DMatrix<f64>,
-    /// Changes of the rows along surfaces, zero of others, by what the vectors find.
-    change: DMatrix<f64>,
-}
-
-impl Agreement {
-    /// `None` where nothing that depends on others is along a surface.
-    fn new(along: &Range<usize>, dependency: &Dependency) -> Option<Self> {
-        let (rows, vectors) = (dependency.rows.clone(), &dependency.vectors);
-        let null = DMatrix::from_fn(vectors.len(), rows.len(), |i, k| vectors[i][k]);
-        let own = |i, k| if along.contains(&rows[k]) { null[(i, k)] } else { 0.0 };
-        let own = DMatrix::from_fn(null.nrows(), null.ncols(), own);
-        let change = own.pseudo_inverse(NULL_RANK).ok()?;
-        (change.amax() > 0.0).then_some(Self { rows, null, change })
-    }
-}
 
 impl Caches {
     /// From what all rows measure, and their offsets.

@@ -15,18 +15,18 @@ use crate::scene::Friction;
 use crate::status::{FreeCoupling, Slide};
 use crate::tolerances::{ALONGSIDE, FREE_WORK, LEFT_FREE, NEAR_BALANCE, ROUNDING};
 use signorini_qp::vector;
-use signorini_tfeti::{BodyMotion, FreeMotion, RowWeights};
+use signorini_tfeti::{BodyMotion, FreeMotion};
 
 /// Refuses loads that push the body along a rigid motion that neither supports nor contact can stop.
 pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
-    let motions = motions_without_contact(model)?;
+    let motions = model.loose_motions()?;
     if motions.is_empty() {
         return Ok(());
     }
     // each body is judged alone, by its own loads, with those that it may touch
     let mut worst: Option<Escape> = None;
     for body in 0..model.bodies.count() {
-        let motions = of_body(model, body, &motions);
+        let motions = of_body(model, body, motions);
         if motions.is_empty() {
             continue;
         }
@@ -40,14 +40,6 @@ pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
     worst.map_or(Ok(()), |escape| Err(escape.error))
 }
 
-/// The rigid motions that supports leave to the bodies.
-fn motions_without_contact(model: &Model) -> Result<Vec<FreeMotion>, ContactError> {
-    let coarse = model.tfeti.coarse();
-    let mut weights = vec![1.0; coarse.dim()];
-    weights[..model.tfeti.gluing().ranges().contact().end].fill(0.0);
-    Ok(coarse.free_motions(Some(&RowWeights::diagonal(weights)))?)
-}
-
 /// The body that slides away where multipliers are not in balance with the right side `e` of a step; `None` if they are,
 /// or if supports hold all bodies.
 pub(crate) fn slides(model: &Model, e: &[f64], lambda: &[f64]) -> Result<Option<Slide>, ContactError> {
@@ -55,8 +47,7 @@ pub(crate) fn slides(model: &Model, e: &[f64], lambda: &[f64]) -> Result<Option<
     let mut missing = vec![0.0; e.len()];
     coarse.apply(lambda, &mut missing, &mut coarse.scratch());
     vector::axpby(1.0, e, -1.0, &mut missing);
-    let motions = motions_without_contact(model)?;
-    let motions: Vec<&FreeMotion> = motions.iter().collect();
+    let motions: Vec<&FreeMotion> = model.loose_motions()?.iter().collect();
     let work: Vec<f64> = motions.iter().map(|m| -vector::dot(&m.amplitudes, &missing)).collect();
     let size = vector::norm(&work);
     if !(size.is_finite() && size > 0.0) {
@@ -79,9 +70,9 @@ pub(crate) fn friction_could_hold(
     normal[model.tangential_start()..model.tfeti.gluing().ranges().contact().end].fill(0.0);
     let mut pressed = vec![0.0; e.len()];
     coarse.apply(&normal, &mut pressed, &mut coarse.scratch());
-    let all = motions_without_contact(model)?;
+    let all = model.loose_motions()?;
     for body in 0..model.bodies.count() {
-        let motions = of_body(model, body, &all);
+        let motions = of_body(model, body, all);
         let mut rest = vec![0.0; motions.len()];
         let mut size = 0.0_f64;
         for (rest, motion) in rest.iter_mut().zip(&motions) {

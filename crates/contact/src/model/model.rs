@@ -10,7 +10,7 @@ use crate::settings::Settings;
 use signorini_fem_mesh::vec3::{moved, norm, sub};
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti::internal::{CopyStiffness, Dependency};
-use signorini_tfeti::{LoadResponse, Tfeti, TfetiBuilder, TfetiError, TiedRows};
+use signorini_tfeti::{FreeMotion, LoadResponse, RowWeights, Tfeti, TfetiBuilder, TfetiError, TiedRows};
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -45,6 +45,8 @@ pub(crate) struct Model {
     copies: OnceLock<CopyStiffness>,
     /// Rows that depend on one another.
     dependencies: OnceLock<Vec<Dependency>>,
+    /// Rigid motions that supports leave to the bodies.
+    loose_motions: OnceLock<Vec<FreeMotion>>,
 }
 
 impl Model {
@@ -150,6 +152,26 @@ impl Model {
         self.copies.get_or_init(|| self.tfeti.all_copy_stiffness())
     }
 
+    /// The rigid motions that supports leave to the bodies.
+    pub(crate) fn loose_motions(&self) -> Result<&[FreeMotion], ContactError> {
+        if let Some(known) = self.loose_motions.get() {
+            return Ok(known);
+        }
+        let found = self.motions_left_by(|_| false)?;
+        Ok(self.loose_motions.get_or_init(|| found))
+    }
+
+    /// The rigid motions that neither supports nor these contact rows stop.
+    pub(crate) fn motions_left_by(&self, holds: impl Fn(usize) -> bool) -> Result<Vec<FreeMotion>, ContactError> {
+        let coarse = self.tfeti.coarse();
+        let mut weights = vec![1.0; coarse.dim()];
+        let contact = self.tfeti.gluing().ranges().contact().end;
+        for (row, weight) in weights[..contact].iter_mut().enumerate() {
+            *weight = f64::from(u8::from(holds(row)));
+        }
+        Ok(coarse.free_motions(Some(&RowWeights::diagonal(weights)))?)
+    }
+
     pub(crate) fn dependencies(&self) -> &[Dependency] {
         self.dependencies.get_or_init(|| self.tfeti.gluing().dependencies())
     }
@@ -217,6 +239,7 @@ impl Model {
             moved_stiffness: OnceLock::new(),
             copies: OnceLock::new(),
             dependencies: OnceLock::new(),
+            loose_motions: OnceLock::new(),
         })
     }
 

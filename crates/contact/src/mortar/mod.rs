@@ -12,4 +12,4 @@ mod cover;
 mod nodes;
 mod search;
 
-pub(crate) use nodes::{MortarNode, handed_on, mortar_nodes};
+pub(crate) use nodes::{MortarNode, mortar_nodes};

@@ -28,23 +28,40 @@ pub(crate) struct MortarNode {
     /// Normal of the covered facets, out of the first side, and tangents: of curved ones the mean that displacements of its
     /// side have.
     pub(crate) frame: SurfaceFrame,
+    /// Whether it has no condition, because another contact has one, and other nodes have its shape function.
+    pub(crate) is_handed_on: bool,
+}
+
+impl MortarNode {
+    /// The same without a condition.
+    pub(crate) fn handed_on(self) -> Self {
+        Self {
+            is_handed_on: true,
+            ..self
+        }
+    }
 }
 
 /// Of the nodes of a surface that other contacts `cross` those without a condition of this one, as at crosspoints of mortar
 /// methods: with conditions of both, rows along a surface nearly depend on one another, and active sets run in circles.
 /// The corners that have their shape functions instead must have facets of their own, else forces in a narrow strip
 /// would have no moment.
-pub(crate) fn handed_on(surface: &Surface, crossing: &HashSet<u32>) -> HashSet<u32> {
+fn handed_on(surface: &Surface, other: &Surface, crossing: &HashSet<u32>) -> HashSet<u32> {
     let nodes = |triangle: &[u32; 3]| triangle.map(|local| surface.nodes()[local as usize]);
-    let crosses = |node: &u32| crossing.contains(node);
-    let mut out: HashSet<u32> = surface.nodes().iter().copied().filter(crosses).collect();
+    let mut out: HashSet<u32> = surface
+        .nodes()
+        .iter()
+        .copied()
+        .filter(|n| crossing.contains(n))
+        .collect();
     if out.is_empty() {
         return out;
     }
+    let is_without = |node: &u32| crossing.contains(node) || other.local(*node).is_some();
     let facets = || surface.triangles().iter().map(nodes);
-    let own: HashSet<u32> = facets().filter(|f| !f.iter().any(crosses)).flatten().collect();
+    let own: HashSet<u32> = facets().filter(|f| !f.iter().any(is_without)).flatten().collect();
     for facet in facets() {
-        let mut others = facet.iter().filter(|node| !crosses(node)).peekable();
+        let mut others = facet.iter().filter(|node| !is_without(node)).peekable();
         if others.peek().is_none() || others.any(|node| !own.contains(node)) {
             facet.iter().for_each(|node| _ = out.remove(node));
         }
@@ -76,7 +93,7 @@ pub(crate) fn mortar_nodes(
     // tied sides need no normal, and means of displacements have their own
     let bends = !tied && mesh.order() == 1;
     let crease = crease.to_radians().cos();
-    let shared = handed_on(surface, crossing);
+    let shared = handed_on(surface, other, crossing);
     let is_tip = |node: u32| other.local(node).is_some() || shared.contains(&node);
     let node = |(local, &own): (usize, &u32)| {
         if is_tip(own) {
@@ -186,6 +203,7 @@ impl Sums {
             nearest: self.nearest?,
             area: self.area,
             frame,
+            is_handed_on: false,
         })
     }
 }

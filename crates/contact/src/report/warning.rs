@@ -43,6 +43,10 @@ signorini_fem_mesh::errors! {
             "step {step}: node {node} of contact {contact} at {} slides by {slip:.3e}, its facets are {edge:.3e} long; \
             it keeps the normal and the partner that it began with: take smaller steps, and where the other side is not \
             plane a shorter way", at(place);
+        EdgeOverlap { step: usize, contact: usize, node: u32, place: [f64; 3], overlap: f64, largest: f64 } =
+            "step {step}: the sides of contact {contact} are {overlap:.3e} inside each other at node {node}, {}, where \
+            another contact has a condition and this one, between meshes that do not match, has none (displacements are up \
+            to {largest:.3e}): take smaller facets there, or meshes that match", at(place);
         TurnedNormal { step: usize, contact: usize, node: u32, place: [f64; 3], turn: f64 } =
             "step {step}: node {node} of contact {contact} at {} is displaced to where the normal of its obstacle is \
             another one by {turn:.1} degrees; it keeps the one that it began with, so forces are missing or \
@@ -96,6 +100,9 @@ impl Warning {
                 vec![Part::Step(*step), Part::Tet(*tet)]
             }
             Self::LongSlip {
+                step, contact, node, ..
+            }
+            | Self::EdgeOverlap {
                 step, contact, node, ..
             }
             | Self::TurnedNormal {

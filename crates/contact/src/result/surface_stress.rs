@@ -10,6 +10,7 @@ use crate::discrete::{ContactPoint, area_vector};
 use crate::model::Model;
 use crate::vec3::norm;
 use signorini_fem_mesh::Surface;
+use std::collections::HashMap;
 
 /// Averages: the scatter is gone after two, and each widens an edge of contact by about a facet.
 const AVERAGES: usize = 2;
@@ -38,10 +39,12 @@ impl SurfaceStress {
             _ => Vec::new(),
         };
         let smooth = average(&facets, &values);
+        let shared = conditions.shared(&values);
         // of the sides of a crease the one that is pressed most
         let at = |node: &u32| {
             let sides = conditions.at(*node).map(|c| smooth[c]);
-            sides.reduce(|a, b| if b[0] > a[0] { b } else { a }).unwrap_or_default()
+            let sides = sides.reduce(|a, b| if b[0] > a[0] { b } else { a });
+            sides.or_else(|| shared.get(node).copied()).unwrap_or_default()
         };
         let nodal: Vec<[f64; 4]> = own.nodes().iter().map(at).collect();
         Self {
@@ -96,6 +99,24 @@ impl<'a> Conditions<'a> {
     fn at(&self, node: u32) -> std::ops::Range<usize> {
         let from = self.all.partition_point(|c| c.node() < node);
         from..self.all.partition_point(|c| c.node() <= node)
+    }
+
+    /// The means of these values at nodes without a condition, weighted by their parts in those that have their shape
+    /// functions.
+    fn shared(&self, values: &[Option<[f64; 4]>]) -> HashMap<u32, [f64; 4]> {
+        let mut sums: HashMap<u32, (f64, [f64; 4])> = HashMap::new();
+        for (condition, value) in self.all.iter().zip(values) {
+            let own = condition.sides.own.nodes().iter();
+            for (node, weight) in own.filter(|n| n.0 != condition.node() && self.at(n.0).is_empty()) {
+                let weight = weight * condition.area;
+                let (sum, total) = sums.entry(*node).or_default();
+                *sum += weight;
+                let value = value.unwrap_or_default();
+                (0..4).for_each(|c| total[c] += weight * value[c]);
+            }
+        }
+        let mean = |(node, (sum, total)): (u32, (f64, [f64; 4]))| (node, total.map(|t| t / sum));
+        sums.into_iter().filter(|s| s.1.0 != 0.0).map(mean).collect()
     }
 
     /// Each triangle of the surface with its three conditions and its area: at a crease those of its own side.

@@ -105,6 +105,7 @@ impl Simulation {
             let (next, again) = self.solve()?;
             (report, recovered) = (report.resumed(next), again);
         }
+        let recovered = self.stand(state, recovered)?;
         let (model, problem) = (&self.model, &self.problem);
         let certificate = &recovered.certificate;
         let unbalanced = certificate.equilibrium.relative() >= certificate.largest();

@@ -13,6 +13,7 @@ mod couplings;
 mod couplings_cost;
 mod couplings_refused;
 mod crack;
+mod crossing;
 mod curved_sides;
 mod determinism;
 mod edges;
