@@ -331,7 +331,7 @@ fn motions_along_a_smooth_plane_have_no_rows() {
     let system = simulation.tfeti();
     let contact = system.gluing().ranges().contact().end;
     let projector = ActiveSetProjector::new(system.coarse(), contact, None).expect("a projector");
-    let largest = |row: &[f64]| row.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+    let largest = |row: &[(usize, f64)]| row.iter().fold(0.0, |most: f64, (_, c)| most.max(c.abs()));
     let rows: Vec<f64> = projector.loose().iter().map(|mode| largest(&mode.row)).collect();
     assert_eq!(rows.iter().filter(|c| **c == 0.0).count(), 3, "{rows:?}");
     assert_eq!(rows.iter().filter(|c| **c > 1e-3).count(), 3, "{rows:?}");

@@ -12,6 +12,9 @@
 //! the gradient of a convex function of `b`, whose minimum Newton's method with a line search finds without operator
 //! products.
 //!
+//! A contact touches few of many bodies: rows of modes are lists of what is not zero, and so is what modes make of a
+//! constrained block.
+//!
 //! | local | meaning |
 //! |---|---|
 //! | `b` | amplitudes |
@@ -37,19 +40,41 @@ pub(crate) struct Search<'a> {
     gradient: Vec<f64>,
     /// Largest imbalance, over the absolute values of its terms.
     imbalance: f64,
-    /// Second derivatives, by rows.
+    /// For each block, at its first component, the modes that move it and how.
+    moved: Vec<Vec<(usize, [f64; 2])>>,
+    /// Lower triangle of the second derivatives, by rows.
     second: Vec<f64>,
+    /// For each row of it, the first column that may not be zero: that of its factor is the same.
+    first: Vec<usize>,
 }
 
 impl<'a> Search<'a> {
     pub(crate) fn new(modes: &'a [LooseMode], set: &'a ProductSet, e: &[f64], (y, a): (&'a [f64], &[f64])) -> Self {
         // what no component holds cannot be balanced, and need not: projectors refuse a right side that works on it
-        let side = |m: &LooseMode| match m.row.iter().all(|c| *c == 0.0) {
+        let side = |m: &LooseMode| match m.row.is_empty() {
             true => 0.0,
             false => m.amplitudes.iter().zip(e).map(|(a, e)| a * e).sum(),
         };
         let mut a = a.to_vec();
-        for_discs(set, |i, _, _| a[i + 1] = a[i]);
+        let mut start: Vec<usize> = (0..a.len()).collect();
+        for_discs(set, |i, _, _| {
+            a[i + 1] = a[i];
+            start[i + 1] = i;
+        });
+        let mut moved: Vec<Vec<(usize, [f64; 2])>> = vec![Vec::new(); a.len()];
+        let mut first: Vec<usize> = (0..modes.len()).collect();
+        for (r, mode) in modes.iter().enumerate() {
+            for &(i, c) in &mode.row {
+                let block = &mut moved[start[i]];
+                if block.last().is_none_or(|last| last.0 < r) {
+                    block.push((r, [0.0; 2]));
+                    first[r] = first[r].min(block[0].0);
+                }
+                if let Some(last) = block.last_mut() {
+                    last.1[i - start[i]] = c;
+                }
+            }
+        }
         Self {
             modes,
             set,
@@ -61,7 +86,9 @@ impl<'a> Search<'a> {
             value: 0.0,
             gradient: vec![0.0; modes.len()],
             imbalance: f64::INFINITY,
+            moved,
             second: vec![0.0; modes.len() * modes.len()],
+            first,
         }
     }
 
@@ -101,8 +128,7 @@ impl<'a> Search<'a> {
         } = self;
         x.copy_from_slice(y);
         for (mode, b) in modes.iter().zip(&*b) {
-            let terms = x.iter_mut().zip(&*a).zip(&mode.row);
-            terms.for_each(|((x, a), c)| *x -= a * c * b);
+            mode.row.iter().for_each(|&(i, c)| x[i] -= a[i] * c * b);
         }
         let mut value: f64 = b.iter().zip(&*f).map(|(b, f)| b * f).sum();
         for_constrained(set, |block| match block {
@@ -126,9 +152,9 @@ impl<'a> Search<'a> {
         self.imbalance = 0.0;
         for ((mode, f), g) in modes.iter().zip(&*f).zip(&mut self.gradient) {
             let (mut sum, mut size) = (*f, f.abs());
-            for (c, x) in mode.row.iter().zip(&*x) {
-                sum -= c * x;
-                size += (c * x).abs();
+            for &(i, c) in &mode.row {
+                sum -= c * x[i];
+                size += (c * x[i]).abs();
             }
             *g = sum;
             let share = if size == 0.0 { 0.0 } else { sum.abs() / size };
@@ -147,43 +173,45 @@ impl<'a> Search<'a> {
             y,
             a,
             b,
+            moved,
             second,
             ..
         } = self;
         let k = modes.len();
         second.fill(0.0);
-        let (mut along, mut across) = (vec![0.0; k], vec![0.0; k]);
-        let mut add = |weight: f64, c: &[f64]| {
-            for (r, cr) in c.iter().enumerate() {
-                for (s, cs) in second[r * k..(r + 1) * k].iter_mut().zip(c) {
-                    *s += weight * cr * cs;
-                }
+        let mut add = |weight: f64, c: &[(usize, f64)]| {
+            for (n, (r, cr)) in c.iter().enumerate() {
+                let row = &mut second[r * k..(r + 1) * k];
+                c[..=n].iter().for_each(|(s, cs)| row[*s] += weight * cr * cs);
             }
         };
-        let s = |i: usize| {
-            let moved: f64 = modes.iter().zip(&*b).map(|(m, b)| m.row[i] * b).sum();
-            y[i] - a[i] * moved
+        let s = |i: usize, part: usize| {
+            let moves: f64 = moved[i].iter().map(|(m, c)| c[part] * b[*m]).sum();
+            y[i + part] - a[i] * moves
         };
+        let (mut along, mut across) = (Vec::new(), Vec::new());
         for_constrained(set, |block| match block {
             Constrained::Bound { i, lower, upper, .. } => {
-                let s = s(i);
+                let s = s(i, 0);
                 if all || s > lower && s < upper {
-                    modes.iter().zip(&mut along).for_each(|(m, c)| *c = m.row[i]);
+                    along.clear();
+                    along.extend(moved[i].iter().map(|(m, c)| (*m, c[0])));
                     add(a[i], &along);
                 }
             }
             Constrained::Disc { i, radius, .. } => {
-                let s = [s(i), s(i + 1)];
+                let s = [s(i, 0), s(i, 1)];
                 let length = s[0].hypot(s[1]);
                 let n = if length > 0.0 {
                     [s[0] / length, s[1] / length]
                 } else {
                     [1.0, 0.0]
                 };
-                for ((m, along), across) in modes.iter().zip(&mut along).zip(&mut across) {
-                    let c = [m.row[i], m.row[i + 1]];
-                    *along = c[0] * n[0] + c[1] * n[1];
-                    *across = c[1] * n[0] - c[0] * n[1];
+                along.clear();
+                across.clear();
+                for (m, c) in &moved[i] {
+                    along.push((*m, c[0] * n[0] + c[1] * n[1]));
+                    across.push((*m, c[1] * n[0] - c[0] * n[1]));
                 }
                 if length > radius {
                     add(a[i] * radius / length, &across);
@@ -199,7 +227,7 @@ impl<'a> Search<'a> {
     fn is_loose(&self) -> bool {
         let k = self.modes.len();
         self.modes.iter().enumerate().any(|(r, mode)| {
-            let all: f64 = mode.row.iter().zip(&self.a).map(|(c, a)| a * c * c).sum();
+            let all: f64 = mode.row.iter().map(|&(i, c)| self.a[i] * c * c).sum();
             all > 0.0 && self.second[r * (k + 1)] <= SHIFT * all
         })
     }
@@ -211,11 +239,12 @@ impl<'a> Search<'a> {
         if !(largest > 0.0 && largest.is_finite()) {
             return None;
         }
-        let l = &mut self.second;
+        let (l, first) = (&mut self.second, &self.first);
         for r in 0..k {
             l[r * k + r] += SHIFT * largest;
-            for s in 0..=r {
-                let known: f64 = (0..s).map(|j| l[r * k + j] * l[s * k + j]).sum();
+            for s in first[r]..=r {
+                let both = first[r].max(first[s])..s;
+                let known: f64 = both.map(|j| l[r * k + j] * l[s * k + j]).sum();
                 let value = l[r * k + s] - known;
                 l[r * k + s] = if r == s {
                     value.max(SHIFT * largest).sqrt()
@@ -268,7 +297,7 @@ mod tests {
             [1.0, -1.0, 0.5, -0.5, 0.3, -0.2, 0.1, 0.6, -0.4, 0.2],
         ];
         let unit = |k: usize| (0..4).map(|j| f64::from(u8::from(j == k))).collect();
-        let mode = |(k, row): (usize, [f64; 10])| LooseMode::new(unit(k), row.to_vec());
+        let mode = |(k, row): (usize, [f64; 10])| LooseMode::new(unit(k), &row);
         sums.into_iter().enumerate().map(mode).collect()
     }
 
@@ -287,7 +316,7 @@ mod tests {
         let (x, balances) = project(&y, &e);
         assert!(balances && set().violation(&x) <= 1e-15);
         for (mode, e) in modes().iter().zip(e) {
-            let sum: f64 = mode.row.iter().zip(&x).map(|(c, x)| c * x).sum();
+            let sum: f64 = mode.row.iter().map(|&(i, c)| c * x[i]).sum();
             assert!((sum - e).abs() < 1e-12);
         }
         // no other feasible point that balances is closer: it is where alternating projections in this metric end
@@ -310,7 +339,7 @@ mod tests {
     #[test]
     fn bounds_that_nothing_touches_yet_are_reached() {
         let set = ProductSet::new(vec![Segment::upper(vec![0.0; 3]), Segment::discs(vec![1.0])]).expect("a set");
-        let modes = [LooseMode::new(vec![1.0], vec![1.0, 1.0, 1.0, 0.0, 0.0])];
+        let modes = [LooseMode::new(vec![1.0], &[1.0, 1.0, 1.0, 0.0, 0.0])];
         // gaps 1, 2 and 4: two springs carry 1 at a depth of 2
         let (x, balances) = Search::new(&modes, &set, &[-1.0], (&[1.0, 2.0, 4.0, 0.0, 0.0], &[1.0; 5])).run();
         let off = x
@@ -338,7 +367,7 @@ mod tests {
     #[test]
     fn a_mode_without_rows_slows_nothing_down() {
         let mut all = modes();
-        all.push(LooseMode::new(vec![0.0; 4], vec![0.0; 10]));
+        all.push(LooseMode::new(vec![0.0; 4], &[]));
         let (y, e) = (
             [-1.0, 0.5, -2.0, 0.3, 3.0, 0.5, -0.2, 0.1, 0.6, 0.6],
             [-4.0, 2.5, 0.6, 0.2],
@@ -354,8 +383,8 @@ mod tests {
     fn held_components_stay_and_modes_that_nothing_holds_do_no_harm() {
         let set = ProductSet::new(vec![Segment::upper(vec![0.0; 2])]).expect("a set");
         let modes = [
-            LooseMode::new(vec![1.0, 0.0], vec![1.0, 1.0]),
-            LooseMode::new(vec![0.0, 1.0], vec![0.0, 0.0]),
+            LooseMode::new(vec![1.0, 0.0], &[1.0, 1.0]),
+            LooseMode::new(vec![0.0, 1.0], &[0.0, 0.0]),
         ];
         // the second right side is what loads leave by rounding
         let search = Search::new(&modes, &set, &[-3.0, 1e-13], (&[0.0, -1.0], &[0.0, 1.0]));

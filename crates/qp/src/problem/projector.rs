@@ -144,14 +144,18 @@ pub struct LineWeight {
 pub struct LooseMode {
     /// Factor of each row of `G`.
     pub amplitudes: Vec<f64>,
-    /// The combination on the leading, constrained components.
-    pub row: Vec<f64>,
+    /// What of the combination is not zero on the leading, constrained components: their numbers, in order, and values.
+    pub row: Vec<(usize, f64)>,
 }
 
 impl LooseMode {
     /// From the factors of the rows of `G`, and what they make of the constrained components.
     #[must_use]
-    pub fn new(amplitudes: Vec<f64>, row: Vec<f64>) -> Self {
-        Self { amplitudes, row }
+    pub fn new(amplitudes: Vec<f64>, row: &[f64]) -> Self {
+        let entries = row.iter().copied().enumerate();
+        Self {
+            amplitudes,
+            row: entries.filter(|(_, c)| *c != 0.0).collect(),
+        }
     }
 }

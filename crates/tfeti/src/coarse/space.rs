@@ -176,8 +176,7 @@ impl Coarse {
     pub(crate) fn loose_mode(&self, amplitudes: &[f64], contact: usize) -> LooseMode {
         let mut row = vec![0.0; self.dim()];
         self.transpose_times(amplitudes, &mut row);
-        row.truncate(contact);
-        LooseMode::new(amplitudes.to_vec(), row)
+        LooseMode::new(amplitudes.to_vec(), &row[..contact])
     }
 
     /// Rigid motions of bodies that rows of positive weight leave free; all rows count if there are no weights.

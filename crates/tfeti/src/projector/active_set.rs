@@ -134,10 +134,10 @@ impl ActiveSetProjector {
             .map(|motion| coarse.loose_mode(&motion.amplitudes, contact_rows))
             .collect();
         // a motion that no contact row holds must not ask for a balance by what rounding leaves of its row
-        let largest = |mode: &LooseMode| mode.row.iter().fold(0.0, |most: f64, c| most.max(c.abs()));
+        let largest = |mode: &LooseMode| mode.row.iter().fold(0.0, |most: f64, (_, c)| most.max(c.abs()));
         let rounding = ROUNDED_MODE * loose.iter().map(largest).fold(0.0, f64::max);
         let held_by_none = loose.iter_mut().filter(|mode| largest(mode) <= rounding);
-        held_by_none.for_each(|mode| mode.row.fill(0.0));
+        held_by_none.for_each(|mode| mode.row.clear());
         // weights that are added to those that hold every body leave the matrix better conditioned
         let large = coarse.rows() >= SHORT_ROWS;
         let single =

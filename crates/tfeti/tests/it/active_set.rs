@@ -140,7 +140,7 @@ fn repairs_do_all_but_loose_modes() {
         system.coarse().apply(&repaired, &mut left, &mut scratch);
         for mode in space.loose() {
             let along: f64 = left.iter().zip(&mode.amplitudes).map(|(g, a)| g * a).sum();
-            let row: f64 = x.iter().zip(&mode.row).map(|(x, c)| x * c).sum();
+            let row: f64 = mode.row.iter().map(|(i, c)| x[*i] * c).sum();
             assert!((along - row).abs() <= 1e-10 * norm(&left), "{along} {row}");
         }
         if count == 0 {
