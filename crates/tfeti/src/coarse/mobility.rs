@@ -11,7 +11,7 @@ use crate::rows::gluing::{CopyEntry, Gluing};
 use crate::subdomain::kernel::{Kernel, displacement, mean};
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::{FREE, MOVING, NO_ACTION};
-use nalgebra::{DMatrix, SymmetricEigen};
+use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 use signorini_fem_mesh::internal::DisjointSets;
 use signorini_fem_mesh::vec3::{dot, sub};
 use std::fmt;
@@ -77,6 +77,16 @@ pub(crate) struct Mobility {
 struct Group {
     bodies: Vec<usize>,
     gram: DMatrix<f64>,
+}
+
+impl Group {
+    /// Whether all eigenvalues are larger than those of free motions, for certain.
+    fn is_held(&self) -> bool {
+        let least = (FREE * self.gram.trace()).max(NO_ACTION);
+        let mut left = self.gram.clone();
+        (0..left.nrows()).for_each(|k| left[(k, k)] -= least);
+        Cholesky::new(left).is_some()
+    }
 }
 
 #[derive(Debug)]
@@ -218,7 +228,8 @@ impl Mobility {
             }
         }
         let mut out = Vec::new();
-        for group in groups {
+        // most groups are held, which a factor tells sooner than eigenvalues
+        for group in groups.into_iter().filter(|group| !group.is_held()) {
             let eigen = SymmetricEigen::new(group.gram);
             let largest = eigen.eigenvalues.iter().fold(0.0_f64, |m, v| m.max(*v));
             for (k, value) in eigen.eigenvalues.iter().enumerate() {
