@@ -150,6 +150,10 @@ pub(crate) const SLIDES: f64 = 0.5;
 /// Singular values below this part of the largest count as zero where contact forces are found.
 pub(crate) const WRENCH_RANK: f64 = 1e-13;
 
+/// Columns of contact forces that differ from those before them by less than this part of the largest are left to
+/// singular values: QR loses the digits that differences of such columns lack.
+pub(crate) const WRENCH_APART: f64 = 1e-8;
+
 /// Contact forces below this part of the largest leave.
 pub(crate) const WRENCH_FACTOR: f64 = 1e-14;
 

@@ -9,7 +9,7 @@
 //! falls): the residual of `b - z` separates `b` if `b` works more on it than all friction can.
 
 use crate::tolerances::{
-    FRICTION_FACTOR, LEVERAGE, MOST_FRICTION, SLIDES, SLIDING, TRESCA_EXCESS, WRENCH_FACTOR, WRENCH_RANK,
+    FRICTION_FACTOR, LEVERAGE, MOST_FRICTION, SLIDES, SLIDING, TRESCA_EXCESS, WRENCH_APART, WRENCH_FACTOR, WRENCH_RANK,
     WRENCH_RESIDUAL,
 };
 use crate::vec3::{dot, norm};
@@ -280,9 +280,7 @@ fn improve(dim: usize, used: &mut Vec<Vec<f64>>, factors: &mut Vec<f64>, b: &[f6
             return false;
         }
         let a = DMatrix::from_fn(dim, count, |i, j| used[j][i]);
-        let svd = a.svd(true, true);
-        let cut = WRENCH_RANK * svd.singular_values.max();
-        let Ok(solution) = svd.solve(&DVector::from_column_slice(b), cut) else {
+        let Some(solution) = least_squares(a, DVector::from_column_slice(b)) else {
             return false;
         };
         let mut step = 1.0_f64;
@@ -311,6 +309,25 @@ fn improve(dim: usize, used: &mut Vec<Vec<f64>>, factors: &mut Vec<f64>, b: &[f6
         let mut kept = keep.iter();
         factors.retain(|_| kept.next() == Some(&true));
     }
+}
+
+/// The `x` that makes `a x - b` least, the least one where columns depend on one another.
+fn least_squares(a: DMatrix<f64>, mut b: DVector<f64>) -> Option<DVector<f64>> {
+    // columns hardly ever depend on one another, and singular values take many times longer
+    let n = a.ncols();
+    if n <= a.nrows() {
+        let qr = a.clone().qr();
+        let r = qr.r();
+        let sizes = r.diagonal().abs();
+        if sizes.min() > WRENCH_APART * sizes.max() {
+            qr.q_tr_mul(&mut b);
+            let mut x = b.rows(0, n).into_owned();
+            return r.solve_upper_triangular_mut(&mut x).then_some(x);
+        }
+    }
+    let svd = a.svd(true, true);
+    let cut = WRENCH_RANK * svd.singular_values.max();
+    svd.solve(&b, cut).ok()
 }
 
 #[cfg(test)]
