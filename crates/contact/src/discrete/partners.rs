@@ -99,8 +99,10 @@ impl Paired {
         let seen = |from: &Surface, to: &Surface| {
             let of = |crossing: &HashSet<u32>| mortar_nodes(mesh, from, to, (contact.tied, contact.crease), crossing);
             let all = of(&HashSet::new());
-            let mut flush = crossing.clone();
-            flush.retain(|node| is_flush(mesh, contact, from, &all, *node));
+            if crossing.is_empty() {
+                return all;
+            }
+            let flush = flush(mesh, contact, from, &all, crossing);
             if flush.is_empty() {
                 return all;
             }
@@ -170,31 +172,43 @@ pub(super) fn crossing(scene: &Scene, index: usize) -> HashSet<u32> {
     tags.flat_map(|tag| scene.mesh.nodes_on(*tag)).collect()
 }
 
-/// Whether a gap is the same at a node and around it: where sides open from an edge on, that edge alone may touch.
-fn is_flush(mesh: &TetMesh, contact: &Contact, surface: &Surface, seen: &[Option<MortarNode>], node: u32) -> bool {
-    let Some(own) = surface.local(node) else {
-        return false;
+/// Those of some nodes around which the gap is the same: where sides open from an edge on, that edge alone may touch.
+fn flush(
+    mesh: &TetMesh,
+    contact: &Contact,
+    surface: &Surface,
+    seen: &[Option<MortarNode>],
+    nodes: &HashSet<u32>,
+) -> HashSet<u32> {
+    let mut out = match contact.gap {
+        Gap::None | Gap::Constant(_) | Gap::Measured => nodes.clone(),
+        Gap::Field(_) | Gap::Obstacle => HashSet::new(),
     };
     let gap = |local: usize| {
         let seen = seen[local].as_ref()?;
-        let along =
-            |&(node, weight): &(u32, f64)| weight * vector::dot(&mesh.points()[node as usize], &seen.frame.normal);
+        let normal = &seen.frame.normal;
+        let along = |&(node, weight): &(u32, f64)| weight * vector::dot(&mesh.points()[node as usize], normal);
         let mean = |nodes: &[(u32, f64)]| nodes.iter().map(along).sum::<f64>();
-        Some(mean(&seen.partner) - mean(&seen.own))
+        match contact.gap {
+            Gap::Measured => Some(mean(&seen.partner) - mean(&seen.own)),
+            _ => Some(0.0),
+        }
     };
-    let within = FLUSH * surface.areas()[own].sqrt();
-    let mut around = surface
-        .triangles()
-        .iter()
-        .filter(|triangle| triangle.contains(&(own as u32)));
-    match contact.gap {
-        Gap::None | Gap::Constant(_) => true,
-        Gap::Measured => around.all(|triangle| {
-            let mut gaps = triangle.iter().map(|local| gap(*local as usize));
-            gaps.all(|other| other.zip(gap(own)).is_some_and(|(a, b)| (a - b).abs() <= within))
-        }),
-        Gap::Field(_) | Gap::Obstacle => false,
+    for triangle in surface.triangles() {
+        let corners = triangle.map(|local| local as usize);
+        if !corners.iter().any(|&local| out.contains(&surface.nodes()[local])) {
+            continue;
+        }
+        let gaps = corners.map(gap);
+        for (local, own) in corners.into_iter().zip(gaps) {
+            let within = FLUSH * surface.areas()[local].sqrt();
+            let same = |other: &Option<f64>| other.zip(own).is_some_and(|(a, b)| (a - b).abs() <= within);
+            if !gaps.iter().all(same) {
+                out.remove(&surface.nodes()[local]);
+            }
+        }
     }
+    out
 }
 
 /// Whether a side goes on where the other one ends.

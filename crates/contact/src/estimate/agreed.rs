@@ -4,7 +4,7 @@
 //! Both sides of a tie may touch, and stick; so may a node in an edge between two contacts. The solver lets ties,
 //! supports and gaps err by its tolerance, and so would the positions at which friction sticks: in the next step no
 //! displacement would be in all of them, and friction would work against the rest. So what they are off is taken out: of
-//! ties by the smallest change in a norm weighted by stiffness, of rows that depend on one another by the smallest change of the
+//! ties by the smallest change in a norm weighted by stiffness, of rows that depend on one another by that of the
 //! positions themselves.
 
 use super::dependent::Agreement;
@@ -50,6 +50,7 @@ impl Caches {
         rows
     }
 
+    /// The same where ties alone hold exactly.
     fn with_ties<'a>(&self, model: &Model, offset: &[f64], rows: &'a [f64]) -> Cow<'a, [f64]> {
         let tied = model.tfeti.gluing().ranges().tied.clone();
         if !*self.ties_meet_points.get_or_init(|| ties_meet_points(model)) {
