@@ -13,7 +13,7 @@ use std::collections::HashSet;
 
 impl Simulation {
     /// Moves bodies without contact forces to where, in the mean, points touch and stick that were pressed in the last
-    /// state; if none of them was, to where they stick.
+    /// state; if none of them was, to where they stick. They stay as they are if that violates conditions.
     pub(super) fn stand(&mut self, state: &State, recovered: Recovered) -> Result<Recovered, ContactError> {
         let (model, problem) = (&self.model, &self.problem);
         if state.step() == 0 || !model.plan.effects.history || model.loose_motions()?.is_empty() {
@@ -54,11 +54,19 @@ impl Simulation {
         let Ok(ways) = svd.solve(&missing, cut) else {
             return Ok(recovered);
         };
+        let mut alpha = self.iterate.alpha.clone();
         for (motion, way) in motions.iter().zip(ways.iter()) {
-            vector::axpy(*way, &motion.amplitudes, &mut self.iterate.alpha);
+            vector::axpy(*way, &motion.amplitudes, &mut alpha);
         }
         let lambda = problem.multipliers(&self.iterate.lambda);
-        Recovered::new(model, problem, &lambda, &self.iterate.alpha, recovered)
+        let stands = Recovered::new(model, problem, &lambda, &alpha, Recovered::default())?;
+        // where obstacles or partners have moved it may be inside them
+        let largest = recovered.certificate.largest().max(self.settings.tolerance);
+        if stands.certificate.largest() > largest {
+            return Ok(recovered);
+        }
+        self.iterate.alpha = alpha;
+        Ok(stands)
     }
 }
 
