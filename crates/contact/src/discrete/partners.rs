@@ -5,11 +5,12 @@
 //! those of facets. Nodes on sides that do not face each other are no partners: a thin body has nodes of its far side
 //! on the same normal.
 
+use super::crossing::flush;
 use super::normals::{differ, fixed_frame};
 use crate::error::ContactError;
 use crate::mortar::{MortarNode, mortar_nodes};
-use crate::scene::{Contact, Gap, Scene};
-use crate::tolerances::{BESIDE, COARSER, FACING, FLUSH, HARDER, LOCKING, MOST_TILT, OVERLAP, TILT};
+use crate::scene::{Contact, Gap};
+use crate::tolerances::{BESIDE, COARSER, FACING, HARDER, LOCKING, MOST_TILT, OVERLAP, TILT};
 use rayon::prelude::*;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
@@ -69,7 +70,7 @@ impl Paired {
         materials: &Materials,
         index: usize,
         contact: &Contact,
-        crossing: &HashSet<u32>,
+        crossing: impl Fn() -> HashSet<u32>,
         rounding: f64,
     ) -> Result<Self, ContactError> {
         let surface = Surface::new(mesh, &contact.tags)?;
@@ -96,21 +97,10 @@ impl Paired {
         }
         let facet = |s: &Surface| s.total_area() / s.triangles().len() as f64;
         let [own, others] = [facet(&paired.surface), facet(&other.surface)];
+        let crossing = crossing();
+        let flush = |from: &Surface, seen: &[Option<MortarNode>]| flush(mesh, contact, from, seen, &crossing);
         let seen = |from: &Surface, to: &Surface| {
-            let of = |crossing: &HashSet<u32>| mortar_nodes(mesh, from, to, (contact.tied, contact.crease), crossing);
-            let all = of(&HashSet::new());
-            if crossing.is_empty() {
-                return all;
-            }
-            let flush = flush(mesh, contact, from, &all, crossing);
-            if flush.is_empty() {
-                return all;
-            }
-            let nodes = from.nodes().iter().zip(all).zip(of(&flush));
-            let keeps = |((node, own), kept): ((&u32, Option<MortarNode>), Option<MortarNode>)| {
-                kept.or_else(|| own.filter(|_| flush.contains(node)).map(MortarNode::handed_on))
-            };
-            nodes.map(keeps).collect()
+            mortar_nodes(mesh, from, to, (contact.tied, contact.crease), |seen| flush(from, seen))
         };
         let there = || seen(&paired.surface, &other.surface);
         let back = || seen(&other.surface, &paired.surface);
@@ -151,64 +141,6 @@ impl Paired {
         }
         Ok(paired)
     }
-}
-
-/// Nodes at which other contacts have conditions that may nearly depend on those of one between linear meshes: friction
-/// of either acts along normals of the other. Of two between bodies the first keeps its conditions.
-pub(super) fn crossing(scene: &Scene, index: usize) -> HashSet<u32> {
-    let own = &scene.contacts[index];
-    if own.tied || own.partner.is_empty() || scene.mesh.order() == 2 {
-        return HashSet::new();
-    }
-    let times = scene.analysis.times();
-    let crosses = |(other, contact): &(usize, &Contact)| {
-        let keeps = contact.partner.is_empty() && *other != index || *other < index;
-        let rough = own.friction().is_some() || contact.friction().is_some();
-        let meet = || times.iter().any(|t| own.span.has(*t) && contact.span.has(*t));
-        keeps && rough && !contact.tied && meet()
-    };
-    let others = scene.contacts.iter().enumerate().filter(crosses);
-    let tags = others.flat_map(|(_, contact)| contact.tags.iter().chain(&contact.partner));
-    tags.flat_map(|tag| scene.mesh.nodes_on(*tag)).collect()
-}
-
-/// Those of some nodes around which the gap is the same: where sides open from an edge on, that edge alone may touch.
-fn flush(
-    mesh: &TetMesh,
-    contact: &Contact,
-    surface: &Surface,
-    seen: &[Option<MortarNode>],
-    nodes: &HashSet<u32>,
-) -> HashSet<u32> {
-    let mut out = match contact.gap {
-        Gap::None | Gap::Constant(_) | Gap::Measured => nodes.clone(),
-        Gap::Field(_) | Gap::Obstacle => HashSet::new(),
-    };
-    let gap = |local: usize| {
-        let seen = seen[local].as_ref()?;
-        let normal = &seen.frame.normal;
-        let along = |&(node, weight): &(u32, f64)| weight * vector::dot(&mesh.points()[node as usize], normal);
-        let mean = |nodes: &[(u32, f64)]| nodes.iter().map(along).sum::<f64>();
-        match contact.gap {
-            Gap::Measured => Some(mean(&seen.partner) - mean(&seen.own)),
-            _ => Some(0.0),
-        }
-    };
-    for triangle in surface.triangles() {
-        let corners = triangle.map(|local| local as usize);
-        if !corners.iter().any(|&local| out.contains(&surface.nodes()[local])) {
-            continue;
-        }
-        let gaps = corners.map(gap);
-        for (local, own) in corners.into_iter().zip(gaps) {
-            let within = FLUSH * surface.areas()[local].sqrt();
-            let same = |other: &Option<f64>| other.zip(own).is_some_and(|(a, b)| (a - b).abs() <= within);
-            if !gaps.iter().all(same) {
-                out.remove(&surface.nodes()[local]);
-            }
-        }
-    }
-    out
 }
 
 /// Whether a side goes on where the other one ends.
@@ -452,7 +384,7 @@ mod tests {
         for gap in [0.0, 1e-3, 0.02, 0.3] {
             let mesh = bent(gap);
             let contact = Contact::between(brick::Z_MIN, lower(brick::Z_MAX));
-            let paired = Paired::new(&mesh, &steel(), 0, &contact, &HashSet::new(), 1e-12).expect("partners");
+            let paired = Paired::new(&mesh, &steel(), 0, &contact, HashSet::new, 1e-12).expect("partners");
             let (Partners::Nodes(found), surface) = (paired.partners, paired.surface) else {
                 panic!("meshes match");
             };
@@ -495,7 +427,7 @@ mod tests {
         let contact = Contact::between(above, below);
         for (inner, apart) in [(None, false), (Some([0.3, 0.3, 0.0]), true)] {
             let mesh = cone(None, 1.0, above).append(&cone(inner, -1.0, below)).expect("two");
-            let paired = Paired::new(&mesh, &steel(), 0, &contact, &HashSet::new(), 1e-12).expect("partners");
+            let paired = Paired::new(&mesh, &steel(), 0, &contact, HashSet::new, 1e-12).expect("partners");
             assert_eq!(paired.is_apart(), apart);
         }
     }

@@ -190,8 +190,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
 pub(crate) struct HandedOn {
     /// Position of its contact in the scene.
     pub(crate) contact: usize,
-    pub(crate) node: u32,
-    pub(crate) partner: Side,
+    pub(crate) sides: Sides,
     pub(crate) normal: [f64; 3],
 }
 
@@ -206,8 +205,11 @@ pub(super) fn handed_on(paired: &[Paired]) -> Vec<HandedOn> {
         let own = nodes.filter_map(|(node, seen)| Some((*node, seen.as_ref().filter(|s| s.is_handed_on)?)));
         out.extend(own.map(|(node, seen)| HandedOn {
             contact,
-            node,
-            partner: Side::new(seen.partner.clone()),
+            sides: Sides {
+                own: Side::node(node),
+                partner: Some(Side::new(seen.partner.clone())),
+                swapped: paired.swapped,
+            },
             normal: paired.fixed.unwrap_or(seen.frame).normal,
         }));
     }
@@ -280,12 +282,7 @@ fn mortar_gap(
 ) -> Result<f64, ContactError> {
     let node = surface.nodes()[local];
     let from = scene.mesh.points()[node as usize];
-    let along = |&(other, weight): &(u32, f64)| {
-        let way = vec3::sub(scene.mesh.points()[other as usize], from);
-        weight * vector::dot(&way, normal)
-    };
-    let [partner, own] = [&seen.partner, &seen.own].map(|side| side.iter().map(along).sum::<f64>());
-    let gap = partner - own + seen.way;
+    let gap = seen.gap(&scene.mesh, from, normal);
     let (nodes, size) = ([node, seen.partner[0].0], surface.areas()[local].sqrt());
     check_overlap(contact, &scene.contacts[contact], nodes, gap, size)?;
     Ok(gap)

@@ -1,10 +1,11 @@
 //! The discrete scene: a scene at the nodes of its mesh, made and checked once.
 
 use super::couplings::Couplings;
+use super::crossing::crossing;
 use super::equations::equations;
 use super::faceted::{FacetedOverlaps, close_faceted};
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
-use super::partners::{Paired, crossing};
+use super::partners::Paired;
 use super::penetration::check_penetration;
 use super::points::{ContactPoint, HandedOn, conditions, handed_on, of_contact, points};
 use super::springs::Springs;
@@ -72,8 +73,8 @@ impl DiscreteScene {
         let contacts = scene.contacts.iter().enumerate();
         let started = Instant::now();
         let paired = contacts.map(|(index, contact)| {
-            let crossing = crossing(scene, index);
-            Paired::new(&scene.mesh, &scene.materials, index, contact, &crossing, rounding)
+            let crossing = || crossing(scene, index);
+            Paired::new(&scene.mesh, &scene.materials, index, contact, crossing, rounding)
         });
         let paired = paired.collect::<Result<Vec<_>, _>>()?;
         let search = started.elapsed();

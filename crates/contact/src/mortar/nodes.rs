@@ -6,8 +6,9 @@ use crate::tolerances::{COVERED, NO_WEIGHT, SAME_NORMAL};
 use crate::vec3::edge_cosine;
 use rayon::prelude::*;
 use signorini_fem_mesh::internal::Lists;
-use signorini_fem_mesh::vec3::{add, area_vector, scale};
+use signorini_fem_mesh::vec3::{add, area_vector, scale, sub};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
+use signorini_qp::vector;
 use std::collections::{BTreeMap, HashSet};
 
 /// What a node of the first side sees of the other one.
@@ -33,12 +34,14 @@ pub(crate) struct MortarNode {
 }
 
 impl MortarNode {
-    /// The same without a condition.
-    pub(crate) fn handed_on(self) -> Self {
-        Self {
-            is_handed_on: true,
-            ..self
-        }
+    /// Mean distance of the sides along a normal, m; places are measured from one near them.
+    pub(crate) fn gap(&self, mesh: &TetMesh, from: [f64; 3], normal: &[f64; 3]) -> f64 {
+        let along = |&(node, weight): &(u32, f64)| {
+            let way = sub(mesh.points()[node as usize], from);
+            weight * vector::dot(&way, normal)
+        };
+        let [partner, own] = [&self.partner, &self.own].map(|side| side.iter().map(along).sum::<f64>());
+        partner - own + self.way
     }
 }
 
@@ -69,9 +72,9 @@ fn handed_on(surface: &Surface, other: &Surface, crossing: &HashSet<u32>) -> Has
     out
 }
 
-/// For each node of a surface what it sees of the other one; `None` where that is nothing, at nodes that are
-/// [handed on](handed_on), and at nodes on both sides, as the tip of a crack: their shape functions are shared out to
-/// the other corners of each facet.
+/// For each node of a surface what it sees of the other one; `None` where that is nothing, and at nodes on both sides, as
+/// the tip of a crack: their shape functions are shared out to the other corners of each facet. So are, as far as
+/// [they may be](handed_on), those of the nodes that `crossing` tells from what all see.
 ///
 /// Where sides that are `tied` are apart, as facets of curved sides are, displacements of the other side go on to the
 /// first one as in the tetrahedra behind it: linear ones, rotations among them, are the same on both sides, and what
@@ -84,7 +87,7 @@ pub(crate) fn mortar_nodes(
     surface: &Surface,
     other: &Surface,
     (tied, crease): (bool, f64),
-    crossing: &HashSet<u32>,
+    crossing: impl Fn(&[Option<MortarNode>]) -> HashSet<u32>,
 ) -> Vec<Option<MortarNode>> {
     let triangles = in_order(mesh, surface);
     let covers = covers(mesh, &triangles, other, tied);
@@ -93,9 +96,8 @@ pub(crate) fn mortar_nodes(
     // tied sides need no normal, and means of displacements have their own
     let bends = !tied && mesh.order() == 1;
     let crease = crease.to_radians().cos();
-    let shared = handed_on(surface, other, crossing);
-    let is_tip = |node: u32| other.local(node).is_some() || shared.contains(&node);
-    let node = |(local, &own): (usize, &u32)| {
+    let node = |(local, &own): (usize, &u32), shared: &HashSet<u32>| {
+        let is_tip = |node: u32| other.local(node).is_some() || shared.contains(&node);
         if is_tip(own) {
             return None;
         }
@@ -118,7 +120,21 @@ pub(crate) fn mortar_nodes(
         };
         sums.node(own, frame)
     };
-    surface.nodes().par_iter().enumerate().map(node).collect()
+    let nodes = || surface.nodes().par_iter().enumerate();
+    let none = HashSet::new();
+    let mut out: Vec<Option<MortarNode>> = nodes().map(|own| node(own, &none)).collect();
+    let shared = handed_on(surface, other, &crossing(&out));
+    if shared.is_empty() {
+        return out;
+    }
+    let again: Vec<_> = nodes().map(|own| node(own, &shared)).collect();
+    for ((own, seen), again) in surface.nodes().iter().zip(&mut out).zip(again) {
+        match seen {
+            Some(seen) if shared.contains(own) => seen.is_handed_on = true,
+            _ => *seen = again,
+        }
+    }
+    out
 }
 
 /// The share of a corner of a facet in what the corners have: its own, and a part of what the tips hand on.

@@ -219,14 +219,8 @@ fn edge_overlap(model: &Model, recovered: &Recovered, u: &[f64], step: usize) ->
     }
     let along = |node: u32, direction: &[f64; 3]| dot(&u[3 * node as usize..][..3], direction);
     let overlaps = discrete.handed_on.iter().filter_map(|own| {
-        let (point, state) = heirs.get(&(own.contact, own.node))?;
-        let faced = own
-            .partner
-            .nodes()
-            .iter()
-            .map(|(node, weight)| weight * along(*node, &own.normal));
-        let way = along(own.node, &own.normal) - faced.sum::<f64>();
-        let heir = point.contact.sides.way(&own.normal, along);
+        let (point, state) = heirs.get(&(own.contact, own.sides.node()))?;
+        let [way, heir] = [&own.sides, &point.contact.sides].map(|sides| sides.way(&own.normal, along));
         Some((own, way - heir - state.gap))
     });
     let (own, overlap) = worst(overlaps)?;
@@ -234,8 +228,8 @@ fn edge_overlap(model: &Model, recovered: &Recovered, u: &[f64], step: usize) ->
     (overlap > EDGE_OVERLAP * largest).then(|| Warning::EdgeOverlap {
         step,
         contact: own.contact,
-        node: own.node,
-        place: scene.mesh.points()[own.node as usize],
+        node: own.sides.node(),
+        place: scene.mesh.points()[own.sides.node() as usize],
         overlap,
         largest,
     })
