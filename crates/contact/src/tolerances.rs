@@ -288,6 +288,18 @@ pub(crate) const AT_BOUND: f64 = 1.0 - 1e-9;
 /// Singular values below this part of one count as zero.
 pub(crate) const NULL_RANK: f64 = 1e-9;
 
+/// Parts of the last loads that tell where bodies stand that nothing loads any more, each a tenth of the one before.
+pub(crate) const PARTS_LEFT: [f64; 3] = [1e-2, 1e-3, 1e-4];
+
+/// What a tenth of the loads leaves of contact forces that vanish with them is a tenth, but for sets that change.
+pub(crate) const VANISHING: f64 = 0.15;
+
+/// What a tenth of the loads leaves at least of contact forces that friction locks.
+pub(crate) const LOCKED: f64 = 0.5;
+
+/// What no target of a place determines counts as determined this little, over what they determine best.
+pub(crate) const WEAKLY_PLACED: f64 = 1e-4;
+
 /// Products of the fall-back between two looks at the balance of bodies that friction does not seem to hold; what may be
 /// left after two of the imbalance before them to go on. Where other normal forces hold them 1e-4 of the loads is left
 /// after the first, where none do 0.01 to 0.7 in the end.

@@ -12,7 +12,9 @@ mod contact_point;
 mod equilibrium;
 mod friction_cone;
 mod model;
+mod nearest;
 
 pub use contact_point::ConstrainedPoint;
 pub(crate) use equilibrium::{check_equilibrium, freed, friction_could_hold, slides};
 pub(crate) use model::{DISCS, INTERVALS, Model};
+pub(crate) use nearest::nearest;

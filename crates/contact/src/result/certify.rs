@@ -120,7 +120,7 @@ mod tests {
         model.points.clear();
         let mut problem = StepProblem::default();
         let first = model.scene.analysis.increment(0).expect("a step");
-        problem.prepare(&model, &State::default(), first).expect("step");
+        problem.prepare(&model, &State::default(), first, 0.0).expect("step");
         let u = displacement.repeat(model.tfeti.torn_dim() / 3);
         let (zero, lambda) = (vec![0.0; u.len()], vec![0.0; model.tfeti.dual_dim()]);
         let measured = Measured {

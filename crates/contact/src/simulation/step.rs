@@ -78,7 +78,7 @@ impl Simulation {
             self.model.scene.check_histories(increment.end)?;
         }
         self.controller = state.controller;
-        Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment)?;
+        Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, 0.0)?;
         // the line through the last two steps leads on where the loads have stopped, and astray where friction has turned
         // round: there is another start
         let rests = |last| self.problem.rests(&self.model.scene, last);
@@ -93,19 +93,29 @@ impl Simulation {
                 &[(!line, Attempt::Whole), (line, Attempt::Fallback)][..],
             ),
         };
-        self.start(state, way, line, first);
-        let (mut report, mut recovered) = self.solve()?;
-        for &(line, attempt) in others {
-            if !report.status.is_lost() {
-                break;
+        let (tried, unloaded) = self.unload(state, way, line)?;
+        let (mut report, recovered) = match unloaded {
+            Some(recovered) => (tried, recovered),
+            None => {
+                if !tried.status.converged() {
+                    self.start(state, way, line, first);
+                }
+                let (report, mut recovered) = self.solve()?;
+                let mut report = tried.resumed(report);
+                for &(line, attempt) in others {
+                    if !report.status.is_lost() {
+                        break;
+                    }
+                    self.spare = recovered;
+                    self.controller = state.controller;
+                    self.start(state, way, line, attempt);
+                    let (next, again) = self.solve()?;
+                    (report, recovered) = (report.resumed(next), again);
+                }
+                let stands = self.stand(state, recovered)?;
+                (report, stands)
             }
-            self.spare = recovered;
-            self.controller = state.controller;
-            self.start(state, way, line, attempt);
-            let (next, again) = self.solve()?;
-            (report, recovered) = (report.resumed(next), again);
-        }
-        let recovered = self.stand(state, recovered)?;
+        };
         let (model, problem) = (&self.model, &self.problem);
         let certificate = &recovered.certificate;
         let unbalanced = certificate.equilibrium.relative() >= certificate.largest();
@@ -150,7 +160,7 @@ impl Simulation {
     }
 
     /// Start vectors of an increment: zero, the last vectors, or the line through the last two.
-    fn start(&mut self, state: &State, way: &Way, line: bool, attempt: Attempt) {
+    pub(super) fn start(&mut self, state: &State, way: &Way, line: bool, attempt: Attempt) {
         let (model, iterate) = (&self.model, &mut self.iterate);
         (iterate.effort, iterate.shortest_step) = (state.effort, state.shortest_step);
         iterate.attempt = attempt;

@@ -1,17 +1,100 @@
 //! Bodies that nothing presses any more: where all forces on a loose body vanish, none determines its rigid motions, and
 //! it stays where it stood.
 
+use super::halving::Way;
 use super::simulation::Simulation;
 use crate::error::ContactError;
-use crate::model::{ConstrainedPoint, Model};
+use crate::model::{ConstrainedPoint, Model, nearest};
+use crate::report::StepReport;
 use crate::result::{ContactState, Recovered};
+use crate::solve::Attempt;
 use crate::state::State;
-use crate::tolerances::NULL_RANK;
+use crate::tolerances::{LOCKED, PARTS_LEFT, VANISHING};
 use nalgebra::{DMatrix, DVector};
 use signorini_qp::vector;
+use signorini_tfeti::FreeMotion;
 use std::collections::HashSet;
+use std::sync::Arc;
+
+/// What bodies are moved from.
+struct Place<'a> {
+    lambda: &'a [f64],
+    alpha: &'a [f64],
+    /// `B u`, in row units.
+    rows: &'a [f64],
+}
 
 impl Simulation {
+    /// The result of an increment at whose end no load acts that acted at its start, if forces vanish with the loads;
+    /// and the report of the solves that tell, from whose iterate an ordinary one sets out.
+    ///
+    /// Without loads nothing gives forces a size, and active sets run in circles. A small part of the last loads does, and
+    /// leaves the bodies where they stand without it. If a smaller part leaves more of the forces, friction locks them.
+    pub(super) fn unload(
+        &mut self,
+        state: &State,
+        way: &Way,
+        line: bool,
+    ) -> Result<(StepReport, Option<Recovered>), ContactError> {
+        let (model, increment, mut report) = (&self.model, way.increment(), StepReport::new());
+        if !model.plan.effects.history || model.loose_motions()?.is_empty() {
+            return Ok((report, None));
+        }
+        let unloaded = |start| self.problem.is_unloaded(&model.scene, start);
+        if !increment.start.is_some_and(unloaded) {
+            return Ok((report, None));
+        }
+        self.start(state, way, line, Attempt::First);
+        let contact = self.model.tfeti.gluing().ranges().contact();
+        let mut forces = f64::INFINITY;
+        let mut vanish = false;
+        let mut last = std::mem::take(&mut self.spare);
+        for left in PARTS_LEFT {
+            Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, left)?;
+            self.spare = last;
+            let (next, recovered) = self.solve()?;
+            (report, last) = (report.resumed(next), recovered);
+            self.controller = state.controller;
+            let before = std::mem::replace(&mut forces, vector::norm(&self.iterate.lambda[contact.clone()]));
+            vanish = report.status.converged() && forces <= VANISHING * before && before.is_finite();
+            if vanish || !report.status.converged() || forces > LOCKED * before {
+                break;
+            }
+            for vector in [&mut self.iterate.lambda, &mut self.iterate.f_lambda] {
+                vector.iter_mut().for_each(|v| *v *= PARTS_LEFT[1] / PARTS_LEFT[0]);
+            }
+        }
+        Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, 0.0)?;
+        if !vanish {
+            self.spare = last;
+            return Ok((report, None));
+        }
+        let (model, zeros) = (&self.model, vec![0.0; self.iterate.lambda.len()]);
+        let touch = model
+            .points
+            .iter()
+            .zip(&last.points)
+            .filter(|(_, state)| state.state != ContactState::Open);
+        let touch = touch
+            .flat_map(|(point, _)| rows(point))
+            .map(|row| (row, last.rows[row]));
+        let from = Place {
+            lambda: &zeros,
+            alpha: &vec![0.0; self.problem.rhs.len()],
+            rows: &zeros,
+        };
+        let placed = self.placed(model.loose_motions()?, &from, touch.collect())?;
+        self.spare = last;
+        let certified = placed.filter(|(_, placed)| placed.certificate.largest() <= self.settings.tolerance);
+        let unloaded = certified.map(|(alpha, placed)| {
+            self.iterate.alpha = alpha;
+            self.iterate.f_lambda.clone_from(&zeros);
+            self.iterate.lambda = zeros;
+            placed
+        });
+        Ok((report, unloaded))
+    }
+
     /// Moves bodies without contact forces to where, in the mean, points touch and stick that were pressed in the last
     /// state; if none of them was, to where they stick. They stay as they are if that violates conditions.
     pub(super) fn stand(&mut self, state: &State, recovered: Recovered) -> Result<Recovered, ContactError> {
@@ -28,46 +111,79 @@ impl Simulation {
             return Ok(recovered);
         }
         let motions = model.motions_left_by(|row| held_rows.contains(&row))?;
-        let moved: HashSet<u32> = motions.iter().flat_map(|m| &m.bodies).map(|b| b.body as u32).collect();
-        let own = |point: &&ConstrainedPoint| bodies(model, point.row).any(|body| moved.contains(&body));
-        let own: Vec<&ConstrainedPoint> = model.points.iter().filter(own).collect();
+        let own = || moved_points(model, &motions);
         let last = &state.lambda[0];
-        let pressed = |point: &&&ConstrainedPoint| last.get(point.row).is_some_and(|force| *force < 0.0);
-        let mut targets: Vec<usize> = own.iter().filter(pressed).flat_map(|point| rows(point)).collect();
+        let pressed = |point: &&ConstrainedPoint| last.get(point.row).is_some_and(|force| *force < 0.0);
+        let mut targets: Vec<usize> = own().filter(pressed).flat_map(rows).collect();
         if targets.is_empty() {
-            targets = own.iter().flat_map(|p| p.along().map(|along| along.1)).collect();
+            targets = own().flat_map(|p| p.along().map(|along| along.1)).collect();
         }
+        let targets = targets.into_iter().map(|row| (row, problem.offset[row])).collect();
+        let from = Place {
+            lambda: &self.iterate.lambda,
+            alpha: &self.iterate.alpha,
+            rows: &recovered.rows,
+        };
+        // where obstacles or partners have moved it may be inside them
+        let largest = recovered.certificate.largest().max(self.settings.tolerance);
+        Ok(match self.placed(&motions, &from, targets)? {
+            Some((alpha, stands)) if stands.certificate.largest() <= largest => {
+                self.iterate.alpha = alpha;
+                stands
+            }
+            _ => recovered,
+        })
+    }
+
+    /// The amplitudes `alpha`, and what is recovered from them, after motions that bring rows closest to their targets
+    /// and no points to overlap; `None` where nothing moves.
+    fn placed(
+        &self,
+        motions: &[FreeMotion],
+        from: &Place<'_>,
+        targets: Vec<(usize, f64)>,
+    ) -> Result<Option<(Vec<f64>, Recovered)>, ContactError> {
+        let (model, problem) = (&self.model, &self.problem);
         if motions.is_empty() || targets.is_empty() {
-            return Ok(recovered);
+            return Ok(None);
         }
-        let missing = targets.iter().map(|&row| problem.offset[row] - recovered.rows[row]);
-        let missing = DVector::from_iterator(targets.len(), missing);
+        let gaps = moved_points(model, motions).map(|point| (point.row, problem.offset[point.row]));
+        let wanted = [targets, gaps.collect()];
         let coarse = model.tfeti.coarse();
         let mut moves = vec![0.0; coarse.dim()];
-        let mut columns = DMatrix::zeros(targets.len(), motions.len());
-        for (mut column, motion) in columns.column_iter_mut().zip(&motions) {
+        let mut columns = [0, 1].map(|k: usize| DMatrix::zeros(wanted[k].len(), motions.len()));
+        for (k, motion) in motions.iter().enumerate() {
             coarse.transpose_times(&motion.amplitudes, &mut moves);
-            column.iter_mut().zip(&targets).for_each(|(c, row)| *c = moves[*row]);
+            for (columns, wanted) in columns.iter_mut().zip(&wanted) {
+                columns
+                    .column_mut(k)
+                    .iter_mut()
+                    .zip(wanted)
+                    .for_each(|(c, (row, _))| *c = moves[*row]);
+            }
         }
-        let svd = columns.svd(true, true);
-        let cut = NULL_RANK * svd.singular_values.max();
-        let Ok(ways) = svd.solve(&missing, cut) else {
-            return Ok(recovered);
+        let missing = wanted.map(|wanted| {
+            let missing = wanted.iter().map(|(row, place)| place - from.rows[*row]);
+            DVector::from_iterator(wanted.len(), missing)
+        });
+        let Some(ways) = nearest(&columns, &missing) else {
+            return Ok(None);
         };
-        let mut alpha = self.iterate.alpha.clone();
+        let mut alpha = from.alpha.to_vec();
         for (motion, way) in motions.iter().zip(ways.iter()) {
             vector::axpy(*way, &motion.amplitudes, &mut alpha);
         }
-        let lambda = problem.multipliers(&self.iterate.lambda);
-        let stands = Recovered::new(model, problem, &lambda, &alpha, Recovered::default())?;
-        // where obstacles or partners have moved it may be inside them
-        let largest = recovered.certificate.largest().max(self.settings.tolerance);
-        if stands.certificate.largest() > largest {
-            return Ok(recovered);
-        }
-        self.iterate.alpha = alpha;
-        Ok(stands)
+        let lambda = problem.multipliers(from.lambda);
+        let placed = Recovered::new(model, problem, &lambda, &alpha, Recovered::default())?;
+        Ok(Some((alpha, placed)))
     }
+}
+
+/// The contact points of bodies that motions move.
+fn moved_points<'a>(model: &'a Model, motions: &[FreeMotion]) -> impl Iterator<Item = &'a ConstrainedPoint> + use<'a> {
+    let moved: HashSet<u32> = motions.iter().flat_map(|m| &m.bodies).map(|b| b.body as u32).collect();
+    let moves = move |point: &&ConstrainedPoint| bodies(model, point.row).any(|body| moved.contains(&body));
+    model.points.iter().filter(moves)
 }
 
 /// The rows of a point.

@@ -23,6 +23,6 @@ pub(crate) fn first_step(scene: Scene) -> (Model, StepProblem) {
     let model = Model::new(scene, &Settings::default()).expect("model");
     let mut problem = StepProblem::default();
     let first = model.scene.analysis.increment(0).expect("a step");
-    problem.prepare(&model, &State::default(), first).expect("step");
+    problem.prepare(&model, &State::default(), first, 0.0).expect("step");
     (model, problem)
 }

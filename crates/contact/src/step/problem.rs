@@ -55,8 +55,15 @@ pub(crate) struct StepProblem {
 }
 
 impl StepProblem {
-    /// Computes the data of an increment from the model and the state before it.
-    pub(crate) fn prepare(&mut self, model: &Model, state: &State, increment: Increment) -> Result<(), ContactError> {
+    /// Computes the data of an increment from the model and the state before it, with this part of the loads at its start
+    /// beside those at its end.
+    pub(crate) fn prepare(
+        &mut self,
+        model: &Model,
+        state: &State,
+        increment: Increment,
+        left: f64,
+    ) -> Result<(), ContactError> {
         let time = increment.end;
         self.index = increment.index;
         self.time = time;
@@ -65,7 +72,9 @@ impl StepProblem {
         self.peaks.clone_from(&state.peaks);
         self.peaks.resize(model.bodies.count().max(1), Peak::default());
         let loads = model.scene.loads.iter();
-        self.factors = loads.map(|load| load.history.value(time)).collect();
+        let before = increment.start.filter(|_| left != 0.0);
+        let factor = |h: &History| h.value(time) + before.map_or(0.0, |start| left * h.value(start));
+        self.factors = loads.map(|load| factor(&load.history)).collect();
         let (rows, take) = (model.tfeti.dual_dim(), std::mem::take::<Vec<f64>>);
         self.load = zeros(take(&mut self.load), rows);
         self.rhs = zeros(take(&mut self.rhs), model.tfeti.coarse().rows());
@@ -123,6 +132,11 @@ impl StepProblem {
             true => growth.max(0.0) * (1.0 + ROUNDING),
             false => f64::INFINITY,
         }
+    }
+
+    /// Whether no load acts, and one did at that time.
+    pub(crate) fn is_unloaded(&self, scene: &Scene, before: f64) -> bool {
+        self.factors.iter().all(|f| *f == 0.0) && scene.loads.iter().any(|load| load.history.value(before) != 0.0)
     }
 
     /// Whether nothing that acts has changed since a time.

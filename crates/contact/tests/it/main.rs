@@ -65,4 +65,5 @@ mod supports;
 mod tables;
 mod tresca;
 mod unconverged;
+mod unloaded;
 mod wedge;

@@ -1,0 +1,80 @@
+//! Rigid motions that come close to a place without overlap.
+
+use super::friction_cone::{Generators, WrenchCone};
+use crate::tolerances::{NULL_RANK, ROUNDING, WEAKLY_PLACED};
+use nalgebra::{DMatrix, DVector};
+use signorini_qp::vector;
+
+/// Steps out of overlaps: the first is exact to a hundred-thousandth.
+const STEPS: usize = 3;
+
+/// The `w` that minimises `|T w - t|` subject to `N w <= n`, of pairs `[T, N]` and `[t, n]`; `None` if there is none.
+pub(crate) fn nearest(columns: &[DMatrix<f64>; 2], wanted: &[DVector<f64>; 2]) -> Option<DVector<f64>> {
+    let ([near, room], [target, gap]) = (columns, wanted);
+    let svd = near.clone().svd(true, true);
+    let largest = svd.singular_values.max();
+    let mut way = svd.solve(target, NULL_RANK * largest).ok()?;
+    // steps of length one in what targets determine; what they do not moves as if they determined little of it
+    let mut steps = svd.v_t.as_ref()?.transpose();
+    let lengths = steps.column_iter_mut().zip(&svd.singular_values);
+    lengths.for_each(|(mut step, s)| step /= s.max(WEAKLY_PLACED * largest));
+    let opened = -(room * &steps);
+    let rounding = ROUNDING * target.amax().max(gap.amax());
+    for _ in 0..STEPS {
+        let over = room * &way - gap;
+        let most = over.max();
+        if most <= rounding {
+            break;
+        }
+        // the shortest step over linear inequalities from non-negative least squares (Lawson and Hanson, chapter 23)
+        let generators = opened.row_iter().zip(&over).map(|(opened, over)| {
+            let normal: Vec<f64> = opened.iter().copied().chain([over / most]).collect();
+            let length = vector::norm(&normal);
+            Generators {
+                normal: normal.iter().map(|v| v / length).collect(),
+                tangents: Vec::new(),
+                coefficient: Some(0.0),
+                tresca: 0.0,
+            }
+        });
+        let dim = opened.ncols();
+        let cone = WrenchCone::new(dim + 1, generators.collect());
+        let last: Vec<f64> = (0..=dim).map(|k| f64::from(u8::from(k == dim))).collect();
+        let apart = cone.separates(&last)?;
+        let step = DVector::from_column_slice(&apart[..dim]);
+        way -= &steps * step * (most / apart[dim]);
+    }
+    Some(way)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_nearest_place_in_a_polygon() {
+        let near = DMatrix::identity(2, 2);
+        let room = DMatrix::from_row_slice(3, 2, &[1.0, 0.0, 0.0, 1.0, -1.0, -1.0]);
+        let gap = DVector::from_vec(vec![0.3, 2.0, 1e3]);
+        let at = |x: f64, y: f64| {
+            nearest(
+                &[near.clone(), room.clone()],
+                &[DVector::from_vec(vec![x, y]), gap.clone()],
+            )
+        };
+        for ([x, y], place) in [
+            ([0.1, 0.2], [0.1, 0.2]),
+            ([1.0, 1.0], [0.3, 1.0]),
+            ([7.0, 9.0], [0.3, 2.0]),
+            ([-600.0, -500.0], [-550.0, -450.0]),
+        ] {
+            let found = at(x, y).expect("a place");
+            assert!(
+                (found - DVector::from_column_slice(&place)).norm() < 1e-9 * x.hypot(y),
+                "{x} {y}"
+            );
+        }
+        let none = DVector::from_vec(vec![-1.0, -1.0, 1.0]);
+        assert!(nearest(&[near.clone(), room.clone()], &[DVector::zeros(2), none]).is_none());
+    }
+}
