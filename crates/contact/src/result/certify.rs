@@ -66,7 +66,8 @@ pub(super) fn certify(m: &Measured<'_>, sizes: &[Sizes]) -> Certificate {
 }
 
 /// Penetration of the obstacles that the scene names, whatever points were made of them: gaps and normals of each
-/// contact by itself, and mean displacements of its nodes.
+/// contact by itself, and mean displacements of its nodes. Means of contacts that are equally far and one point are one
+/// mean over the facets of all.
 fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
     let (model, u) = (m.model, m.u);
     let (tfeti, scene) = (&model.tfeti, &model.scene);
@@ -82,6 +83,8 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
         }
         sum / weight
     };
+    // of means: the point, the gap, the area that counts, how deep it is, and the size that this is measured against
+    let mut means: Vec<(usize, f64, f64, f64, f64)> = Vec::new();
     for (condition, point) in model.discrete.conditions.iter().zip(&model.standing) {
         let Some(point) = *point else {
             continue;
@@ -96,7 +99,20 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
         let body = copies
             .first()
             .map_or(0, |c| model.bodies.of_subdomain(c.subdomain as usize));
-        gap.worsen(depth, sizes[body].displacement);
+        let size = sizes[body].displacement;
+        match condition.sides.own.nodes() {
+            [_] => gap.worsen(depth, size),
+            _ => means.push((point, condition.gap, condition.area, depth, size)),
+        }
+    }
+    means.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    for alike in means.chunk_by(|a, b| a.0 == b.0 && b.1 - a.1 <= model.discrete.rounding) {
+        let area: f64 = alike.iter().map(|m| m.2).sum();
+        let depth = match alike {
+            [one] => one.3,
+            _ => alike.iter().map(|m| m.2 * m.3).sum::<f64>() / area,
+        };
+        gap.worsen(depth, alike[0].4);
     }
 }
 

@@ -260,6 +260,39 @@ fn plate_with_a_coefficient_of_one() {
     }
 }
 
+/// A mean over the facets of three contacts was judged by each of them: no step was certified.
+#[test]
+fn a_floor_told_in_three_contacts_is_that_told_in_one() {
+    let third = |k: u32| FacetTag(90 + k);
+    let cut = |[x, ..]: [f64; 3], [east, _, up]: [f64; 3]| match (east.round(), up.round()) {
+        (_, -1.0) => Some(third(x as u32)),
+        (_, 1.0) => Some(brick::Z_MAX),
+        (-1.0, _) => Some(brick::X_MIN),
+        (1.0, _) => Some(brick::X_MAX),
+        _ => None,
+    };
+    let mesh = quadratic([3.0, 1.0, 1.0], [6, 2, 2]).tag_boundary(cut);
+    for friction in [Friction::None, Friction::coulomb(0.2)] {
+        let scene = |floor: &[&[u32]]| {
+            let clamped = Scene::new(mesh.clone(), steel())
+                .with_support(Support::fixed(brick::X_MIN))
+                .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -1e8]))
+                .with_load(Load::traction(brick::X_MAX, [3e8, 0.0, -5e8]));
+            floor.iter().fold(clamped, |scene, tags| {
+                let contact = Contact::rigid(third(tags[0])).with_friction(friction.clone());
+                scene.with_contact(tags[1..].iter().fold(contact, |c, k| c.with_tag(third(*k))))
+            })
+        };
+        let [one, three, two] = [&[&[0, 1, 2][..]][..], &[&[0], &[1], &[2]], &[&[0], &[1, 2]]]
+            .map(|floor| solve(scene(floor), Settings::default()));
+        for (told, what) in [(&three, "in three"), (&two, "in two")] {
+            assert_certified(told, what);
+            assert_close(&told.displacement, &one.displacement, 1e-6, what);
+            assert_eq!(told.report.counters.products, one.report.counters.products);
+        }
+    }
+}
+
 /// A clamped bar that bends under its end load: it neither locks nor needs many products as it becomes incompressible.
 #[test]
 fn a_bar_of_rubber_bends_as_it_should() {
