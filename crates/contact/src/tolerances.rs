@@ -88,6 +88,10 @@ pub(crate) const FACING: f64 = 0.1;
 /// Mean area of the facets of a side over that of the other from which on it is the coarser one.
 pub(crate) const COARSER: f64 = 1.1;
 
+/// The same from which on a flat side leaves the points to the other where it reaches beyond that: forces at its outer nodes
+/// had moments about that by up to a facet.
+pub(crate) const MUCH_COARSER: f64 = 2.0;
+
 /// Shear modulus of a body over that of the other from which on it leaves the points to the other where it reaches beyond
 /// that: thousands of products otherwise.
 pub(crate) const HARDER: f64 = 10.0;

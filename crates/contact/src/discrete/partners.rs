@@ -10,7 +10,7 @@ use super::normals::{differ, fixed_frame};
 use crate::error::ContactError;
 use crate::mortar::{MortarNode, mortar_nodes};
 use crate::scene::{Contact, Gap};
-use crate::tolerances::{BESIDE, COARSER, FACING, HARDER, LOCKING, MOST_TILT, OVERLAP, TILT};
+use crate::tolerances::{BESIDE, COARSER, FACING, HARDER, LOCKING, MOST_TILT, MUCH_COARSER, OVERLAP, TILT};
 use rayon::prelude::*;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
@@ -63,8 +63,9 @@ impl Paired {
     /// Finds the sides of a contact. Where meshes match the first side has the points, else the coarser one, of sides with
     /// facets of one size that with fewer points: rows are farther from depending on one another, and pressures smoother.
     /// But a curved side that hardly changes its volume has them, in meshes of order 2: between points of larger facets
-    /// it gives way, and loses its pressure. Linear tetrahedra are too stiff to. And a flat one of a much harder body that
-    /// reaches beyond has none: a rim of the softer one would be all that several of them press.
+    /// it gives way, and loses its pressure. Linear tetrahedra are too stiff to. And a flat one that reaches beyond has none
+    /// if it is much coarser, as its points beyond would hold the other side from tipping over its edge, or if its body is
+    /// much harder (linear meshes): a rim of the softer one would be all that several of them press.
     pub(super) fn new(
         mesh: &TetMesh,
         materials: &Materials,
@@ -120,12 +121,19 @@ impl Paired {
                 }
             }
         };
-        let is_flat = mesh.order() == 1 && !is_curved(&paired.surface) && !is_curved(&other.surface);
-        let [own, others] = [&paired.surface, &other.surface].map(|s| hardness(mesh, materials, s));
+        let is_flat = !is_curved(&paired.surface) && !is_curved(&other.surface);
+        let [hard, harder] = [&paired.surface, &other.surface].map(|s| hardness(mesh, materials, s));
+        let yields = |facet: [f64; 2], hard: [f64; 2]| {
+            facet[0] > MUCH_COARSER * facet[1] || mesh.order() == 1 && hard[0] > HARDER * hard[1]
+        };
         let (mortar, swapped) = match swapped {
             _ if !is_flat => (mortar, swapped),
-            false if own > HARDER * others && reaches_beyond(&paired.surface, &mortar) => (back(), true),
-            true if others > HARDER * own && reaches_beyond(&other.surface, &mortar) => (there(), false),
+            false if yields([own, others], [hard, harder]) && reaches_beyond(&paired.surface, &mortar) => {
+                (back(), true)
+            }
+            true if yields([others, own], [harder, hard]) && reaches_beyond(&other.surface, &mortar) => {
+                (there(), false)
+            }
             _ => (mortar, swapped),
         };
         if mortar.iter().all(Option::is_none) {

@@ -248,3 +248,33 @@ fn the_nearer_obstacle_acts_at_nodes_that_two_contacts_share() {
         }
     }
 }
+
+/// A block on a plate of coarser cells, pressed and pushed at its top: it tips where the push times its height is the
+/// pressing force times half its width. Points on the plate, up to a cell beyond the block, held it up to 1.5 times that.
+#[test]
+fn a_block_on_a_coarse_plate_tips_over_its_own_edge() {
+    for order in [1, 2] {
+        for cells in [5, 10] {
+            let shifted = |[x, y, z]: [f64; 3]| [x + 14.0, y + 14.0, z + 5.0];
+            let block = |lengths, cells| match order {
+                1 => block(lengths, cells),
+                _ => block(lengths, cells).raise_order().expect("order 2"),
+            };
+            let plate = block([40.0, 40.0, 5.0], [cells, cells, 1]);
+            let foot = block([12.0, 12.0, 10.0], [6, 6, 5]).map_points(shifted).expect("moved");
+            let pushed = |part: f64| {
+                let contact = Contact::between(second(brick::Z_MIN), brick::Z_MAX);
+                let scene = Scene::new(with_second(&plate, &foot), uniform(2.1e5, 0.3))
+                    .with_support(Support::fixed(brick::Z_MIN))
+                    .with_load(Load::traction(second(brick::Z_MAX), [part * 40.0 * 0.6, 0.0, -40.0]))
+                    .with_contact(contact.with_friction(Friction::coulomb(2.0)));
+                let mut simulation = Simulation::new(scene, Settings::default())?;
+                simulation.step().map(|result| result.report().status.converged())
+            };
+            assert!(matches!(pushed(0.8), Ok(true)), "{order} {cells}: below");
+            for beyond in [1.03, 1.3] {
+                assert!(!matches!(pushed(beyond), Ok(true)), "{order} {cells}: {beyond}");
+            }
+        }
+    }
+}

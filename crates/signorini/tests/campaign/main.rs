@@ -91,9 +91,12 @@ fn scenes_that_find_no_balance_are_given_up() {
             panic!("scene {number} was run");
         };
         for level in levels {
-            let known = matches!(level.status, StepStatus::Converged | StepStatus::Stagnated);
+            let known = matches!(
+                level.status,
+                StepStatus::Converged | StepStatus::Stagnated | StepStatus::NotHeld
+            );
             assert!(
-                known && level.products < 5_000,
+                known && level.products < 4_200,
                 "scene {number}: {}, {}",
                 level.status,
                 level.products
