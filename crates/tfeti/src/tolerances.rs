@@ -171,8 +171,9 @@ pub(crate) const RELAXED: f64 = 0.9;
 pub(crate) const SUBDOMAINS: usize = 16;
 /// Most branches of a coarse factor on a rank.
 pub(crate) const BRANCHES: usize = 4;
-/// Equal regions of a coarse factor from which on they are solved together.
-pub(crate) const ALIKE_REGIONS: usize = 3;
+/// Equal regions of a coarse factor from which on they are solved together: fewer take as long one by one, and of several
+/// processes, each with some of them, less.
+pub(crate) const ALIKE_REGIONS: usize = 5;
 /// Cuts of a grid of blocks stand in every fourth layer, so that the pieces between them are equal.
 pub(crate) const PERIOD: u32 = 4;
 /// What a node of the coarse factor costs a solve besides its numbers, in numbers: the node, and a block of its border.
