@@ -37,7 +37,7 @@ pub(super) struct Model {
     contact: ContactTerms,
     table: BlockTable,
     spread: Spread,
-    /// Subdomains with contact rows, and the places of their diagonal blocks.
+    /// Subdomains of this process with contact rows, and the places of their diagonal blocks.
     touching: Vec<(u32, u32)>,
     diagonal: Vec<Block>,
 }
@@ -135,7 +135,7 @@ impl Spread {
 #[derive(Debug)]
 pub(super) struct ModelFactor {
     pub(super) clusters: SplitFactor,
-    /// Blocks of the contact rows.
+    /// Blocks of the contact rows on subdomains of this process.
     contact: Vec<f64>,
     /// Inverses of diagonal blocks of subdomains with contact rows.
     inverses: Vec<Block>,
@@ -183,7 +183,6 @@ impl Model {
             let within = partners[a as usize].partition_point(|&other| other < b);
             starts[a as usize] + within as u32
         };
-        let contact = ContactTerms::new(1, rows, &|a, b| Some((0, BLOCK * place(a, b) as usize)), &of_row);
         let table = BlockTable::new(
             partners
                 .iter()
@@ -196,12 +195,16 @@ impl Model {
                 blocks[i as usize] = *block;
             }
         });
-        let touching = (0..changing.len() as u32).filter(|&s| !partners[s as usize].is_empty());
-        let touching: Vec<(u32, u32)> = touching.map(|s| (s, place(s, s))).collect();
         let steady = table_of(matrix, changing.len(), values);
+        let spread = Spread::new(exchange, [&steady.0, &table], changing.len());
+        let own = |s: u32| spread.own().contains(&(s as usize));
+        let touching = (0..changing.len() as u32).filter(|&s| own(s) && !partners[s as usize].is_empty());
+        let touching: Vec<(u32, u32)> = touching.map(|s| (s, place(s, s))).collect();
+        let at = |a: u32, b: u32| own(a).then(|| (0, BLOCK * place(a, b) as usize));
+        let contact = ContactTerms::new(1, rows, &at, &of_row);
         Some(Self {
             of_clusters,
-            spread: Spread::new(exchange, [&steady.0, &table], changing.len()),
+            spread,
             steady,
             inverses: blocks.iter().map(relaxed).collect(),
             contact,
@@ -239,9 +242,10 @@ impl Model {
         self.contact.allow(lines)
     }
 
-    /// Numbers stored.
+    /// Numbers stored, by all processes together.
     pub(super) fn stored(&self) -> usize {
-        let inverses = self.inverses.len() + 2 * self.touching.len();
+        let touching = (0..self.inverses.len()).filter(|&s| !self.table.columns(s..s + 1).is_empty());
+        let inverses = self.inverses.len() + 2 * touching.count();
         self.of_clusters.stored() + self.steady.1.len() + 36 * inverses + BLOCK * self.table.blocks()
     }
 
@@ -290,8 +294,7 @@ impl Model {
         let all = out[own.clone()].par_iter_mut().with_min_len(MOTIONS);
         let each = all.zip(&self.inverses[own.clone()]).zip(&rest[own.clone()]);
         each.for_each(|((out, inverse), rest)| *out = times(inverse, rest));
-        let touching = self.touching.iter().zip(&factor.inverses);
-        for ((s, _), inverse) in touching.filter(|((s, _), _)| own.contains(&(*s as usize))) {
+        for ((s, _), inverse) in self.touching.iter().zip(&factor.inverses) {
             out[*s as usize] = times(inverse, &rest[*s as usize]);
         }
     }
