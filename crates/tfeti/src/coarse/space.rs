@@ -209,6 +209,12 @@ impl CoarseData {
 
     /// `out = G W x`; `W` is one on interface rows and given by `weights` on the others.
     pub(crate) fn product(&self, x: &[f64], weights: Option<&[f64]>, out: &mut [f64], sides: &mut [Wrench]) {
+        self.product_here(x, weights, out, sides);
+        self.tables.complete(&self.map, out);
+    }
+
+    /// The same on the subdomains of this process, where each has its part of vectors.
+    pub(crate) fn product_here(&self, x: &[f64], weights: Option<&[f64]>, out: &mut [f64], sides: &mut [Wrench]) {
         self.tables.wrenches(&self.map, x, weights, out, sides);
     }
 

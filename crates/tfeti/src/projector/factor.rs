@@ -2,6 +2,7 @@
 
 use crate::coarse::matrix::ModeTable;
 use crate::coarse::mobility::FreeMotion;
+use crate::coarse::products::Wrench;
 use crate::coarse::space::{Coarse, CoarseScratch};
 use crate::coarse::weights::{RowWeights, along};
 use crate::error::TfetiError;
@@ -221,6 +222,15 @@ impl CoarseFactor {
         signorini_qp::vector::distance(&found, &side) / signorini_qp::vector::norm(&side)
     }
 
+    /// `out = G W x` for a solve: what is here of it where that completes the rest.
+    fn product(&self, x: &[f64], weights: Option<&[f64]>, out: &mut [f64], sides: &mut [Wrench]) {
+        let data = &self.0.coarse.0;
+        match &self.0.factor {
+            Factor::Split(base, _) if base.completes() => data.product_here(x, weights, out, sides),
+            _ => data.product(x, weights, out, sides),
+        }
+    }
+
     fn lines(&self) -> &[LineWeight] {
         self.0.weights.as_ref().map_or(&[], |w| &w.lines)
     }
@@ -234,7 +244,7 @@ impl CoarseFactor {
     /// `x = x - W G^T (G W G^T)^-1 (G x - e)`: the closest point (in the metric of `W`) with `G x = e`; `e = 0` if
     /// `None`.
     pub fn project(&self, x: &mut [f64], e: Option<&[f64]>, s: &mut CoarseScratch) {
-        self.0.coarse.0.product(x, None, &mut s.first, &mut s.sides);
+        self.product(x, None, &mut s.first, &mut s.sides);
         if let Some(e) = e {
             s.first.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
         }
@@ -328,7 +338,7 @@ impl CoarseFactor {
         }
         s.dual.copy_from_slice(r);
         self.weigh(&mut s.dual);
-        self.0.coarse.0.product(&s.dual, None, alpha, &mut s.sides);
+        self.product(&s.dual, None, alpha, &mut s.sides);
         self.solve(alpha, s);
         alpha.iter_mut().for_each(|a| *a = -*a);
     }
@@ -336,7 +346,7 @@ impl CoarseFactor {
     /// The same for interface rows of weight one and rows in lines that are weighted already.
     fn plain_amplitudes(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         let weights = self.0.weights.as_ref().map(|w| &w.diagonal[..]);
-        self.0.coarse.0.product(r, weights, alpha, &mut s.sides);
+        self.product(r, weights, alpha, &mut s.sides);
         self.solve(alpha, s);
         alpha.iter_mut().for_each(|a| *a = -*a);
     }
@@ -363,7 +373,7 @@ impl CoarseFactor {
     pub(super) fn half_solve_first(&self, out: &mut [f64], s: &mut CoarseScratch) {
         match &self.0.factor {
             Factor::Sparse(factor) => factor.half_solve(&s.first, out, s.memory.at_least(factor.need(1))),
-            Factor::Split(base, factor) => base.half_solve(factor, &s.first, out, &mut s.split),
+            Factor::Split(base, factor) => base.half_solve(factor, &mut s.first, out, &mut s.split),
             Factor::Model(..) => {}
         }
     }

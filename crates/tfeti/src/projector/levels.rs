@@ -110,7 +110,8 @@ impl Coarse {
         }
         let tree = cheapest_tree(&graph, data.mobility.centres(), &changing, None)?;
         let entries = data.matrix.entries(&graph, &values);
-        let base = SplitBase::new(tree, entries, rows, &write, false, Some(self.exchange())).ok()?;
+        let rank_of = |s: u32| data.subdomains.rank_of(s as usize);
+        let base = SplitBase::new(tree, entries, rows, &write, false, Some((self.exchange(), &rank_of))).ok()?;
         Some(Basis::Split(Arc::new(base)))
     }
 
@@ -162,7 +163,8 @@ impl Coarse {
         let nothing = vec![false; graph.len()];
         let tree = CoarseTree::new(graph, centres, &nothing, 0, grid_of(centres).as_deref()).ok()?;
         let entries = data.matrix.entries(graph, values);
-        let base = SplitBase::new(tree, entries, 0, &|_, _| {}, true, Some(self.exchange()));
+        let rank_of = |s: u32| data.subdomains.rank_of(s as usize);
+        let base = SplitBase::new(tree, entries, 0, &|_, _| {}, true, Some((self.exchange(), &rank_of)));
         base.ok().map(Arc::new)
     }
 

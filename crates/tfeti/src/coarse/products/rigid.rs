@@ -100,7 +100,8 @@ fn nodal_copies(map: &BoundaryMap, first: &[usize], subdomains: usize) -> Lists<
 }
 
 impl RigidTables {
-    /// `R^T B^T W x`, six numbers a subdomain; `W` is one on interface rows and given by `weights` on the others.
+    /// `R^T B^T W x`, six numbers a subdomain; `W` is one on interface rows and given by `weights` on the others. Where
+    /// ranks keep parts of vectors, on the subdomains of this one.
     pub(crate) fn wrenches(
         &self,
         map: &BoundaryMap,
@@ -123,8 +124,12 @@ impl RigidTables {
                 *target = on_modes(self.subdomains.kernel(s), &wrench);
             }
         });
+    }
+
+    /// Brings what each rank has of them to all.
+    pub(crate) fn complete(&self, map: &BoundaryMap, out: &mut [f64]) {
         if !self.pieces.is_empty() {
-            map.exchange().complete(out.as_flattened_mut(), &self.pieces);
+            map.exchange().complete(out, &self.pieces);
         }
     }
 

@@ -3,6 +3,7 @@
 //! Each rank eliminates its branches, the regions outside of all branches (the *top*) every rank does. A region is
 //! worked on by the same operations wherever that is, and takes what the regions within leave in the same order, so
 //! bits do not depend on ranks. A factorisation tells once what branches do to the top, a solve likewise, and its result.
+//! Where all blocks of branches belong to their ranks, a solve begins with what each rank has of the right side.
 
 use crate::processes::exchange::Exchange;
 use crate::projector::split::front::Front;
@@ -10,6 +11,9 @@ use crate::projector::split::tree::CoarseTree;
 use crate::tolerances::BRANCHES;
 use std::ops::Range;
 use std::sync::Arc;
+
+/// The processes, and the rank of each block.
+pub(crate) type Spread<'a> = (&'a Arc<Exchange>, &'a dyn Fn(u32) -> usize);
 
 /// Which regions are worked on: those of branches, or the top. Without branches all are of the first pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -26,9 +30,12 @@ pub(crate) struct Branches {
     ranks: Vec<Option<u32>>,
     /// By rank and place.
     all: Vec<Branch>,
-    /// Parts of the ranks in messages of unknowns and of sums.
+    /// Parts of the ranks in messages of unknowns, and of sums and blocks of the top.
     unknowns: Vec<Range<usize>>,
     sums: Vec<Range<usize>>,
+    /// Whether all blocks of branches belong to their ranks; then the blocks of the top, by rank.
+    is_within: bool,
+    top: Vec<Vec<u32>>,
 }
 
 #[derive(Debug)]
@@ -47,7 +54,7 @@ pub(super) struct Branch {
 
 impl Branches {
     /// For several ranks, with about equal work; `None` of one rank, or if cuts do not pay.
-    pub(super) fn new(tree: &CoarseTree, exchange: &Arc<Exchange>) -> Option<Self> {
+    pub(super) fn new(tree: &CoarseTree, (exchange, rank_of): Spread<'_>) -> Option<Self> {
         let divided = match exchange.ranks() {
             1 => return None,
             ranks => divided(tree, ranks),
@@ -55,12 +62,30 @@ impl Branches {
         if divided.iter().filter(|roots| !roots.is_empty()).count() < 2 {
             return None;
         }
+        let mut ranks = vec![None; tree.regions.len()];
+        let mut is_within = true;
+        for (rank, roots) in divided.iter().enumerate() {
+            for &root in roots {
+                let region = &tree.regions[root];
+                ranks[region.first_region..=root].fill(Some(rank as u32));
+                let mut blocks = tree.blocks[region.start..region.own.end].iter();
+                is_within &= blocks.all(|&block| rank_of(block) == rank);
+            }
+        }
+        let mut top = vec![Vec::new(); divided.len()];
+        let outside = tree.regions.iter().zip(&ranks).filter(|(_, rank)| rank.is_none());
+        for (region, _) in outside.filter(|_| is_within) {
+            let blocks = tree.blocks[region.own.clone()].iter();
+            blocks.for_each(|&block| top[rank_of(block)].push(block));
+        }
         let mut out = Self {
             exchange: exchange.clone(),
-            ranks: vec![None; tree.regions.len()],
+            ranks,
             all: Vec::new(),
             unknowns: Vec::new(),
             sums: Vec::new(),
+            is_within,
+            top,
         };
         let (mut unknowns, mut sums) = (0, 0);
         for (rank, mut roots) in divided.into_iter().enumerate() {
@@ -68,7 +93,6 @@ impl Branches {
             roots.sort_unstable();
             for root in roots {
                 let region = &tree.regions[root];
-                out.ranks[region.first_region..=root].fill(Some(rank as u32));
                 let end = region.changing.end;
                 let crosses = |k: &usize| tree.nodes[*k].parent.is_some_and(|parent| parent >= end);
                 let branch = Branch {
@@ -82,6 +106,7 @@ impl Branches {
                 (unknowns, sums) = (branch.unknowns.end, branch.sums.end);
                 out.all.push(branch);
             }
+            sums += 6 * out.top[rank].len();
             out.unknowns.push(starts.0..unknowns);
             out.sums.push(starts.1..sums);
         }
@@ -124,9 +149,26 @@ impl Branches {
         self.all.iter().filter(move |branch| (branch.rank == rank) == own)
     }
 
-    /// Completes the sums of all branches.
-    pub(super) fn gather_sums(&self, message: &mut [f64]) {
+    /// Whether a solve completes its right side, of which each rank has what belongs to it.
+    pub(super) fn completes(&self) -> bool {
+        self.is_within
+    }
+
+    /// Completes the sums of all branches, and blocks of the right side `y` at the top.
+    pub(super) fn gather_sums(&self, y: &mut [f64], message: &mut [f64]) {
+        let places = |rank: usize| {
+            let (top, end) = (&self.top[rank], self.sums[rank].end);
+            (end - 6 * top.len()..)
+                .step_by(6)
+                .zip(top.iter().map(|&block| 6 * block as usize))
+        };
+        let rank = self.exchange.rank();
+        places(rank).for_each(|(k, start)| message[k..k + 6].copy_from_slice(&y[start..start + 6]));
         self.exchange.gather(message, &self.sums);
+        let others = (0..self.top.len()).filter(|&other| other != rank);
+        for (k, start) in others.flat_map(places) {
+            y[start..start + 6].copy_from_slice(&message[k..k + 6]);
+        }
     }
 
     /// Completes the unknowns of all branches.

@@ -9,9 +9,8 @@ use crate::coarse::matrix::Entries;
 use crate::linalg::both;
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::tiles::Tile;
-use crate::processes::exchange::Exchange;
 use crate::projector::split::alike::Bunches;
-use crate::projector::split::branches::{Branches, Pass};
+use crate::projector::split::branches::{Branches, Pass, Spread};
 use crate::projector::split::front::{Front, extend, load_columns};
 use crate::projector::split::fronts::{ContactRow, ContactTerms, ContactWeights};
 use crate::projector::split::shared::{bits, share, shared_tiles};
@@ -63,15 +62,15 @@ pub(crate) struct SplitFactor {
 
 impl SplitBase {
     /// From the matrix without its first `contact` rows, contact rows that `write` tells. Equal regions
-    /// are stored once and solved together if it `shares` or nothing changes. Of the processes of an `exchange` each
-    /// has a branch of the tree.
+    /// are stored once and solved together if it `shares` or nothing changes. Of the processes that are told each has a
+    /// branch of the tree.
     pub(crate) fn new(
         mut tree: CoarseTree,
         entries: Entries<'_>,
         contact: usize,
         write: &ContactRow<'_>,
         shares: bool,
-        exchange: Option<&Arc<Exchange>>,
+        processes: Option<Spread<'_>>,
     ) -> Result<Self, usize> {
         let steady = !tree.changes();
         let first = match steady {
@@ -91,7 +90,7 @@ impl SplitBase {
             pieces,
             contact: ContactTerms::new(tree.nodes.len(), contact, &|a, b| tree.front(a, b), write),
             bunches: Bunches::default(),
-            branches: exchange.and_then(|exchange| Branches::new(&tree, exchange)),
+            branches: processes.and_then(|processes| Branches::new(&tree, processes)),
             stored: 0,
             rows: contact,
             tree,
@@ -153,6 +152,11 @@ impl SplitBase {
         };
         let rank = |r: usize| self.branches.as_ref().and_then(|branches| branches.rank_of(r));
         Bunches::new(&self.tree, first, need, rank)
+    }
+
+    /// Whether a solve completes its right side, of which each process has what belongs to its subdomains.
+    pub(crate) fn completes(&self) -> bool {
+        self.branches.as_ref().is_some_and(Branches::completes)
     }
 
     /// Whether [`half_solve`](Self::half_solve) does something.

@@ -46,7 +46,7 @@ impl SplitBase {
     }
 
     /// `out = L^-1 y` where nothing changes, `L` Cholesky's factor in its order of the unknowns, which keep their places.
-    pub(crate) fn half_solve(&self, factor: &SplitFactor, y: &[f64], out: &mut [f64], work: &mut [f64]) {
+    pub(crate) fn half_solve(&self, factor: &SplitFactor, y: &mut [f64], out: &mut [f64], work: &mut [f64]) {
         let (work, rest) = work.split_at_mut(self.bunches.work());
         self.eliminate::<Tile>(factor, y, work, rest, false);
         self.apply_roots(work, false);
@@ -89,13 +89,13 @@ impl SplitBase {
     fn eliminate<T: Reads>(
         &self,
         factor: &SplitFactor,
-        y: &[f64],
+        y: &mut [f64],
         work: &mut [f64],
         message: &mut [f64],
         changing: bool,
     ) {
         let bunches = &self.bunches;
-        let eliminate = |pass: Pass, work: &mut [f64]| {
+        let eliminate = |pass: Pass, y: &[f64], work: &mut [f64]| {
             for height in &bunches.heights {
                 bunches.over_height(height, work, true, &|bunch, part, below| {
                     if self.does_bunch(bunch, pass) {
@@ -108,7 +108,7 @@ impl SplitBase {
                 });
             }
         };
-        eliminate(Pass::Branches, work);
+        eliminate(Pass::Branches, y, work);
         let Some(branches) = &self.branches else { return };
         let places = |branch: &Branch| {
             let [k, column] = bunches.of[branch.root];
@@ -120,12 +120,12 @@ impl SplitBase {
             let sums = &mut message[branch.sums.clone()];
             sums.iter_mut().zip(places(branch)).for_each(|(sum, k)| *sum = work[k]);
         }
-        branches.gather_sums(message);
+        branches.gather_sums(y, message);
         for branch in branches.of(false) {
             let sums = &message[branch.sums.clone()];
             sums.iter().zip(places(branch)).for_each(|(sum, k)| work[k] = *sum);
         }
-        eliminate(Pass::Top, work);
+        eliminate(Pass::Top, y, work);
     }
 
     /// All bunches, each before those within.
