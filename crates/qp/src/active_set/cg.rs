@@ -22,7 +22,7 @@ use crate::tolerances::{
 };
 use crate::vector;
 
-use super::iterate::{Iterate, Lengths, natural_map};
+use super::iterate::{Iterate, Lengths, Wanted, natural_map};
 use super::view::ActiveSetPreconditioner;
 
 /// How far the errors are to fall on an active set.
@@ -81,7 +81,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
             self.advance(length, coupled);
             // a direction that is coupled or rounded is kept conjugate to the last one
             let conjugate = coupled || digits > 0.0;
-            let (next, along) = self.precondition(conjugate);
+            let wanted = if conjugate { Wanted::Along } else { Wanted::Nothing };
+            let (next, along) = self.precondition(wanted);
             let beta = if conjugate { along / curvature } else { next / rho };
             vector::axpby(-1.0, &self.work.z, beta, &mut self.work.p);
             rho = next;

@@ -41,6 +41,13 @@ impl Lengths {
     }
 }
 
+/// What a preconditioning is asked for besides `rho`: `z · ap`, or `x · x`.
+pub(crate) enum Wanted {
+    Nothing,
+    Along,
+    Size,
+}
+
 /// A problem, its iterate and the active set it is on. Between two methods `ax` is `A x` but for changes of `x` since
 /// [`mark`](Iterate::mark).
 pub(crate) struct Iterate<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
@@ -73,15 +80,19 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         }
     }
 
-    /// How far `x` has moved from the [mark](Iterate::mark); `t` becomes that move.
-    pub(crate) fn moved(&mut self) -> f64 {
-        vector::axpby(1.0, self.x, -1.0, &mut self.work.t);
-        self.problem.operator.norm(&self.work.t)
+    /// Whether `x` has moved from the [mark](Iterate::mark) by more than a `length`; `t` becomes that move.
+    pub(crate) fn moved(&mut self, length: f64) -> bool {
+        let constrained = self.constrained();
+        let t = &mut self.work.t;
+        vector::axpby(1.0, self.x, -1.0, t);
+        // a sum of all processes is asked for only where constrained components, which each has, do not tell
+        let tells = length == 0.0 && t[..constrained].iter().any(|t| t.abs() > 0.0);
+        tells || self.problem.operator.norm(t) > length
     }
 
     /// The product follows `x` from the [mark](Iterate::mark), if it has moved by more than `length`. Whether it does.
     pub(crate) fn correct(&mut self, length: f64) -> bool {
-        let follows = self.moved() > length;
+        let follows = self.moved(length);
         if follows {
             self.catch_up();
         }
@@ -142,8 +153,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         work.active.restrict(self.set, &mut work.restricted);
     }
 
-    /// `z` from the residual on the active set, with its norm. Returns `rho`, and `z · ap` if that is `wanted`.
-    pub(crate) fn precondition(&mut self, wanted: bool) -> (f64, f64) {
+    /// `z` from the residual on the active set, with its norm. Returns `rho`, and what else is wanted, or zero.
+    pub(crate) fn precondition(&mut self, wanted: Wanted) -> (f64, f64) {
         let ActiveSetWorkspace {
             residual,
             restricted,
@@ -176,16 +187,17 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         self.report.preconditionings += 1;
         residual[..constrained].copy_from_slice(restricted);
         let operator = self.problem.operator;
-        let [rho, square, along] = match wanted {
-            true => operator.dots([(residual, z), (z, z), (z, ap)]),
-            false => {
+        let [rho, square, other] = match wanted {
+            Wanted::Along => operator.dots([(residual, z), (z, z), (z, ap)]),
+            Wanted::Size => operator.dots([(residual, z), (z, z), (self.x, self.x)]),
+            Wanted::Nothing => {
                 let [rho, square] = operator.dots([(residual, z), (z, z)]);
                 [rho, square, 0.0]
             }
         };
         residual[..constrained].copy_from_slice(saved);
         *z_norm = square.sqrt();
-        (rho, along)
+        (rho, other)
     }
 
     /// Brings `x`, moved from the mark, back to set and equality; the product follows. Returns how far constrained

@@ -15,7 +15,7 @@ use super::blocks::ActiveSet;
 use super::cg::Goal;
 use super::compliance::{Compliance, Path};
 use super::descent::DescentSafeguard;
-use super::iterate::{Iterate, Lengths, natural_map};
+use super::iterate::{Iterate, Lengths, Wanted, natural_map};
 use super::problem::{ActiveSetPoint, ActiveSetProblem};
 use super::settings::{ActiveSetReport, ActiveSetSettings};
 use super::view::{ActiveSetPreconditioner, ActiveSetView};
@@ -202,11 +202,11 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         let preconditioner = at.problem.preconditioner;
         preconditioner.enter(&view, &mut at.work.preconditioner);
         at.start_residual();
-        let (rho, _) = at.precondition(false);
+        let (rho, square) = at.precondition(Wanted::Size);
         let errors = at.errors();
         // what vanishes is measured against `error_floor`, and its constrained part against a small part of that at
         // least
-        let x_norm = at.problem.operator.norm(at.x);
+        let x_norm = square.sqrt();
         let all = x_norm.max(settings.error_floor);
         let part = vector::norm(&at.x[..at.constrained()]);
         let vanishes = part < settings.contact_error_floor;

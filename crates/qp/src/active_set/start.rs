@@ -53,7 +53,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         if !self.ax_known || partly && !shares {
             self.at.multiply();
         } else if shares {
-            self.at.ahead = self.at.moved() > 0.0;
+            self.at.ahead = self.at.moved(0.0);
         } else {
             self.at.correct(if moves { 0.0 } else { ROUNDED * self.peak });
         }
