@@ -93,7 +93,7 @@ impl Simulation {
                 &[(!line, Attempt::Whole), (line, Attempt::Fallback)][..],
             ),
         };
-        let (tried, unloaded) = self.unload(state, way, line)?;
+        let (tried, unloaded) = self.unload(state, way, (line, first))?;
         let (mut report, recovered) = match unloaded {
             Some(recovered) => (tried, recovered),
             None => {

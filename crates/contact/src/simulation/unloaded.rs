@@ -34,7 +34,7 @@ impl Simulation {
         &mut self,
         state: &State,
         way: &Way,
-        line: bool,
+        (line, attempt): (bool, Attempt),
     ) -> Result<(StepReport, Option<Recovered>), ContactError> {
         let (model, increment, mut report) = (&self.model, way.increment(), StepReport::new());
         if !model.plan.effects.history || model.loose_motions()?.is_empty() {
@@ -44,7 +44,7 @@ impl Simulation {
         if !increment.start.is_some_and(unloaded) {
             return Ok((report, None));
         }
-        self.start(state, way, line, Attempt::First);
+        self.start(state, way, line, attempt);
         let contact = self.model.tfeti.gluing().ranges().contact();
         let mut forces = f64::INFINITY;
         let mut vanish = false;
@@ -70,20 +70,17 @@ impl Simulation {
             return Ok((report, None));
         }
         let (model, zeros) = (&self.model, vec![0.0; self.iterate.lambda.len()]);
-        let touch = model
-            .points
-            .iter()
-            .zip(&last.points)
-            .filter(|(_, state)| state.state != ContactState::Open);
-        let touch = touch
-            .flat_map(|(point, _)| rows(point))
-            .map(|row| (row, last.rows[row]));
+        let points = model.points.iter().zip(&last.points);
+        let touching = points.filter(|(_, state)| state.state != ContactState::Open);
+        let targets = touching.flat_map(|(point, _)| rows(point));
+        let targets = targets.map(|row| (row, last.rows[row])).collect();
         let from = Place {
             lambda: &zeros,
             alpha: &vec![0.0; self.problem.rhs.len()],
             rows: &zeros,
         };
-        let placed = self.placed(model.loose_motions()?, &from, touch.collect())?;
+        let placed = self.placed(model.loose_motions()?, &from, targets)?;
+        report.counters.products += usize::from(placed.is_some());
         self.spare = last;
         let certified = placed.filter(|(_, placed)| placed.certificate.largest() <= self.settings.tolerance);
         let unloaded = certified.map(|(alpha, placed)| {
