@@ -79,6 +79,11 @@ impl ContactError {
             } => {
                 vec![Part::Contact(*contact), Part::Node(*node), Part::Node(*partner)]
             }
+            Self::SamePair { first, second, tags } => {
+                let contacts = [first, second].map(|contact| Part::Contact(*contact));
+                let tags = tags.map(|tag| Part::Tag(FacetTag(tag)));
+                contacts.into_iter().chain(tags).collect()
+            }
             Self::SameSide { contact, tag } => vec![Part::Contact(*contact), Part::Tag(FacetTag(*tag))],
             Self::SharedNode { node, first, second } => {
                 vec![Part::Node(*node), Part::Contact(*first), Part::Contact(*second)]

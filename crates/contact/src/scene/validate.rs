@@ -82,7 +82,26 @@ impl Scene {
             }
         }
         let mut contacts = self.contacts.iter().enumerate();
-        contacts.try_for_each(|(index, c)| self.check(index, c))
+        contacts.try_for_each(|(index, c)| self.check(index, c))?;
+        match self.same_pair() {
+            Some((first, second, tags)) => Err(ContactError::SamePair { first, second, tags }),
+            None => Ok(()),
+        }
+    }
+
+    /// Two contacts of one step that are between the same sides, and the tags of these.
+    fn same_pair(&self) -> Option<(usize, usize, [u32; 2])> {
+        let all = || self.contacts.iter().enumerate();
+        let common = |a: &[FacetTag], b: &[FacetTag]| a.iter().find(|tag| b.contains(tag)).map(|tag| tag.0);
+        let ends = self.analysis.times();
+        all().find_map(|(second, b)| {
+            all().take(second).find_map(|(first, a)| {
+                let both = |[x, y]: [&[FacetTag]; 2]| Some([common(&a.tags, x)?, common(&a.partner, y)?]);
+                let tags = both([&b.tags, &b.partner]).or_else(|| both([&b.partner, &b.tags]))?;
+                let meet = ends.iter().any(|&end| a.span.has(end) && b.span.has(end));
+                meet.then_some((first, second, tags))
+            })
+        })
     }
 
     /// Checks that all histories have a value at a time.

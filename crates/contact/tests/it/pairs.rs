@@ -295,6 +295,33 @@ fn what_cannot_be_paired_is_refused() {
         matches!(error, ContactError::SameSide { contact: 0, tag } if tag == second(brick::Z_MIN).0),
         "{error}"
     );
+    // the same sides twice, told the other way round or tied, unless one ends before the other starts
+    let scene = |again: Contact, ends: Option<f64>| {
+        let first = match ends {
+            Some(time) => joint().with_end(time),
+            None => joint(),
+        };
+        Scene::new(column([2; 3]), uniform(1e9, 0.3))
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_contact(first)
+            .with_contact(again)
+            .with_analysis(Analysis::quasistatic(1.0, 2))
+    };
+    let turned = || Contact::between(second(brick::Z_MIN), brick::Z_MAX);
+    for again in [joint(), turned(), Contact::tied(brick::Z_MAX, second(brick::Z_MIN))] {
+        let error = refused(&scene(again, None));
+        let ContactError::SamePair {
+            first: 0, second: 1, ..
+        } = error
+        else {
+            panic!("{error}");
+        };
+    }
+    let staged = scene(turned().with_start(0.5), Some(0.5));
+    assert!(!matches!(
+        Simulation::new(staged, Settings::default()),
+        Err(ContactError::SamePair { .. })
+    ));
     // sides that look away from each other
     for outer in [Contact::between, Contact::tied] {
         let error = fails(column([2; 3]), outer(second(brick::Z_MAX), brick::Z_MIN));
