@@ -65,6 +65,17 @@ pub(super) fn certify(m: &Measured<'_>, sizes: &[Sizes]) -> Certificate {
     c
 }
 
+/// A condition on the mean of several nodes.
+struct Mean {
+    /// The point that stands for it.
+    point: usize,
+    gap: f64,
+    area: f64,
+    /// How far it is violated, m, and what that is measured against.
+    depth: f64,
+    size: f64,
+}
+
 /// Penetration of the obstacles that the scene names, whatever points were made of them: gaps and normals of each
 /// contact by itself, and mean displacements of its nodes. Means of contacts that are equally far and one point are one
 /// mean over the facets of all.
@@ -83,8 +94,7 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
         }
         sum / weight
     };
-    // of means: the point, the gap, the area that counts, how deep it is, and the size that this is measured against
-    let mut means: Vec<(usize, f64, f64, f64, f64)> = Vec::new();
+    let mut means: Vec<Mean> = Vec::new();
     for (condition, point) in model.discrete.conditions.iter().zip(&model.standing) {
         let Some(point) = *point else {
             continue;
@@ -102,17 +112,23 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
         let size = sizes[body].displacement;
         match condition.sides.own.nodes() {
             [_] => gap.worsen(depth, size),
-            _ => means.push((point, condition.gap, condition.area, depth, size)),
+            _ => means.push(Mean {
+                point,
+                gap: condition.gap,
+                area: condition.area,
+                depth,
+                size,
+            }),
         }
     }
-    means.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    for alike in means.chunk_by(|a, b| a.0 == b.0 && b.1 - a.1 <= model.discrete.rounding) {
-        let area: f64 = alike.iter().map(|m| m.2).sum();
+    means.sort_by(|a, b| a.point.cmp(&b.point).then(a.gap.total_cmp(&b.gap)));
+    for alike in means.chunk_by(|a, b| a.point == b.point && b.gap - a.gap <= model.discrete.rounding) {
+        let area: f64 = alike.iter().map(|m| m.area).sum();
         let depth = match alike {
-            [one] => one.3,
-            _ => alike.iter().map(|m| m.2 * m.3).sum::<f64>() / area,
+            [one] => one.depth,
+            _ => alike.iter().map(|m| m.area * m.depth).sum::<f64>() / area,
         };
-        gap.worsen(depth, alike[0].4);
+        gap.worsen(depth, alike[0].size);
     }
 }
 
