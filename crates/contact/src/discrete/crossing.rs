@@ -20,8 +20,7 @@ pub(super) fn crossing(scene: &Scene, index: usize) -> HashSet<u32> {
     let crosses = |(other, contact): &(usize, &Contact)| {
         let keeps = contact.partner.is_empty() && *other != index || *other < index;
         let rough = own.friction().is_some() || contact.friction().is_some();
-        let meet = || times.iter().any(|t| own.span.has(*t) && contact.span.has(*t));
-        keeps && rough && !contact.tied && meet()
+        keeps && rough && !contact.tied && own.span.meets(&contact.span, times)
     };
     let others = scene.contacts.iter().enumerate().filter(crosses);
     let tags = others.flat_map(|(_, contact)| contact.tags.iter().chain(&contact.partner));

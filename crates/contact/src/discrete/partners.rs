@@ -121,20 +121,22 @@ impl Paired {
                 }
             }
         };
-        let is_flat = !is_curved(&paired.surface) && !is_curved(&other.surface);
-        let [hard, harder] = [&paired.surface, &other.surface].map(|s| hardness(mesh, materials, s));
-        let yields = |facet: [f64; 2], hard: [f64; 2]| {
-            facet[0] > MUCH_COARSER * facet[1] || mesh.order() == 1 && hard[0] > HARDER * hard[1]
+        // of the side with the points, then of the other one
+        let in_order = |[own, others]: [f64; 2]| if swapped { [others, own] } else { [own, others] };
+        let [coarser, finer] = in_order([own, others]);
+        let sides = [&paired.surface, &other.surface];
+        let is_flat = !sides.into_iter().any(is_curved);
+        let is_harder = || {
+            let [harder, softer] = in_order(sides.map(|s| hardness(mesh, materials, s)));
+            mesh.order() == 1 && harder > HARDER * softer
         };
-        let (mortar, swapped) = match swapped {
-            _ if !is_flat => (mortar, swapped),
-            false if yields([own, others], [hard, harder]) && reaches_beyond(&paired.surface, &mortar) => {
-                (back(), true)
-            }
-            true if yields([others, own], [harder, hard]) && reaches_beyond(&other.surface, &mortar) => {
-                (there(), false)
-            }
-            _ => (mortar, swapped),
+        let yields = is_flat
+            && (coarser > MUCH_COARSER * finer || is_harder())
+            && reaches_beyond(sides[usize::from(swapped)], &mortar);
+        let (mortar, swapped) = match (yields, swapped) {
+            (true, false) => (back(), true),
+            (true, true) => (there(), false),
+            (false, _) => (mortar, swapped),
         };
         if mortar.iter().all(Option::is_none) {
             let distance = other.distance(&paired.surface);

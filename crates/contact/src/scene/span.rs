@@ -17,6 +17,11 @@ impl Span {
         self.start.is_none_or(|start| is_past(start, step)) && !self.end.is_some_and(|end| is_past(end, step))
     }
 
+    /// Whether a step that ends at one of these times belongs to both.
+    pub(crate) fn meets(&self, other: &Self, ends: &[f64]) -> bool {
+        ends.iter().any(|&end| self.has(end) && other.has(end))
+    }
+
     /// The times at which it starts and ends, s.
     pub(crate) fn times(&self) -> impl Iterator<Item = f64> + use<> {
         self.start.into_iter().chain(self.end)

@@ -98,8 +98,7 @@ impl Scene {
             all().take(second).find_map(|(first, a)| {
                 let both = |[x, y]: [&[FacetTag]; 2]| Some([common(&a.tags, x)?, common(&a.partner, y)?]);
                 let tags = both([&b.tags, &b.partner]).or_else(|| both([&b.partner, &b.tags]))?;
-                let meet = ends.iter().any(|&end| a.span.has(end) && b.span.has(end));
-                meet.then_some((first, second, tags))
+                a.span.meets(&b.span, ends).then_some((first, second, tags))
             })
         })
     }

@@ -85,35 +85,21 @@ impl Simulation {
         let line = self.settings.extrapolate && !increment.start.is_some_and(rests);
         let two_starts = self.settings.extrapolate && state.step() > 0 && state.unconverged_history().is_none();
         let falls_back = matches!(self.settings.method, Method::ActiveSet(_)) && !self.model.points.is_empty();
-        let (first, others) = match (two_starts, falls_back) {
-            (false, _) => (Attempt::Whole, &[][..]),
-            (true, false) => (Attempt::First, &[(!line, Attempt::Whole)][..]),
-            (true, true) => (
-                Attempt::First,
-                &[(!line, Attempt::Whole), (line, Attempt::Fallback)][..],
-            ),
+        let starts = match (two_starts, falls_back) {
+            (false, _) => &[(line, Attempt::Whole)][..],
+            (true, false) => &[(line, Attempt::First), (!line, Attempt::Whole)],
+            (true, true) => &[
+                (line, Attempt::First),
+                (!line, Attempt::Whole),
+                (line, Attempt::Fallback),
+            ],
         };
-        let (tried, unloaded) = self.unload(state, way, (line, first))?;
+        let (tried, unloaded) = self.unload(state, way, starts[0])?;
         let (mut report, recovered) = match unloaded {
             Some(recovered) => (tried, recovered),
             None => {
-                if !tried.status.converged() {
-                    self.start(state, way, line, first);
-                }
-                let (report, mut recovered) = self.solve()?;
-                let mut report = tried.resumed(report);
-                for &(line, attempt) in others {
-                    if !report.status.is_lost() {
-                        break;
-                    }
-                    self.spare = recovered;
-                    self.controller = state.controller;
-                    self.start(state, way, line, attempt);
-                    let (next, again) = self.solve()?;
-                    (report, recovered) = (report.resumed(next), again);
-                }
-                let stands = self.stand(state, recovered)?;
-                (report, stands)
+                let (report, recovered) = self.solve_from(starts, state, way, tried)?;
+                (report, self.stand(state, recovered)?)
             }
         };
         let (model, problem) = (&self.model, &self.problem);
@@ -136,6 +122,32 @@ impl Simulation {
             report,
             recovered,
         })
+    }
+
+    /// Solves from one start after another as long as the step is lost; from the iterate of what was tried before, if that
+    /// converged, in place of the first one.
+    fn solve_from(
+        &mut self,
+        starts: &[(bool, Attempt)],
+        state: &State,
+        way: &Way,
+        tried: StepReport,
+    ) -> Result<(StepReport, Recovered), ContactError> {
+        let mut sets_out = tried.status.converged();
+        let (mut report, mut recovered) = (tried, std::mem::take(&mut self.spare));
+        for &(line, attempt) in starts {
+            self.spare = recovered;
+            self.controller = state.controller;
+            if !std::mem::take(&mut sets_out) {
+                self.start(state, way, line, attempt);
+            }
+            let (next, found) = self.solve()?;
+            (report, recovered) = (report.resumed(next), found);
+            if !report.status.is_lost() {
+                break;
+            }
+        }
+        Ok((report, recovered))
     }
 
     /// One run of the solver from the present iterate, and what is recovered from it.

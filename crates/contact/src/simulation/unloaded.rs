@@ -60,8 +60,8 @@ impl Simulation {
             if vanish || !report.status.converged() || forces > LOCKED * before {
                 break;
             }
-            for vector in [&mut self.iterate.lambda, &mut self.iterate.f_lambda] {
-                vector.iter_mut().for_each(|v| *v *= PARTS_LEFT[1] / PARTS_LEFT[0]);
+            for of_forces in [&mut self.iterate.lambda, &mut self.iterate.f_lambda] {
+                vector::scale(PARTS_LEFT[1] / PARTS_LEFT[0], of_forces);
             }
         }
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, 0.0)?;

@@ -13,7 +13,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 /// The processes, and the rank of each block.
-pub(crate) type Spread<'a> = (&'a Arc<Exchange>, &'a dyn Fn(u32) -> usize);
+pub(crate) type Processes<'a> = (&'a Arc<Exchange>, &'a dyn Fn(u32) -> usize);
 
 /// Which regions are worked on: those of branches, or the top. Without branches all are of the first pass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -54,7 +54,7 @@ pub(super) struct Branch {
 
 impl Branches {
     /// For several ranks, with about equal work; `None` of one rank, or if cuts do not pay.
-    pub(super) fn new(tree: &CoarseTree, (exchange, rank_of): Spread<'_>) -> Option<Self> {
+    pub(super) fn new(tree: &CoarseTree, (exchange, rank_of): Processes<'_>) -> Option<Self> {
         let divided = match exchange.ranks() {
             1 => return None,
             ranks => divided(tree, ranks),

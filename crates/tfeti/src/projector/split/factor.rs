@@ -10,7 +10,7 @@ use crate::linalg::both;
 use crate::linalg::supernodes::Supernodes;
 use crate::linalg::tiles::Tile;
 use crate::projector::split::alike::Bunches;
-use crate::projector::split::branches::{Branches, Pass, Spread};
+use crate::projector::split::branches::{Branches, Pass, Processes};
 use crate::projector::split::front::{Front, extend, load_columns};
 use crate::projector::split::fronts::{ContactRow, ContactTerms, ContactWeights};
 use crate::projector::split::shared::{bits, share, shared_tiles};
@@ -70,7 +70,7 @@ impl SplitBase {
         contact: usize,
         write: &ContactRow<'_>,
         shares: bool,
-        processes: Option<Spread<'_>>,
+        processes: Option<Processes<'_>>,
     ) -> Result<Self, usize> {
         let steady = !tree.changes();
         let first = match steady {
