@@ -221,16 +221,35 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
     /// Moves `x` to the point of the set next to it whose constrained components balance what nothing else does, in
     /// the metric of the preconditioner. Where there is none, which is returned as false, the equality comes first.
     pub(crate) fn project(&mut self) -> bool {
+        let balances = self.approach();
+        if !balances {
+            self.projector.balance(self.x, self.problem.rhs);
+        }
+        balances
+    }
+
+    /// The same but for the equality where there is no such point: constrained components then balance as far as they can.
+    fn approach(&mut self) -> bool {
         let constrained = self.constrained();
         let (y, lengths) = (&self.x[..constrained], &self.problem.scale[..constrained]);
         let point = self.balanced(y, lengths);
         let balances = point.is_ok();
         let (Ok(point) | Err(point)) = point;
         self.x[..constrained].copy_from_slice(&point);
-        if !balances {
-            self.projector.balance(self.x, self.problem.rhs);
-        }
         balances
+    }
+
+    /// [`project_start`](Iterate::project_start), and where that moves nothing [`project`](Iterate::project) with the set
+    /// of the start: the projector may still have that of another solve.
+    pub(crate) fn begin(&mut self) -> Result<(), QpError> {
+        if self.project_start() || self.approach() {
+            return Ok(());
+        }
+        if self.set_weights(false)?.is_none() {
+            self.set_all_free()?;
+        }
+        self.projector.balance(self.x, self.problem.rhs);
+        Ok(())
     }
 
     /// The same for the start of a solve: components at their bounds stay there, and points on their circles stay on

@@ -84,8 +84,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
                 let map = natural_map(at.problem, &at.work.residual, at.step);
                 at.work.active.aim(at.set, at.x, &map);
                 balances = at.project();
-            } else if !at.project_start() {
-                at.project();
+            } else {
+                at.begin()?;
             }
             if round > 1 {
                 self.moved.unrest = vector::distance(&at.x[..constrained], &last);
