@@ -18,7 +18,11 @@ pub(crate) const REACHED: f64 = 1e-14;
 /// Part of the earlier sizes that a vanishing quantity is measured against.
 pub(crate) const REST: f64 = 1e-3;
 
-// ---- steps in time (scene) ----
+// ---- steps in time (scene, model) ----
+
+/// Factor of a load, over its largest at any step, up to which it is what rounding leaves of zero: a sine has 1e-16 of
+/// its amplitude where it vanishes. Forces that small have no size that a solver could be accurate to.
+pub(crate) const NO_LOAD: f64 = 1e-12;
 
 /// Steps are equal whose lengths differ by less, relative to the longer one.
 pub(crate) const UNEQUAL: f64 = 1e-9;

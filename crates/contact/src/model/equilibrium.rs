@@ -136,8 +136,8 @@ fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Option
     for (step, &time) in times.skip(steps.start).take(steps.len()) {
         let mut b = vec![0.0; motions.len()];
         let mut size = 0.0;
-        for (load, (work, part)) in model.scene.loads.iter().zip(&loads) {
-            let h = load.history.value(time);
+        for (load, (work, part)) in loads.iter().enumerate() {
+            let h = model.factor(load, time);
             vector::axpy(h, work, &mut b);
             size += h.abs() * part;
         }

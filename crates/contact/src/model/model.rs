@@ -5,8 +5,9 @@ use super::contact_point::{ConstrainedPoint, constrained_points};
 use crate::discrete::{ContactPoint, DiscreteScene};
 use crate::error::ContactError;
 use crate::plan::Plan;
-use crate::scene::{Friction, Scene};
+use crate::scene::{Friction, Load, Scene};
 use crate::settings::Settings;
+use crate::tolerances::NO_LOAD;
 use signorini_fem_mesh::vec3::{moved, norm, sub};
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti::internal::{CopyStiffness, Dependency};
@@ -28,6 +29,8 @@ pub(crate) struct Model {
     pub(crate) tfeti: Tfeti,
     pub(crate) bodies: Bodies,
     pub(crate) loads: Vec<LoadResponse>,
+    /// Size of the factor of each load up to which it is none.
+    no_load: Vec<f64>,
     /// Of each load that is an eigenstrain the squares of its nodal forces on each body, N²; empty of others.
     pub(crate) strained: Vec<Vec<f64>>,
     /// Without contact, multipliers that [hand each load on](Self::hand_on) to the supports; solvers find what is left.
@@ -119,6 +122,15 @@ impl Model {
         }
     }
 
+    /// The factor of a load at a time; 0 where it has no forces, or only those that rounding leaves.
+    pub(crate) fn factor(&self, load: usize, time: f64) -> f64 {
+        let factor = self.scene.loads[load].history.value(time);
+        match factor.abs() <= self.no_load[load] {
+            true => 0.0,
+            false => factor,
+        }
+    }
+
     /// The rows of tied contacts, each with its point.
     pub(crate) fn tied(&self) -> impl Iterator<Item = (&TiedRows, &ContactPoint)> {
         let points = self.discrete.points.len();
@@ -187,6 +199,11 @@ impl Model {
             .with_contact(&discrete.constraints)
             .with_communicator(&settings.communicator)
             .build()?;
+        let no_load = |(load, forces): (&Load, &Vec<Vec<f64>>)| match forces.iter().flatten().all(|f| *f == 0.0) {
+            true => f64::INFINITY,
+            false => NO_LOAD * scene.analysis.largest_factor(&load.history).0,
+        };
+        let no_load = scene.loads.iter().zip(&discrete.loads).map(no_load).collect();
         let loads = std::mem::take(&mut discrete.loads).into_iter().zip(&scene.loads);
         let loads = loads
             .map(|(local, load)| {
@@ -232,6 +249,7 @@ impl Model {
             discrete,
             tfeti,
             loads,
+            no_load,
             strained,
             handed_on: Vec::new(),
             points,

@@ -94,12 +94,12 @@ impl Simulation {
                 (line, Attempt::Fallback),
             ],
         };
-        let (tried, unloaded) = self.unload(state, way, starts[0])?;
+        let (tried, unloaded, told) = self.unload(state, way, starts[0])?;
         let (mut report, recovered) = match unloaded {
             Some(recovered) => (tried, recovered),
             None => {
                 let (report, recovered) = self.solve_from(starts, state, way, tried)?;
-                (report, self.stand(state, recovered)?)
+                (report, self.stand(state, recovered, told)?)
             }
         };
         let (model, problem) = (&self.model, &self.problem);
@@ -223,7 +223,10 @@ impl Simulation {
         let motions = model.coupling_motions(&recovered.torn).into_iter().enumerate();
         let along = |(k, motion)| model.discrete.couplings.along(k, motion);
         kept.motions = motions.map(along).collect();
-        if model.scene.has_spans() && model.scene.stage_steps().end < model.plan.steps {
+        let spans = model.scene.has_spans() && model.scene.stage_steps().end < model.plan.steps;
+        let goes_on = kept.between || problem.index + 1 < model.plan.steps;
+        let loose = || model.loose_motions().is_ok_and(|motions| !motions.is_empty());
+        if spans || history && goes_on && loose() {
             kept.displacement = model.tfeti.nodal_mean(&recovered.torn);
         }
         if history && model.any_law(Friction::depends_on_rate) {

@@ -42,7 +42,8 @@ pub struct State {
     pub(crate) shortest_step: f64,
     /// Motions of couplings at the last step, along their axes.
     pub(crate) motions: Vec<[f64; 6]>,
-    /// Displacements of all nodes at the last step, m; empty where neither supports nor contacts start or end later.
+    /// Displacements of all nodes at the last step, m; empty where neither supports nor contacts start or end later and
+    /// only contact holds no body.
     pub(crate) displacement: Vec<f64>,
     /// The stage whose rows and points its numbers belong to.
     pub(crate) stage: Stage,

@@ -71,10 +71,9 @@ impl StepProblem {
         self.formula = increment.formula;
         self.peaks.clone_from(&state.peaks);
         self.peaks.resize(model.bodies.count().max(1), Peak::default());
-        let loads = model.scene.loads.iter();
         let before = increment.start.filter(|_| left != 0.0);
-        let factor = |h: &History| h.value(time) + before.map_or(0.0, |start| left * h.value(start));
-        self.factors = loads.map(|load| factor(&load.history)).collect();
+        let factor = |load| model.factor(load, time) + before.map_or(0.0, |start| left * model.factor(load, start));
+        self.factors = (0..model.loads.len()).map(factor).collect();
         let (rows, take) = (model.tfeti.dual_dim(), std::mem::take::<Vec<f64>>);
         self.load = zeros(take(&mut self.load), rows);
         self.rhs = zeros(take(&mut self.rhs), model.tfeti.coarse().rows());
@@ -114,9 +113,9 @@ impl StepProblem {
     pub(crate) fn growth(&self, model: &Model, time: f64) -> f64 {
         let mut before = vec![0.0; self.rhs.len()];
         let (mut along, mut square) = (0.0, 0.0);
-        let loads = model.scene.loads.iter().zip(&model.loads).zip(&model.strained);
-        for (((case, load), strained), now) in loads.zip(&self.factors) {
-            let factor = case.history.value(time);
+        let loads = model.loads.iter().zip(&model.strained).zip(&self.factors);
+        for (k, ((load, strained), now)) in loads.enumerate() {
+            let factor = model.factor(k, time);
             vector::axpy(factor, &load.coarse, &mut before);
             let size: f64 = strained.iter().sum();
             along += now * factor * size;
@@ -135,8 +134,9 @@ impl StepProblem {
     }
 
     /// Whether no load acts, and one did at that time.
-    pub(crate) fn is_unloaded(&self, scene: &Scene, before: f64) -> bool {
-        self.factors.iter().all(|f| *f == 0.0) && scene.loads.iter().any(|load| load.history.value(before) != 0.0)
+    pub(crate) fn is_unloaded(&self, model: &Model, before: f64) -> bool {
+        let acted = |load| model.factor(load, before) != 0.0;
+        self.factors.iter().all(|f| *f == 0.0) && (0..self.factors.len()).any(acted)
     }
 
     /// Whether nothing that acts has changed since a time.

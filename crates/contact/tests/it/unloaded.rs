@@ -79,3 +79,219 @@ fn bodies_stand_where_next_to_no_load_leaves_them() {
         assert!(products <= 50, "{steps}: {products}");
     }
 }
+
+/// A cube far from others, pressed, pushed and let go as all loads but its own allow.
+fn beside(others: impl FnOnce(Scene) -> Scene, mesh: TetMesh, end: f64) -> Scene {
+    let table = |sideways: f64| {
+        let times = vec![(0.0, 0.0), (1.0, 1.0), (2.0, 1.0 + sideways), (3.0, 0.0)];
+        History::table(times).expect("history")
+    };
+    let scene = Scene::new(mesh, uniform(1e3, 0.3))
+        .with_load(Load::force(brick::Z_MAX, [0.0, 0.0, -10.0]).with_history(table(0.0)))
+        .with_load(Load::force(brick::X_MIN, [1.0, 0.3, 0.0]).with_history(table(0.8)));
+    others(scene).with_analysis(Analysis::quasistatic(end, end as usize))
+}
+
+fn floor(tag: FacetTag) -> Contact {
+    Contact::rigid(tag).with_friction(Friction::coulomb(0.3))
+}
+
+/// Another body that is not loaded, or is loaded later, or is squeezed all the time, changes nothing.
+#[test]
+fn a_body_stands_where_it_does_without_others() {
+    let cube = block([1.0; 3], [3; 3]);
+    let far = cube.clone().map_points(|[x, y, z]| [x + 3.0, y, z]).expect("mesh");
+    let two = with_second(&cube, &far);
+    let wanted = run(
+        beside(|s| s.with_contact(floor(brick::Z_MIN)), cube.clone(), 6.0),
+        Settings::default(),
+    )
+    .1;
+    let later = History::table(vec![(0.0, 0.0), (3.0, 0.0), (4.0, 1.0), (5.0, 0.0)]).expect("history");
+    let squeezed = |part: f64| {
+        let way = History::table(vec![(0.0, 0.0), (1.0, 1.0)]).expect("history");
+        floor(second(brick::X_MIN)).with_motion([part, 0.0, 0.0], way)
+    };
+    let own = 3 * cube.points().len();
+    type Others<'a> = Box<dyn Fn(Scene) -> Scene + 'a>;
+    let others: [(&str, Others<'_>); 3] = [
+        (
+            "never loaded before",
+            Box::new(|s| {
+                let load = Load::force(second(brick::Z_MAX), [0.0, 0.0, -10.0]).with_history(later.clone());
+                s.with_contact(floor(second(brick::Z_MIN))).with_load(load)
+            }),
+        ),
+        (
+            "squeezed",
+            Box::new(|s| s.with_contact(squeezed(1e-2)).with_contact(floor(second(brick::X_MAX)))),
+        ),
+        (
+            "squeezed a little",
+            Box::new(|s| s.with_contact(squeezed(1e-6)).with_contact(floor(second(brick::X_MAX)))),
+        ),
+    ];
+    for (what, others) in &others {
+        let scene = beside(|s| others(s.with_contact(floor(brick::Z_MIN))), two.clone(), 6.0);
+        let found = run(scene, Settings::default()).1;
+        let size = norm(&wanted[1].displacement);
+        for (k, (found, wanted)) in found.iter().zip(&wanted).enumerate() {
+            let off: Vec<f64> = found.displacement[..own]
+                .iter()
+                .zip(&wanted.displacement)
+                .map(|(a, b)| a - b)
+                .collect();
+            assert!(
+                norm(&off) < 1e-3 * size,
+                "{what}, step {k}: {:e} of {size:e}",
+                norm(&off)
+            );
+        }
+    }
+}
+
+/// A plug that friction locks stays so beside one that comes back, also where that one bore much more.
+#[test]
+fn a_locked_body_stays_beside_a_heavy_one_that_is_not() {
+    let taper = |[x, y, z]: [f64; 3]| [(x - 1.0) * (1.0 + 0.1 * (z - 1.0)), y, z];
+    let one = block([2.0, 1.0, 2.0], [4, 2, 4]).map_points(taper).expect("mesh");
+    let mesh = with_second(&one, &one.map_points(|[x, y, z]| [x + 5.0, y, z]).expect("mesh"));
+    let push = History::table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, 0.0), (3.0, 0.0)]).expect("history");
+    let side = |tag, coefficient| Contact::rigid(tag).with_friction(Friction::coulomb(coefficient));
+    for part in [1.0, 1e-4] {
+        let scene = Scene::new(mesh.clone(), uniform(1e3, 0.3))
+            .with_contact(side(brick::X_MIN, 0.05))
+            .with_contact(side(brick::X_MAX, 0.05))
+            .with_contact(side(second(brick::X_MIN), 0.3))
+            .with_contact(side(second(brick::X_MAX), 0.3))
+            .with_load(Load::force(brick::Z_MAX, [0.0, 0.0, -10.0]).with_history(push.clone()))
+            .with_load(Load::force(second(brick::Z_MAX), [0.0, 0.0, -10.0 * part]).with_history(push.clone()))
+            .with_analysis(Analysis::quasistatic(3.0, 3));
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        let results = rest(&mut simulation);
+        let force = |k: usize, surface| {
+            let own = results[k].points.iter().filter(|p| p.surface == surface);
+            own.map(|p| p.normal_force).sum::<f64>()
+        };
+        assert!(results.iter().all(|r| r.report.status.converged()));
+        for k in [1, 2] {
+            assert!(
+                force(k, 0).abs() < 1e-6 * force(0, 0).abs(),
+                "{part}: {:e}",
+                force(k, 0)
+            );
+            let locked = force(k, 2) / force(0, 2);
+            assert!((0.8..0.9).contains(&locked), "{part}: {locked}");
+        }
+    }
+}
+
+/// Nothing moves where nothing acts and nothing has moved, nor tilts where the floor moves along.
+#[test]
+fn bodies_without_loads_stay_on_their_floor() {
+    let cube = block([1.0; 3], [3; 3]);
+    for way in [[0.0; 3], [0.3, 0.1, 0.0], [0.0, 0.0, -0.2], [0.0, 0.0, 0.2]] {
+        let moves = History::table(vec![(0.0, 0.0), (2.0, 0.0), (3.0, 1.0), (4.0, 1.0), (5.0, 2.0)]).expect("history");
+        let contact = floor(brick::Z_MIN).with_gap(0.05).with_motion(way, moves);
+        let found = run(
+            beside(|s| s.with_contact(contact), cube.clone(), 5.0),
+            Settings::default(),
+        )
+        .1;
+        let [at, rests, goes] = [2, 3, 4].map(|k| &found[k].displacement);
+        assert!(distance(rests, at) < 1e-6, "{way:?}: {:e}", distance(rests, at));
+        // along with it, and up, but not down
+        let [x, y, z] = way;
+        let along = [x, y, z.max(0.0)];
+        let off = goes
+            .iter()
+            .zip(rests)
+            .enumerate()
+            .map(|(k, (a, b))| a - b - along[k % 3]);
+        let off = norm(&off.collect::<Vec<_>>());
+        assert!(off < 1e-6, "{way:?}: {off:e}");
+    }
+}
+
+/// The upper cube goes with the lower one, which a support moves while the load vanishes.
+#[test]
+fn a_body_goes_with_the_one_below() {
+    let mesh = with_second(&block([1.0; 3], [3; 3]), &lifted(&block([1.0; 3], [4; 3]), 1.0));
+    let up = |left: f64| {
+        let times = vec![(0.0, 0.0), (1.0, 1.0), (2.0, left), (3.0, left)];
+        History::table(times).expect("history")
+    };
+    let moves = History::table(vec![(0.0, 0.0), (1.0, 0.0), (2.0, 1.0)]).expect("history");
+    let [free, held] = [0.0, 1e-4].map(|left| {
+        let contact = Contact::between(brick::Z_MAX, second(brick::Z_MIN)).with_friction(Friction::coulomb(0.3));
+        let scene = Scene::new(mesh.clone(), uniform(1e3, 0.3))
+            .with_load(Load::force(second(brick::Z_MAX), [0.0, 0.0, -10.0]).with_history(up(left)))
+            .with_support(Support::fixed(brick::Z_MIN).with_motion([0.1, 0.2, 0.3], moves.clone()))
+            .with_contact(contact)
+            .with_analysis(Analysis::quasistatic(3.0, 3));
+        run(scene, Settings::default()).1
+    });
+    for k in [1, 2] {
+        assert!(
+            distance(&free[k].displacement, &held[k].displacement) < 1e-3,
+            "step {k}"
+        );
+    }
+}
+
+/// A solve depends on its start alone, not on the set of the solve before: a cube on a cylinder, whose start finds no
+/// balance.
+#[test]
+fn a_restart_before_loads_vanish_gives_the_same_bits() {
+    let scene = || {
+        let mesh = block([1.0; 3], [3; 3]).map_points(|[x, y, z]| [x - 0.5, y - 0.5, z]);
+        let table = |values: [f64; 5]| {
+            let times = values.iter().enumerate().map(|(k, v)| (1.0 + k as f64, *v));
+            History::table(std::iter::once((0.0, 0.0)).chain(times).collect()).expect("history")
+        };
+        let below = Obstacle::cylinder([0.0, 0.0, -2.0], [0.0, 1.0, 0.0], 2.0);
+        Scene::new(mesh.expect("mesh"), uniform(1e3, 0.3))
+            .with_load(Load::force(brick::Z_MAX, [0.0, 0.0, -10.0]).with_history(table([1.0, 1.0, 0.0, 1.0, 0.0])))
+            .with_load(Load::force(brick::Z_MIN, [0.0, 1.0, 0.0]).with_history(table([0.0, 1.0, 0.0, -1.0, 0.0])))
+            .with_contact(Contact::obstacle(brick::Z_MIN, below).with_friction(Friction::coulomb(0.3)))
+            .with_analysis(Analysis::quasistatic(5.0, 5))
+    };
+    let mut whole = Simulation::new(scene(), Settings::default()).expect("set-up");
+    while !whole.is_finished() {
+        let before = whole.state().clone();
+        let wanted = bits(&step(&mut whole));
+        let mut again = Simulation::new(scene(), Settings::default()).expect("set-up");
+        again.resume(before).expect("resume");
+        assert_eq!(bits(&step(&mut again)), wanted, "step {}", whole.state().step());
+    }
+}
+
+/// A history that rounds to zero is zero, as that of a sine where it vanishes, and a load without forces is none.
+#[test]
+fn what_rounding_leaves_of_loads_is_none() {
+    let cube = block([1.0; 3], [3; 3]);
+    let scene = |left: f64| {
+        let values = [0.0, 1.0, 1.2 * left, -2.4 * left, 1.0, 3.7 * left];
+        let history = History::table((0..).map(f64::from).zip(values).collect()).expect("history");
+        Scene::new(cube.clone(), uniform(1e3, 0.3))
+            .with_load(Load::force(brick::Z_MAX, [0.0, 0.0, -10.0]).with_history(history.clone()))
+            .with_load(Load::force(brick::X_MIN, [1.8, 0.5, 0.0]).with_history(history))
+            .with_contact(floor(brick::Z_MIN))
+            .with_analysis(Analysis::quasistatic(5.0, 5))
+    };
+    let dummy = Load::force(brick::X_MAX, [0.0; 3]);
+    let wanted = run(scene(0.0), Settings::default()).1;
+    for (what, scene) in [
+        ("pulled up", scene(-1e-16)),
+        ("pushed down", scene(1e-16)),
+        ("with no force", scene(0.0).with_load(dummy)),
+    ] {
+        let found = run(scene, Settings::default()).1;
+        for (k, (found, wanted)) in found.iter().zip(&wanted).enumerate() {
+            let off = distance(&found.displacement, &wanted.displacement);
+            assert!(off < 1e-9, "{what}, step {k}: {off:e}");
+            let products = found.report.counters.products;
+            assert!(products <= 60, "{what}, step {k}: {products}");
+        }
+    }
+}
