@@ -13,6 +13,7 @@
 //! | [`kprgp()`] | set | Kucera 2007, 2008; MPRGP of Dostal and Schoeberl 2005 for bounds | 4 |
 //! | [`smalse()`] | set and equality | Algorithm 4.1 of Haslinger, Kucera, Vlach, Baniotopoulos; Dostal 2009 | 6 |
 //! | [`active_set()`] | set, equality | projected, preconditioned CG on predicted active sets; no penalty | 6 |
+//! | [`interior_point()`] | set | Mehrotra 1992; Kucera, Machalova, Netuka, Zencak 2013; a dense matrix, few steps | a matrix |
 //! | [`norm_estimate`] | none | Lanczos with a safe upper bound | 3, for the call |
 //! | [`kkt::check`] | set, equality | independent check, shares no code with the solvers | 2, for the call |
 //!
@@ -91,6 +92,7 @@ pub mod active_set;
 pub mod check;
 mod error;
 mod fixed_point;
+pub mod interior_point;
 pub mod kprgp;
 pub mod problem;
 mod report;
@@ -104,6 +106,7 @@ pub use active_set::{ActiveSetSettings, active_set};
 pub use check::{kkt, laws, norm_estimate};
 pub use error::{QpError, SetError};
 pub use fixed_point::{FixedPointReport, Verdict, successive_approximations};
+pub use interior_point::interior_point;
 pub use kprgp::{KprgpSettings, kprgp};
 pub use problem::{
     ConstrainedCost, ConvexSet, DenseEquality, DenseOperator, DenseProjector, Equality, EqualityProjector, MovingSet,

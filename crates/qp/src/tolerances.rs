@@ -222,6 +222,20 @@ pub(crate) const SHIFT: f64 = 1e-12;
 /// Share of the linear decrease that a Newton step has to keep.
 pub(crate) const NEWTON_DECREASE: f64 = 1e-4;
 
+// Interior points
+
+/// How far from bounds the method begins, over what the load presses against all of them.
+pub(crate) const INTO_THE_SET: f64 = 2.0;
+/// Part of the way to the boundary that a step goes, and the least part of complementarity that it aims at.
+pub(crate) const SHORT_OF_BOUNDARY: f64 = 0.95;
+pub(crate) const CENTRED: f64 = 1e-4;
+/// Steps for which the same inequalities have to become active, and steps behind the target after which they need not.
+pub(crate) const SETTLED_STEPS: usize = 3;
+pub(crate) const MORE_STEPS: usize = 8;
+/// Most steps, and very short ones in a row that end it.
+pub(crate) const INTERIOR_STEPS: usize = 100;
+pub(crate) const STUCK: usize = 30;
+
 // Fixed points
 
 /// Ratios of changes that enter the estimate of the rate.

@@ -48,7 +48,7 @@ const CRATES: [(&str, &[&str]); 6] = [
     (
         "qp",
         &[
-            "smalse",
+            "smalse interior_point",
             "kprgp active_set fixed_point check",
             "problem",
             "report",

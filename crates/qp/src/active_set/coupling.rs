@@ -16,7 +16,7 @@ use super::disc::Disc;
 /// The radius of a disc changes by `slope` times the change of another component.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RadiusSlope {
-    /// First component of the disc.
+    /// First component of the disc; [`interior_point()`](crate::interior_point()) takes intervals, too.
     pub disc: usize,
     /// Component that its radius follows.
     pub component: usize,
@@ -79,6 +79,7 @@ impl Coupling {
                 (s.component < n && s.slope.is_finite()).then_some((s.component, s.slope))
             }));
         });
+        self.failed = self.by_disc.iter().all(Option::is_none);
     }
 
     /// Whether a radius follows a component that is not zero.

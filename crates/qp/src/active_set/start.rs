@@ -5,6 +5,7 @@ use crate::problem::{ConvexSet, EqualityProjector, SymmetricOperator};
 use crate::tolerances::{PRESSED, ROUNDED, SINK_ROUNDS};
 use crate::vector;
 
+use super::blocks::ActiveSet;
 use super::run::Run;
 use super::view::ActiveSetPreconditioner;
 
@@ -17,8 +18,10 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         work.t[..work.known.len()].copy_from_slice(&work.known);
         work.known.clear();
         self.path.unknown = !self.is_known();
+        let told = std::mem::take(&mut self.at.work.told);
+        let told = told.then(|| ActiveSet::where_active(self.at.set, self.at.x));
         self.guess();
-        let stopped = if self.repairs_suffice {
+        let stopped = if self.repairs_suffice || told.is_some() {
             self.at.set_weights(false)?.is_some()
         } else {
             self.is_known() && self.at.project_start()
@@ -34,7 +37,9 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             }
         }
         if !self.repairs_suffice {
-            self.settle_loose(true, true)?;
+            if told.is_none() || !stopped {
+                self.settle_loose(true, true)?;
+            }
             self.at.work.active.guess(self.at.set, self.at.x);
             if stopped {
                 self.at.work.active.guess_sliding(self.at.set, self.at.x);
@@ -57,6 +62,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         } else {
             self.at.correct(if moves { 0.0 } else { ROUNDED * self.peak });
         }
+        self.at.work.active.foreseen = told.unwrap_or_default();
         Ok(())
     }
 

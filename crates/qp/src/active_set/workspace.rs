@@ -31,6 +31,8 @@ pub struct ActiveSetWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     pub(crate) known: Vec<f64>,
     /// Length of a step that may share the product of the start; 0 for none.
     pub(crate) first_step: f64,
+    /// Whether the start tells the first active set.
+    pub(crate) told: bool,
     pub(crate) active: ActiveSet,
     pub(crate) coupling: Coupling,
     /// Length of the last step of conjugate gradients.
@@ -64,6 +66,7 @@ impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
             t: v(),
             known: Vec::new(),
             first_step: 0.0,
+            told: false,
             active: ActiveSet::default(),
             coupling: Coupling::default(),
             length: 0.0,
@@ -88,6 +91,12 @@ impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
         self.known.clear();
         self.known.extend_from_slice(known);
         self.first_step = shortest;
+    }
+
+    /// Tells the next solve that components on their bounds at the start are active, and discs on their circles slide, but no
+    /// others, as [`interior_point()`](crate::interior_point()) leaves them: its gradient is too rough to tell.
+    pub fn trust_start(&mut self) {
+        self.told = true;
     }
 
     /// The shortest step of conjugate gradients in the last solve, infinite if it made none: one of that length magnifies

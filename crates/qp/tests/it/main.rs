@@ -8,6 +8,7 @@ mod flat;
 mod interior_point;
 mod kkt;
 mod kprgp;
+mod mehrotra;
 mod obstacle_string;
 mod radius_slopes;
 mod refusals;

@@ -1,0 +1,234 @@
+//! Blocks of a set as inequalities `q >= 0`: bounds, and circles whose radius may follow another component.
+
+use crate::active_set::RadiusSlope;
+use crate::problem::{Constrained, ProductSet, for_constrained};
+
+/// One inequality. A multiplier `y >= 0` pushes `x` along the normal: the gradient is `-y` times that.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Cone {
+    /// `q = sign (bound - x_i)`.
+    Half { i: usize, sign: f64, bound: f64 },
+    /// `q = (r² - |t|²) / 2` for one or two components from `first` on, `r = own + slope * x[of]`.
+    Circle {
+        first: usize,
+        width: usize,
+        own: f64,
+        of: usize,
+        slope: f64,
+    },
+}
+
+/// The value of an inequality along a line: `q + rate s + bend s²`.
+pub(crate) struct Along {
+    pub(crate) q: f64,
+    pub(crate) rate: f64,
+    pub(crate) bend: f64,
+}
+
+impl Along {
+    /// The first `s` at which it vanishes.
+    pub(crate) fn root(&self) -> f64 {
+        let (half, square) = (0.5 * self.rate, 0.25 * self.rate * self.rate - self.bend * self.q);
+        if square < 0.0 {
+            return f64::INFINITY;
+        }
+        // the smallest positive root, without cancellation
+        let sum = half.abs() + square.sqrt();
+        let roots = match half <= 0.0 {
+            true => [self.q / sum, sum / self.bend],
+            false => [-sum / self.bend, -self.q / sum],
+        };
+        roots.into_iter().filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl Cone {
+    /// Radius of a circle at `x`.
+    fn radius(own: f64, of: usize, slope: f64, x: &[f64]) -> f64 {
+        if slope == 0.0 { own } else { own + slope * x[of] }
+    }
+
+    /// The value at `x`, and how it changes along `d`.
+    pub(crate) fn along(&self, x: &[f64], d: &[f64]) -> Along {
+        match *self {
+            Self::Half { i, sign, bound } => Along {
+                q: sign * (bound - x[i]),
+                rate: -sign * d[i],
+                bend: 0.0,
+            },
+            Self::Circle {
+                first,
+                width,
+                own,
+                of,
+                slope,
+            } => {
+                let (r, grows) = (Self::radius(own, of, slope, x), Self::radius(0.0, of, slope, d));
+                let (x, d) = (&x[first..first + width], &d[first..first + width]);
+                let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+                // (r - |t|) (r + |t|): near the circle its digits count
+                let length = sum(x, x).sqrt();
+                Along {
+                    q: 0.5 * (r - length) * (r + length),
+                    rate: r * grows - sum(x, d),
+                    bend: 0.5 * (grows * grows - sum(d, d)),
+                }
+            }
+        }
+    }
+
+    /// Calls `f` with the components of the normal.
+    pub(crate) fn normal(&self, x: &[f64], mut f: impl FnMut(usize, f64)) {
+        match *self {
+            Self::Half { i, sign, .. } => f(i, sign),
+            Self::Circle { first, width, .. } => (first..first + width).for_each(|i| f(i, x[i])),
+        }
+    }
+
+    /// Calls `f` with those of the derivative of `q`, which is the normal turned round, and more where a radius follows.
+    pub(crate) fn derivative(&self, x: &[f64], mut f: impl FnMut(usize, f64)) {
+        self.normal(x, |i, n| f(i, -n));
+        if let Self::Circle { own, of, slope, .. } = *self
+            && slope != 0.0
+        {
+            f(of, slope * Self::radius(own, of, slope, x));
+        }
+    }
+
+    /// Components on which the normal depends, by themselves.
+    pub(crate) fn curved(&self) -> std::ops::Range<usize> {
+        match *self {
+            Self::Half { .. } => 0..0,
+            Self::Circle { first, width, .. } => first..first + width,
+        }
+    }
+}
+
+/// The inequalities of a set, and which components it leaves at what they are.
+pub(crate) struct Cones {
+    pub(crate) all: Vec<Cone>,
+    pub(crate) fixed: Vec<bool>,
+}
+
+impl Cones {
+    /// Puts fixed components of `x` where the set has them. The radii of the set, and intervals that slopes tell of, are
+    /// those at `x`.
+    pub(crate) fn new(set: &ProductSet, slopes: &[RadiusSlope], x: &mut [f64]) -> Self {
+        let mut slope_of = vec![None; x.len()];
+        for slope in slopes.iter().filter(|s| s.slope != 0.0) {
+            if slope.component < x.len() && slope.disc < x.len() {
+                slope_of[slope.disc] = Some((slope.component, slope.slope));
+            }
+        }
+        let before = x.to_vec();
+        let (mut all, mut fixed) = (Vec::new(), vec![false; x.len()]);
+        let mut circle = |first: usize, width: usize, radius: f64, x: &mut [f64]| {
+            let (of, slope) = slope_of[first].unwrap_or((0, 0.0));
+            if radius == 0.0 && slope == 0.0 {
+                x[first..first + width].fill(0.0);
+                fixed[first..first + width].fill(true);
+            } else if radius.is_finite() {
+                let own = radius - slope * before[of];
+                all.push(Cone::Circle {
+                    first,
+                    width,
+                    own,
+                    of,
+                    slope,
+                });
+            }
+        };
+        let mut halves = Vec::new();
+        let mut equal = Vec::new();
+        for_constrained(set, |block| match block {
+            Constrained::Disc { i, radius, .. } => circle(i, 2, radius, x),
+            Constrained::Bound { i, lower, upper, .. } if slope_of[i].is_some() => {
+                circle(i, 1, 0.5 * (upper - lower), x);
+            }
+            Constrained::Bound { i, lower, upper, .. } if lower == upper => equal.push((i, lower)),
+            Constrained::Bound { i, lower, upper, .. } => {
+                for (sign, bound) in [(-1.0, lower), (1.0, upper)] {
+                    if bound.is_finite() {
+                        halves.push(Cone::Half { i, sign, bound });
+                    }
+                }
+            }
+        });
+        for (i, value) in equal {
+            x[i] = value;
+            fixed[i] = true;
+        }
+        all.extend(halves);
+        Self { all, fixed }
+    }
+
+    /// Whether `x` is inside of all.
+    pub(crate) fn holds(&self, x: &[f64]) -> bool {
+        self.all.iter().all(|cone| cone.along(x, x).q > 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::problem::Segment;
+
+    #[test]
+    fn the_first_root_is_found_whatever_bends() {
+        for (q, rate, bend, root) in [
+            (1.0, -1.0, 0.0, 1.0),
+            (1.0, 1.0, 0.0, f64::INFINITY),
+            (2.0, -3.0, 1.0, 1.0),
+            (2.0, 3.0, 1.0, f64::INFINITY),
+            (2.0, 1.0, -1.0, 2.0),
+            (2.0, -1.0, -1.0, 1.0),
+            (1.0, 0.0, -1.0, 1.0),
+            (1.0, 0.0, 1.0, f64::INFINITY),
+            (1.0, 0.0, 0.0, f64::INFINITY),
+            (1.0, -1.0, 1.0, f64::INFINITY),
+        ] {
+            let found = Along { q, rate, bend }.root();
+            let near = found == root || (found - root).abs() < 1e-14;
+            assert!(near, "{q} {rate} {bend}: {found} for {root}");
+        }
+    }
+
+    /// Derivatives by differences, for each kind of block.
+    #[test]
+    fn values_change_as_their_derivatives_tell() {
+        let set = ProductSet::new(vec![
+            Segment::upper(vec![0.0, 0.0]),
+            Segment::discs(vec![0.7]),
+            Segment::bounds(vec![-0.6, 1.0], vec![0.6, 3.0]),
+            Segment::bounds(vec![2.0], vec![2.0]),
+            Segment::discs(vec![0.0]),
+            Segment::Free(1),
+        ])
+        .expect("a set");
+        let follows = |disc, component, slope| RadiusSlope { disc, component, slope };
+        let slopes = [follows(2, 0, -0.5), follows(4, 1, -0.2)];
+        let mut x = vec![-1.0, -2.0, 0.3, 0.4, -0.1, 1.5, 9.0, 9.0, 9.0, 9.0];
+        let cones = Cones::new(&set, &slopes, &mut x);
+        assert_eq!(x[6..], [2.0, 0.0, 0.0, 9.0]);
+        assert_eq!(
+            cones.fixed,
+            [false, false, false, false, false, false, true, true, true, false]
+        );
+        // two bounds, a disc, an interval that follows, two sides of one that does not
+        assert_eq!(cones.all.len(), 6);
+        assert!(cones.holds(&x));
+        let d: Vec<f64> = (0..10).map(|k| (k as f64).sin()).collect();
+        for cone in &cones.all {
+            let along = cone.along(&x, &d);
+            let mut rate = 0.0;
+            cone.derivative(&x, |i, a| rate += a * d[i]);
+            assert!((along.rate - rate).abs() < 1e-14, "{cone:?}");
+            let moved: Vec<f64> = x.iter().zip(&d).map(|(x, d)| x + 0.01 * d).collect();
+            let q = cone.along(&moved, &d).q;
+            assert!(
+                (along.q + 0.01 * along.rate + 1e-4 * along.bend - q).abs() < 1e-14,
+                "{cone:?}"
+            );
+        }
+    }
+}

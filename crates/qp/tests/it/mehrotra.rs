@@ -1,0 +1,160 @@
+//! Interior points: the same answers as by other methods, also where radii follow, in few steps whatever bends.
+
+use crate::common::{self, Random};
+use signorini_qp::active_set::RadiusSlope;
+use signorini_qp::kprgp::KprgpWorkspace;
+use signorini_qp::{
+    ConvexSet, DenseOperator, KprgpSettings, ProductSet, QpError, QuadraticCost, Segment, Status, SymmetricOperator,
+    interior_point, kprgp, norm_estimate, vector,
+};
+
+const TARGET: f64 = 1e-12;
+
+#[test]
+fn random_problems_have_the_answer_of_kprgp() {
+    let mut r = Random::new(5);
+    for case in 0..60 {
+        let set = common::set(&mut r);
+        let n = set.dim();
+        let (a, norm) = common::spd(n, 2.0, &mut r);
+        let b: Vec<f64> = (0..n).map(|_| 3.0 * r.real()).collect();
+        let mut x = r.vector(n);
+        let report = interior_point(&a, &b, &set, &[], TARGET, &mut x).expect("valid");
+        assert_eq!(report.status, Status::Converged, "{case}");
+        assert!(report.steps <= 30, "{case}: {}", report.steps);
+        assert!(set.violation(&x) <= 1e-12 * vector::norm(&x), "{case}");
+        let (mut other, mut work) = (vec![0.0; n], KprgpWorkspace::new(&a));
+        let cost = QuadraticCost::new(&a, &b, norm);
+        let solved = kprgp(&cost, &set, 1e-10, &KprgpSettings::default(), &mut other, &mut work).expect("valid");
+        assert!(solved.status.converged(), "{case}");
+        let off = vector::distance(&x, &other) / vector::norm(&other);
+        assert!(off < 1e-4, "{case}: {off:e}");
+    }
+}
+
+/// A beam held at one end that lies on points and is pushed sideways along them: `A` is the compliance of its nodes, up
+/// and sideways. Radii are a coefficient times the pressing forces; discs, or intervals where only one way is open.
+fn beam(n: usize, width: usize) -> (DenseOperator, Vec<f64>, ProductSet, Vec<RadiusSlope>) {
+    let compliance = |i: usize, j: usize| {
+        let [short, long] = [i.min(j), i.max(j)].map(|k| (k + 1) as f64 / n as f64);
+        short * short * (3.0 * long - short) / 6.0 + if i == j { 1e-5 } else { 0.0 }
+    };
+    let size = n * (1 + width);
+    let mut a = vec![0.0; size * size];
+    for i in 0..n {
+        for j in 0..n {
+            a[i * size + j] = compliance(i, j);
+            for k in 0..width {
+                a[(n + width * i + k) * size + n + width * j + k] = 0.3 * compliance(i, j);
+            }
+        }
+    }
+    let mut b = vec![0.0; size];
+    for i in 0..n {
+        let at = (i + 1) as f64 / n as f64;
+        // pressed down in the middle, up at the end
+        b[i] = -1e-3 * (at * at) * (1.1 - at);
+        b[n + width * i] = 4e-5 * at;
+    }
+    let tangential = match width {
+        1 => Segment::bounds(vec![0.0; n], vec![0.0; n]),
+        _ => Segment::discs(vec![0.0; n]),
+    };
+    let set = ProductSet::new(vec![Segment::upper(vec![0.0; n]), tangential]).expect("a set");
+    let slope = |i| RadiusSlope {
+        disc: n + width * i,
+        component: i,
+        slope: -0.3,
+    };
+    let a = DenseOperator::new(size, a).expect("symmetric");
+    (a, b, set, (0..n).map(slope).collect())
+}
+
+/// What a point lacks to Coulomb's law: each violation over the largest force or displacement.
+fn violation(a: &DenseOperator, b: &[f64], x: &[f64], n: usize, width: usize) -> f64 {
+    let mut g = common::product(a, x);
+    vector::subtract(b, &mut g);
+    let [force, way] = [vector::max_abs(x), vector::max_abs(b)];
+    (0..n).fold(0.0, |worst: f64, i| {
+        let own = n + width * i..n + width * (i + 1);
+        let (pressed, gap) = ((-x[i]).max(0.0), -g[i]);
+        let radius = 0.3 * pressed;
+        let (held, slip) = (vector::norm(&x[own.clone()]), vector::norm(&g[own.clone()]));
+        let against = vector::dot(&x[own.clone()], &g[own]) + radius * slip;
+        let all = [
+            x[i] / force,
+            -gap / way,
+            pressed / force * (gap / way).abs(),
+            (held - radius) / force,
+            against / force / way,
+        ];
+        all.into_iter().fold(worst, f64::max)
+    })
+}
+
+#[test]
+fn radii_follow_in_few_steps_whatever_bends() {
+    for n in [10, 40, 120] {
+        for width in [1, 2] {
+            let (a, b, set, slopes) = beam(n, width);
+            let mut x = vec![0.0; a.dim()];
+            let report = interior_point(&a, &b, &set, &slopes, TARGET, &mut x).expect("valid");
+            let open = x[..n].iter().filter(|x| **x == 0.0).count();
+            let off = violation(&a, &b, &x, n, width);
+            println!("{n} x {width}: {report:?}, {open} open, {off:e}");
+            assert_eq!(report.status, Status::Converged);
+            assert!(report.steps <= 60 && 0 < open && open < n);
+            assert!(off < 1e-5, "{off:e}");
+        }
+    }
+}
+
+/// A load that friction cannot hold: no point is a solution, and none is called one.
+#[test]
+fn what_has_no_solution_is_not_called_solved() {
+    let a = DenseOperator::new(3, vec![1e-9, 0.0, 0.0, 0.0, 1e-9, 0.0, 0.0, 0.0, 1e-9]).expect("symmetric");
+    let set = ProductSet::new(vec![Segment::bounds(vec![-1.0], vec![0.0]), Segment::discs(vec![0.0])]).expect("a set");
+    let slopes = [RadiusSlope {
+        disc: 1,
+        component: 0,
+        slope: -0.3,
+    }];
+    let mut x = vec![0.0; 3];
+    let report = interior_point(&a, &[f64::MAX, 0.0, 0.0], &set, &slopes, TARGET, &mut x).expect("valid");
+    assert_ne!(report.status, Status::Converged);
+}
+
+#[test]
+fn sets_without_inequalities_take_one_step() {
+    let mut r = Random::new(3);
+    let (a, _) = common::spd(8, 2.0, &mut r);
+    let b = r.vector(8);
+    let fixed = Segment::bounds(vec![0.5], vec![0.5]);
+    let set = ProductSet::new(vec![Segment::Free(5), fixed, Segment::discs(vec![0.0])]).expect("a set");
+    let mut x = vec![0.0; 8];
+    let report = interior_point(&a, &b, &set, &[], TARGET, &mut x).expect("valid");
+    assert_eq!((report.status, report.steps), (Status::Converged, 1));
+    assert_eq!(x[5..], [0.5, 0.0, 0.0]);
+    let mut g = common::product(&a, &x);
+    vector::subtract(&b, &mut g);
+    assert!(vector::max_abs(&g[..5]) < 1e-12);
+    assert!(norm_estimate(&a).expect("a norm").upper > 0.0);
+}
+
+#[test]
+fn wrong_input_is_refused() {
+    let (a, b, set, slopes) = beam(3, 2);
+    let solve = |b: &[f64], x: &mut [f64]| interior_point(&a, b, &set, &slopes, TARGET, x).map(|_| ());
+    assert!(matches!(
+        solve(&b, &mut [0.0; 2]),
+        Err(QpError::Length { what: "x", .. })
+    ));
+    assert!(matches!(solve(&b[1..], &mut [0.0; 9]), Err(QpError::Length { .. })));
+    assert!(matches!(
+        solve(&[f64::NAN; 9], &mut [0.0; 9]),
+        Err(QpError::Input { .. })
+    ));
+    let other = ProductSet::free(4);
+    let refused = interior_point(&a, &b, &other, &slopes, TARGET, &mut [0.0; 9]);
+    assert!(matches!(refused, Err(QpError::Length { what: "the set", .. })));
+}
