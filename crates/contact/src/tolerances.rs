@@ -252,7 +252,13 @@ pub(crate) const LINEAR_SLACK: f64 = 15.0;
 /// Products of a step that never count as effort: with the inverse of a formed F a step with hard contact takes as many.
 pub(crate) const EASY: usize = 200;
 /// Products beyond those for which forming F does not pay, however small it is.
-pub(crate) const LITTLE: usize = 600;
+pub(crate) const LITTLE: usize = 300;
+/// Complementarity, over that at the start, to which interior points are followed for a start of active sets.
+pub(crate) const INSIDE: f64 = 1e-9;
+/// What forming F and a step with its inverse may cost, in products, to be tried as soon as predictions run in circles.
+pub(crate) const AT_ONCE: usize = 3000;
+/// Products of a step with that inverse after which interior points look for another start.
+pub(crate) const BEFORE_INSIDE: usize = 30;
 /// Products of a step with that inverse after which it does not help: a set takes two or three.
 pub(crate) const EXPLICIT_PRODUCTS: usize = 1000;
 

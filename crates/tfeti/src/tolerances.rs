@@ -122,9 +122,14 @@ pub(crate) const BANDWIDTH: [f64; 2] = [6e10, 1.2e10];
 pub(crate) const PRODUCTS: usize = 2000;
 /// Bytes of dense matrices that still stay in the caches of one processor.
 pub(crate) const CACHE: u64 = 16 << 20;
-/// Most rows of an `F` that is formed, and active sets of a step with its inverse.
+/// Most rows of an `F` that is formed; factors of interior points and active sets of a step with its inverse.
 pub(crate) const EXPLICIT_ROWS: usize = 3000;
-pub(crate) const EXPLICIT_SETS: f64 = 30.0;
+pub(crate) const INTERIOR_FACTORS: f64 = 35.0;
+pub(crate) const EXPLICIT_SETS: f64 = 20.0;
+/// Time of an operation of a product with `F` over that of a dense factor, and operations of such a factor in the time
+/// that a solve takes for a row beside that product (0.4 to 1.2 ms a product of 450 to 6000 rows).
+pub(crate) const STREAMED: f64 = 8.0;
+pub(crate) const ROW_OPERATIONS: f64 = 4000.0;
 /// Columns solved at once when a dense block is formed, at least six.
 pub(crate) const COLUMNS: usize = 48;
 /// Node copies of a loop, operations of a product with `F`, numbers of a coarse solve and operations of a coarse factor

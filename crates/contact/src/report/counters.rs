@@ -18,6 +18,8 @@ pub struct Counters {
     pub quadratic_programs: usize,
     /// Active sets on which a linear problem was solved.
     pub active_sets: usize,
+    /// Steps of interior points, with a dense factorisation each, for starts where active sets run in circles.
+    pub interior_steps: usize,
     /// Updates of the slip bounds.
     pub slip_bound_updates: usize,
     /// Computations of slip rates.
@@ -40,6 +42,7 @@ impl std::ops::AddAssign for Counters {
         self.coarse_factorisations += other.coarse_factorisations;
         self.quadratic_programs += other.quadratic_programs;
         self.active_sets += other.active_sets;
+        self.interior_steps += other.interior_steps;
         self.slip_bound_updates += other.slip_bound_updates;
         self.rate_updates += other.rate_updates;
         self.inequality_solves += other.inequality_solves;

@@ -17,12 +17,14 @@ use crate::scene::Friction;
 use crate::settings::{Preconditioner, Settings};
 use crate::status::StepStatus;
 use crate::tolerances::{
-    CONTRADICTION, EASY, EXPLICIT_PRODUCTS, LINEAR_SLACK, LITTLE, SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS,
+    AT_ONCE, BEFORE_INSIDE, CONTRADICTION, EASY, EXPLICIT_PRODUCTS, INSIDE, LINEAR_SLACK, LITTLE, SHARED_ROWS,
+    STIFF_GRADED, STIFF_MEANS, STIFF_ROWS,
 };
 use signorini_fem_mesh::decomposition::is_strongly_graded;
 use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::{
-    ActiveSetSettings, EqualityProjector, MovingSet, ProductSet, QpError, Status, SymmetricOperator, active_set, vector,
+    ActiveSetSettings, EqualityProjector, MovingSet, ProductSet, QpError, Status, SymmetricOperator, active_set,
+    interior_point, vector,
 };
 use signorini_tfeti::internal::SystemPart;
 use signorini_tfeti::{ActiveSetProjector, DualOperator};
@@ -184,7 +186,10 @@ impl ActiveSetSolver {
         if cost.is_none_or(|cost| iterate.effort < cost) {
             self.use_explicit(false, task, report);
             let most = cost.map_or(usize::MAX, |cost| cost - iterate.effort + easy);
-            status = self.active_sets(task, iterate, most, report)?;
+            // bodies that supports hold find a path out of circles
+            let brief =
+                !self.space.loose().is_empty() && costs.is_some_and(|[forming, step]| forming + step <= AT_ONCE);
+            status = self.active_sets(task, iterate, (most, brief), report)?;
             let effort = report.counters.products.saturating_sub(easy);
             iterate.effort = iterate.effort.saturating_add(effort);
         }
@@ -196,7 +201,11 @@ impl ActiveSetSolver {
                 self.begin_again(iterate);
             }
             if self.use_explicit(true, task, report) {
-                status = self.active_sets(task, iterate, EXPLICIT_PRODUCTS, report)?;
+                status = self.active_sets(task, iterate, (BEFORE_INSIDE, true), report)?;
+                if is_open(status) {
+                    self.begin_inside(task, iterate, report)?;
+                    status = self.active_sets(task, iterate, (EXPLICIT_PRODUCTS, false), report)?;
+                }
             }
             if is_open(status) {
                 iterate.effort = NO_HELP;
@@ -204,11 +213,42 @@ impl ActiveSetSolver {
                     // bodies that contact alone holds may need other sets than these
                     self.use_explicit(false, task, report);
                     self.begin_again(iterate);
-                    status = self.active_sets(task, iterate, usize::MAX, report)?;
+                    status = self.active_sets(task, iterate, (usize::MAX, false), report)?;
                 }
             }
         }
         Ok(status)
+    }
+
+    /// Looks for a start by interior points, with a formed F.
+    fn begin_inside(
+        &mut self,
+        task: Task<'_>,
+        iterate: &mut Iterate,
+        report: &mut StepReport,
+    ) -> Result<(), ContactError> {
+        let Task { model, problem, .. } = task;
+        let SelectedPreconditioner::Explicit(explicit) = &self.preconditioner else {
+            return Ok(());
+        };
+        let mut x = vec![0.0; iterate.lambda.len()];
+        let mut set = model.set_with(0)?;
+        problem.write_slip_bounds(model, &x, &mut set)?;
+        let slopes = match is_coulomb(model) {
+            true => problem.slip_slopes(model),
+            false => Vec::new(),
+        };
+        let data = (&problem.linear[..], &problem.rhs[..]);
+        let outcome = explicit.through_contact(model.tfeti.coarse(), data, &mut x, |matrix, load, x| {
+            interior_point(matrix, load, &set, &slopes, INSIDE, x)
+        })?;
+        report.counters.interior_steps += outcome.steps;
+        if outcome.status == Status::Converged && x.iter().all(|v| v.is_finite()) {
+            iterate.lambda = x;
+            iterate.known = false;
+            self.work.trust_start();
+        }
+        Ok(())
     }
 
     /// Back to the start of the step.
@@ -250,7 +290,7 @@ impl ActiveSetSolver {
         &mut self,
         task: Task<'_>,
         iterate: &mut Iterate,
-        most: usize,
+        (most, brief): (usize, bool),
         report: &mut StepReport,
     ) -> Result<Status, ContactError> {
         let Task { model, problem, .. } = task;
@@ -270,7 +310,12 @@ impl ActiveSetSolver {
         let least = least.max(vector::norm(&problem.handed_on));
         let contact = !model.points.is_empty();
         let tolerance = task.settings.tolerance * if contact { 1.0 } else { LINEAR_SLACK };
-        let settings = self.settings.clone().with_tolerance(tolerance).limited_to(most);
+        let settings = self
+            .settings
+            .clone()
+            .with_tolerance(tolerance)
+            .limited_to(most)
+            .with_brief(brief);
         let settings = settings.with_error_floor(least).with_contact_error_floor(least_contact);
         let coulomb = is_coulomb(model);
         if coulomb {

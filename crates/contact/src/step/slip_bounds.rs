@@ -74,18 +74,24 @@ impl StepProblem {
         Ok(())
     }
 
-    /// How the radii of discs follow the normal rows.
+    /// How the radii of discs follow the normal rows, then how half the lengths of intervals do.
     pub(crate) fn slip_slopes(&self, model: &Model) -> Vec<RadiusSlope> {
-        let slope = |(k, point): (usize, &ConstrainedPoint)| match point.tangential {
-            TangentialRows::Disc { row, scale } => Some(RadiusSlope {
-                disc: row,
-                component: point.row,
-                // normal multipliers are negative where pressed
-                slope: -self.coefficients[k] * point.scale / scale,
-            }),
+        let slope = |disc, scale, k: usize, point: &ConstrainedPoint| RadiusSlope {
+            disc,
+            component: point.row,
+            // normal multipliers are negative where pressed
+            slope: -self.coefficients[k] * point.scale / scale,
+        };
+        let disc = |(k, point): (usize, &ConstrainedPoint)| match point.tangential {
+            TangentialRows::Disc { row, scale } => Some(slope(row, scale, k, point)),
             _ => None,
         };
-        model.points.iter().enumerate().filter_map(slope).collect()
+        let interval = |(k, point): (usize, &ConstrainedPoint)| match point.tangential {
+            TangentialRows::Interval { row, scale, .. } => Some(slope(row, scale, k, point)),
+            _ => None,
+        };
+        let points = || model.points.iter().enumerate();
+        points().filter_map(disc).chain(points().filter_map(interval)).collect()
     }
 
     /// Puts the friction forces of points that slide back on their circles: extrapolation leaves them a little inside,

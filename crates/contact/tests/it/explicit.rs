@@ -68,6 +68,41 @@ fn a_plate_that_friction_alone_holds_is_solved_on_few_products() {
     }
 }
 
+/// A sheet of 200 times its thickness that lies on a rough floor, is pressed on a patch in its middle, pulled and pushed
+/// back: all but the patch lifts off. Predictions of active sets run in circles, interior points do not.
+#[test]
+fn a_sheet_pressed_on_a_patch_is_solved_from_inside() {
+    let mesh = block([100.0, 50.0, 0.5], [20, 10, 1]).map_points(|[x, y, z]| [x + 0.2 * y * (z - 0.2), y, z]);
+    let patch =
+        |[x, y, _]: [f64; 3], _: [f64; 3]| [0.0, 0.0, if (x - 50.0).hypot(y - 25.0) < 11.0 { -5.0 } else { 0.0 }];
+    let table = |values: [f64; 4]| {
+        let times = values.iter().enumerate().map(|(k, v)| (k as f64, *v));
+        History::table(times.collect()).expect("history")
+    };
+    let scene = Scene::new(mesh.expect("mesh"), uniform(2.1e5, 0.3))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3)))
+        .with_load(Load::body([0.0, 0.0, -1e-4]))
+        .with_load(
+            Load::new(LoadDensity::traction_field(brick::Z_MAX, patch)).with_history(table([0.0, 1.0, 1.0, 1.0])),
+        )
+        .with_load(Load::force(brick::X_MAX, [250.0, 20.0, 0.0]).with_history(table([0.0, 0.0, 1.0, -1.0])))
+        .with_analysis(Analysis::quasistatic(3.0, 6));
+    let (_, results) = run(scene, Settings::default());
+    let counters: Vec<Counters> = results.iter().map(|r| r.report.counters).collect();
+    let [products, inside]: [Vec<usize>; 2] =
+        [|c: &Counters| c.products, |c: &Counters| c.interior_steps].map(|of| counters.iter().map(of).collect());
+    let what = format!("{products:?} products, {inside:?} interior steps");
+    println!("{what}");
+    assert!(
+        results
+            .iter()
+            .all(|r| r.report.status.converged() && !r.report.fallback),
+        "{what}"
+    );
+    assert!(inside.iter().all(|steps| *steps <= 50) && inside[0] > 0, "{what}");
+    assert!(products.iter().sum::<usize>() <= 2000, "{what}");
+}
+
 #[test]
 fn what_is_hard_continues_bit_for_bit() {
     let new = || Simulation::new(plate(1), Settings::default()).expect("set-up");

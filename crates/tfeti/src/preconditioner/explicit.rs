@@ -5,13 +5,16 @@
 //! factored on each set. A body that bends far more easily than it is pressed in (a plate on a floor) leaves no other
 //! choice: on part of its contact rows the stiffness of their nodes is nowhere near an inverse.
 
+use crate::coarse::space::Coarse;
 use crate::dual::part::RowPart;
 use crate::linalg::dense;
 use crate::system::part::SystemPart;
 use crate::system::tfeti::Tfeti;
-use crate::tolerances::{EXPLICIT_ROWS, EXPLICIT_SETS, EXPLICIT_WEIGHT, LEFT_OF_ROW, SHIFTS};
-use signorini_qp::SymmetricOperator;
+use crate::tolerances::{
+    EXPLICIT_ROWS, EXPLICIT_SETS, EXPLICIT_WEIGHT, INTERIOR_FACTORS, LEFT_OF_ROW, ROW_OPERATIONS, SHIFTS, STREAMED,
+};
 use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView, Freedom};
+use signorini_qp::{DenseOperator, QpError, SymmetricOperator};
 use std::sync::Arc;
 
 /// A direction of a contact row, or of two that make a disc: rows and components.
@@ -26,6 +29,8 @@ pub struct ExplicitInverse {
     schur: Vec<f64>,
     rows: usize,
     contact: usize,
+    /// `w`.
+    weight: f64,
     /// Where vectors are parts.
     part: Option<Arc<RowPart>>,
 }
@@ -46,18 +51,20 @@ pub struct ExplicitScratch {
 }
 
 impl Tfeti {
-    /// What forming `F` costs in products with it, and what a step on some active sets with its inverse does, the same
-    /// for any number of processes; `None` where there are too many rows.
+    /// What forming `F` costs in products of a solve, and what a step with its inverse does, the same for any number of
+    /// processes; `None` where there are too many rows.
     #[doc(hidden)]
     pub fn explicit_cost(&self) -> Option<[usize; 2]> {
         let rows = self.dual_dim();
         let [n, contact] = [rows, self.gluing().ranges().contact().end].map(|n| n as f64);
-        let product: f64 = self.gather(self.dual().flops() as f64).ok()?.iter().sum();
-        // factors, and three solves a set
-        let forming = n.powi(3) / 3.0;
-        let step = EXPLICIT_SETS * (contact.powi(3) / 3.0 + 6.0 * n * n);
-        let [forming, step] = [forming, step].map(|operations| (operations / product.max(1.0)) as usize);
-        (rows <= EXPLICIT_ROWS).then_some([rows + forming, step])
+        let own: f64 = STREAMED * self.gather(self.dual().flops() as f64).ok()?.iter().sum::<f64>();
+        // with what belongs to a product in a solve: projectors, preconditioner, sums
+        let product = (own + ROW_OPERATIONS * n).max(1.0);
+        let forming = n * own + n.powi(3) / 3.0;
+        // factors of interior points, then of active sets with three solves each
+        let step = INTERIOR_FACTORS * contact.powi(3) / 1.5 + EXPLICIT_SETS * (contact.powi(3) / 3.0 + 6.0 * n * n);
+        let costs = [forming, step].map(|operations| (operations / product) as usize);
+        (rows <= EXPLICIT_ROWS).then_some(costs)
     }
 
     /// Forms `F`, by as many products as there are rows. `None` if rounding leaves it indefinite.
@@ -111,6 +118,7 @@ impl Tfeti {
             schur,
             rows,
             contact,
+            weight,
             part: None,
         })
     }
@@ -137,6 +145,38 @@ impl ExplicitInverse {
     pub fn of_part(self, part: &SystemPart) -> Self {
         let part = Some(part.rows.clone());
         Self { part, ..self }
+    }
+
+    /// Solves `F x = linear` with `G x = e` where a `solve` finds the contact rows: it has their matrix and load, all other
+    /// rows eliminated. For whole vectors.
+    ///
+    /// # Errors
+    /// Those of `solve`, and [`QpError`] for a matrix that has overflowed.
+    #[doc(hidden)]
+    pub fn through_contact<T>(
+        &self,
+        coarse: &Coarse,
+        (linear, e): (&[f64], &[f64]),
+        x: &mut [f64],
+        solve: impl FnOnce(&DenseOperator, &[f64], &mut [f64]) -> Result<T, QpError>,
+    ) -> Result<T, QpError> {
+        let others = self.rows - self.contact;
+        let mut load = vec![0.0; self.rows];
+        coarse.transpose_times(e, &mut load);
+        let load = linear.iter().zip(&load).map(|(linear, g)| linear + self.weight * g);
+        let mut ordered: Vec<f64> = load.collect();
+        ordered.rotate_left(self.contact);
+        dense::forward(&self.columns, self.rows, others, &mut ordered);
+        let mut matrix = self.schur.clone();
+        dense::mirror_lower(&mut matrix, self.contact);
+        let matrix = DenseOperator::new(self.contact, matrix)?;
+        let (load, own) = (ordered[others..].to_vec(), &mut x[..self.contact]);
+        let outcome = solve(&matrix, &load, own)?;
+        ordered[others..].copy_from_slice(own);
+        dense::backward(&self.columns, self.rows, others, &mut ordered);
+        ordered.rotate_right(self.contact);
+        x.copy_from_slice(&ordered);
+        Ok(outcome)
     }
 
     /// The Schur complement in some directions, lower triangle, with a multiple of its largest entry on the diagonal.
