@@ -232,9 +232,10 @@ pub(crate) const CENTRED: f64 = 1e-4;
 /// Steps for which the same inequalities have to become active, and steps behind the target after which they need not.
 pub(crate) const SETTLED_STEPS: usize = 3;
 pub(crate) const MORE_STEPS: usize = 8;
-/// Most steps, and very short ones in a row that end it.
+/// Most steps; part of the way that is a short one, and so many of those in a row that end it.
 pub(crate) const INTERIOR_STEPS: usize = 100;
-pub(crate) const STUCK: usize = 30;
+pub(crate) const SHORT_STEP: f64 = 0.05;
+pub(crate) const STUCK: usize = 10;
 
 // Fixed points
 

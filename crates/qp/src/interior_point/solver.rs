@@ -10,7 +10,9 @@ use crate::active_set::RadiusSlope;
 use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
 use crate::problem::{ConvexSet, DenseOperator, ProductSet, SymmetricOperator};
 use crate::report::Status;
-use crate::tolerances::{CENTRED, INTERIOR_STEPS, INTO_THE_SET, MORE_STEPS, SETTLED_STEPS, SHORT_OF_BOUNDARY, STUCK};
+use crate::tolerances::{
+    CENTRED, INTERIOR_STEPS, INTO_THE_SET, MORE_STEPS, SETTLED_STEPS, SHORT_OF_BOUNDARY, SHORT_STEP, STUCK,
+};
 use crate::vector;
 
 use super::cones::{Along, Cone, Cones};
@@ -60,7 +62,6 @@ pub fn interior_point(
         multipliers: Vec::new(),
         active: Vec::new(),
         unchanged: 0,
-        gradient: vec![0.0; n],
         residual: vec![0.0; n],
         weights: (0..n)
             .map(|i| matrix.entries()[i * (n + 1)].max(f64::MIN_POSITIVE).sqrt().recip())
@@ -84,8 +85,6 @@ struct Run<'a> {
     /// Which inequalities become equalities, as the last step tells, and for how many steps that has been so.
     active: Vec<bool>,
     unchanged: usize,
-    /// `A x - b`.
-    gradient: Vec<f64>,
     /// `A x - b + sum y n`, zero where fixed.
     residual: Vec<f64>,
     /// One over the root of the diagonal.
@@ -96,39 +95,37 @@ struct Run<'a> {
 impl Run<'_> {
     /// A point inside, as far from bounds as the load would press against all of them, and multipliers to match.
     fn begin(&mut self) {
-        let mut inwards = vec![0.0; self.x.len()];
+        let n = self.x.len();
+        let (mut bounds, mut inwards) = (vec![[f64::NEG_INFINITY, f64::INFINITY]; n], vec![0.0; n]);
         for cone in &self.cones.all {
-            if let Cone::Half { i, sign, .. } = *cone {
+            if let Cone::Half { i, sign, bound } = *cone {
+                bounds[i][usize::from(sign > 0.0)] = bound;
                 inwards[i] -= sign;
             }
         }
         for cone in &self.cones.all {
             // a circle needs a radius
             if let Cone::Circle { of, slope, .. } = *cone
-                && slope != 0.0
-                && inwards[of] == 0.0
+                && bounds[of] == [f64::NEG_INFINITY, f64::INFINITY]
             {
-                inwards[of] = slope.signum();
+                inwards[of] = slope.signum() * f64::from(slope != 0.0);
             }
         }
-        let mut along = vec![0.0; self.x.len()];
+        let mut along = vec![0.0; n];
         self.matrix.apply(&inwards, &mut along, &mut ());
         let depth = INTO_THE_SET * vector::norm(self.linear) / vector::norm(&along);
         let depth = if depth.is_finite() && depth > 0.0 { depth } else { 1.0 };
-        for (k, inwards) in inwards.iter().enumerate().filter(|(k, _)| !self.cones.fixed[*k]) {
-            self.x[k] = depth * inwards;
-        }
-        for cone in &self.cones.all {
-            if let Cone::Half { i, sign, bound } = *cone {
-                self.x[i] = match inwards[i] == 0.0 {
-                    true => self.middle(i),
-                    false => bound - sign * depth,
-                };
-            }
+        for i in (0..n).filter(|i| !self.cones.fixed[*i]) {
+            self.x[i] = match bounds[i] {
+                [lower, upper] if lower.is_finite() && upper.is_finite() => 0.5 * (lower + upper),
+                [lower, _] if lower.is_finite() => lower + depth,
+                [_, upper] if upper.is_finite() => upper - depth,
+                _ => depth * inwards[i],
+            };
         }
         self.multipliers = vec![0.0; self.cones.all.len()];
         self.update_residual();
-        let size = self.weighted_norm(&self.residual) / (self.x.len().max(1) as f64).sqrt();
+        let size = self.weighted_norm(&self.residual) / (n.max(1) as f64).sqrt();
         let own = |cone: &Cone| {
             let (at, length) = match *cone {
                 Cone::Half { i, .. } => (i, 1.0),
@@ -139,50 +136,27 @@ impl Run<'_> {
         self.multipliers = self.cones.all.iter().map(own).collect();
     }
 
-    /// The middle between two bounds.
-    fn middle(&self, at: usize) -> f64 {
-        let sides = self.cones.all.iter().filter_map(|cone| match *cone {
-            Cone::Half { i, bound, .. } if i == at => Some(bound),
-            _ => None,
-        });
-        0.5 * sides.sum::<f64>()
-    }
-
-    fn update_gradient(&mut self) {
-        self.matrix.apply(self.x, &mut self.gradient, &mut ());
-        vector::subtract(self.linear, &mut self.gradient);
-    }
-
     fn update_residual(&mut self) {
-        self.update_gradient();
-        vector::copy(&self.gradient, &mut self.residual);
+        self.matrix.apply(self.x, &mut self.residual, &mut ());
+        vector::subtract(self.linear, &mut self.residual);
         for (cone, y) in self.cones.all.iter().zip(&self.multipliers) {
             cone.normal(self.x, |i, n| self.residual[i] += y * n);
         }
-        for (residual, fixed) in self.residual.iter_mut().zip(&self.cones.fixed) {
-            if *fixed {
-                *residual = 0.0;
-            }
-        }
+        let fixed = self.residual.iter_mut().zip(&self.cones.fixed);
+        fixed
+            .filter(|(_, fixed)| **fixed)
+            .for_each(|(residual, _)| *residual = 0.0);
     }
 
     /// Mean of `q y`.
     fn complementarity(&self) -> f64 {
-        let products = self
-            .cones
-            .all
-            .iter()
-            .zip(&self.multipliers)
-            .map(|(cone, y)| cone.along(self.x, self.x).q * y);
+        let products = self.products().into_iter().map(|[q, y]| q * y);
         products.sum::<f64>() / self.cones.all.len().max(1) as f64
     }
 
     fn weighted_norm(&self, v: &[f64]) -> f64 {
-        v.iter()
-            .zip(&self.weights)
-            .map(|(v, w)| (v * w).powi(2))
-            .sum::<f64>()
-            .sqrt()
+        let squares = v.iter().zip(&self.weights).map(|(v, w)| (v * w).powi(2));
+        squares.sum::<f64>().sqrt()
     }
 
     fn solve(&mut self, target: f64) -> InteriorPointReport {
@@ -202,13 +176,18 @@ impl Run<'_> {
                 break Status::Converged;
             }
             if stuck >= STUCK || !tau.is_finite() || !self.cones.holds(self.x) {
-                break Status::Stagnated;
+                // rounding ends it, too
+                break if small > 0 {
+                    Status::Converged
+                } else {
+                    Status::Stagnated
+                };
             }
             if steps >= INTERIOR_STEPS {
                 break Status::IterationLimit;
             }
             let length = self.step(tau);
-            stuck = if length < 1.0 - SHORT_OF_BOUNDARY { stuck + 1 } else { 0 };
+            stuck = if length < SHORT_STEP { stuck + 1 } else { 0 };
             steps += 1;
         };
         InteriorPointReport {

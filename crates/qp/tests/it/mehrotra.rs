@@ -109,21 +109,6 @@ fn radii_follow_in_few_steps_whatever_bends() {
     }
 }
 
-/// A load that friction cannot hold: no point is a solution, and none is called one.
-#[test]
-fn what_has_no_solution_is_not_called_solved() {
-    let a = DenseOperator::new(3, vec![1e-9, 0.0, 0.0, 0.0, 1e-9, 0.0, 0.0, 0.0, 1e-9]).expect("symmetric");
-    let set = ProductSet::new(vec![Segment::bounds(vec![-1.0], vec![0.0]), Segment::discs(vec![0.0])]).expect("a set");
-    let slopes = [RadiusSlope {
-        disc: 1,
-        component: 0,
-        slope: -0.3,
-    }];
-    let mut x = vec![0.0; 3];
-    let report = interior_point(&a, &[f64::MAX, 0.0, 0.0], &set, &slopes, TARGET, &mut x).expect("valid");
-    assert_ne!(report.status, Status::Converged);
-}
-
 #[test]
 fn sets_without_inequalities_take_one_step() {
     let mut r = Random::new(3);
