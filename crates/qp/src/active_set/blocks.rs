@@ -7,7 +7,7 @@
 //! | `kappa` | curvature that a disc adds along its tangent (`|du_T| / r` in contact) |
 
 use crate::problem::{LineWeight, ProductSet, for_bounds, for_discs};
-use crate::tolerances::{MAY_SLIDE, SLID};
+use crate::tolerances::MAY_SLIDE;
 
 use super::disc::{Disc, along_circle};
 
@@ -79,14 +79,12 @@ impl ActiveSet {
         });
     }
 
-    /// Bounds and discs that are active where `x` is on them.
-    pub(crate) fn where_active(set: &ProductSet, x: &[f64]) -> Vec<bool> {
-        let mut active = Vec::new();
-        for_bounds(set, |i, _, lo, hi| active.push(x[i] <= lo || x[i] >= hi));
-        for_discs(set, |i, _, radius| {
-            active.push(x[i].hypot(x[i + 1]) >= radius * (1.0 - SLID))
-        });
-        active
+    /// After a [guess](Self::guess): the next [`classify`](Self::classify) is to find what it has found, circles sliding.
+    pub(crate) fn foresee_guess(&mut self) {
+        let bounds = self.free.iter().map(|free| !free);
+        self.foreseen = bounds
+            .chain(self.discs.iter().map(|disc| *disc == Disc::Fixed))
+            .collect();
     }
 
     /// Every bounded component and every disc free, whatever its bounds are now.

@@ -95,7 +95,7 @@ pub(super) fn go_on<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrec
             continue;
         }
         run.note_progress(&place);
-        if (run.is_trial || run.settings.brief) && run.in_circles() {
+        if run.settings.brief && run.in_circles() {
             return Ok(Status::Stagnated);
         }
         if run.wants_path(&place) {

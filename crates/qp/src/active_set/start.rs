@@ -5,7 +5,6 @@ use crate::problem::{ConvexSet, EqualityProjector, SymmetricOperator};
 use crate::tolerances::{PRESSED, ROUNDED, SINK_ROUNDS};
 use crate::vector;
 
-use super::blocks::ActiveSet;
 use super::run::Run;
 use super::view::ActiveSetPreconditioner;
 
@@ -19,9 +18,11 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         work.known.clear();
         self.path.unknown = !self.is_known();
         let told = std::mem::take(&mut self.at.work.told);
-        let told = told.then(|| ActiveSet::where_active(self.at.set, self.at.x));
         self.guess();
-        let stopped = if self.repairs_suffice || told.is_some() {
+        if told {
+            self.at.work.active.foresee_guess();
+        }
+        let stopped = if self.repairs_suffice || told {
             self.at.set_weights(false)?.is_some()
         } else {
             self.is_known() && self.at.project_start()
@@ -37,7 +38,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             }
         }
         if !self.repairs_suffice {
-            if told.is_none() || !stopped {
+            if !told || !stopped {
                 self.settle_loose(true, true)?;
             }
             self.at.work.active.guess(self.at.set, self.at.x);
@@ -62,7 +63,6 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         } else {
             self.at.correct(if moves { 0.0 } else { ROUNDED * self.peak });
         }
-        self.at.work.active.foreseen = told.unwrap_or_default();
         Ok(())
     }
 

@@ -37,7 +37,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         let products = at.report.products();
         self.next_trial = TRIAL_AGAIN * products;
         let part = (TRIAL_PART * products as f64) as usize;
-        let settings = self.settings.clone().limited_to(part.max(1));
+        let settings = self.settings.clone().limited_to(part.max(1)).with_brief(true);
         let (mut set, mut x, mut ax) = (at.set.clone(), at.x.to_vec(), at.ax.to_vec());
         let mut work = ActiveSetWorkspace::new(at.problem.operator, at.problem.preconditioner);
         work.set_slopes(at.work.coupling.slopes());

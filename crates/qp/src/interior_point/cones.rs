@@ -1,7 +1,10 @@
 //! Blocks of a set as inequalities `q >= 0`: bounds, and circles whose radius may follow another component.
 
+use std::ops::Range;
+
 use crate::active_set::RadiusSlope;
 use crate::problem::{Constrained, ProductSet, for_constrained};
+use crate::vector;
 
 /// One inequality. A multiplier `y >= 0` pushes `x` along the normal: the gradient is `-y` times that.
 #[derive(Debug, Clone, Copy)]
@@ -48,14 +51,28 @@ impl Cone {
         if slope == 0.0 { own } else { own + slope * x[of] }
     }
 
-    /// The value at `x`, and how it changes along `d`.
-    pub(crate) fn along(&self, x: &[f64], d: &[f64]) -> Along {
+    /// The value at `x`.
+    pub(crate) fn value(&self, x: &[f64]) -> f64 {
         match *self {
-            Self::Half { i, sign, bound } => Along {
-                q: sign * (bound - x[i]),
-                rate: -sign * d[i],
-                bend: 0.0,
-            },
+            Self::Half { i, sign, bound } => sign * (bound - x[i]),
+            Self::Circle {
+                first,
+                width,
+                own,
+                of,
+                slope,
+            } => {
+                let (r, length) = (Self::radius(own, of, slope, x), vector::norm(&x[first..first + width]));
+                // near the circle its digits count
+                0.5 * (r - length) * (r + length)
+            }
+        }
+    }
+
+    /// How the value changes from `x` along `d`.
+    pub(crate) fn along(&self, x: &[f64], d: &[f64]) -> Along {
+        let (rate, bend) = match *self {
+            Self::Half { i, sign, .. } => (-sign * d[i], 0.0),
             Self::Circle {
                 first,
                 width,
@@ -65,13 +82,30 @@ impl Cone {
             } => {
                 let (r, grows) = (Self::radius(own, of, slope, x), Self::radius(0.0, of, slope, d));
                 let (x, d) = (&x[first..first + width], &d[first..first + width]);
-                let sum = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-                // (r - |t|) (r + |t|): near the circle its digits count
-                let length = sum(x, x).sqrt();
-                Along {
-                    q: 0.5 * (r - length) * (r + length),
-                    rate: r * grows - sum(x, d),
-                    bend: 0.5 * (grows * grows - sum(d, d)),
+                let bend = 0.5 * (grows * grows - vector::dot(d, d));
+                (r * grows - vector::dot(x, d), bend)
+            }
+        };
+        let q = self.value(x);
+        Along { q, rate, bend }
+    }
+
+    /// Puts `x` on the boundary: on the bound, or along the radius on the circle.
+    pub(crate) fn settle(&self, x: &mut [f64]) {
+        match *self {
+            Self::Half { i, bound, .. } => x[i] = bound,
+            Self::Circle {
+                first,
+                width,
+                own,
+                of,
+                slope,
+            } => {
+                let radius = Self::radius(own, of, slope, x).max(0.0);
+                let t = &mut x[first..first + width];
+                let length = vector::norm(t);
+                if length > 0.0 {
+                    vector::scale(radius / length, t);
                 }
             }
         }
@@ -96,7 +130,7 @@ impl Cone {
     }
 
     /// Components on which the normal depends, by themselves.
-    pub(crate) fn curved(&self) -> std::ops::Range<usize> {
+    pub(crate) fn curved(&self) -> Range<usize> {
         match *self {
             Self::Half { .. } => 0..0,
             Self::Circle { first, width, .. } => first..first + width,
@@ -104,7 +138,8 @@ impl Cone {
     }
 }
 
-/// The inequalities of a set, and which components it leaves at what they are.
+/// The inequalities of a set, bounds before circles, which may follow them, and which components it leaves at what they
+/// are.
 pub(crate) struct Cones {
     pub(crate) all: Vec<Cone>,
     pub(crate) fixed: Vec<bool>,
@@ -122,11 +157,24 @@ impl Cones {
         }
         let before = x.to_vec();
         let (mut all, mut fixed) = (Vec::new(), vec![false; x.len()]);
-        let mut circle = |first: usize, width: usize, radius: f64, x: &mut [f64]| {
+        let mut fix = |components: Range<usize>, value: f64| {
+            x[components.clone()].fill(value);
+            fixed[components].fill(true);
+        };
+        for_constrained(set, |block| {
+            let (first, width, radius) = match block {
+                Constrained::Disc { i, radius, .. } => (i, 2, radius),
+                Constrained::Bound { i, lower, upper, .. } if slope_of[i].is_some() => (i, 1, 0.5 * (upper - lower)),
+                Constrained::Bound { i, lower, upper, .. } if lower == upper => return fix(i..i + 1, lower),
+                Constrained::Bound { i, lower, upper, .. } => {
+                    let sides = [(-1.0, lower), (1.0, upper)];
+                    let halves = sides.into_iter().filter(|(_, bound)| bound.is_finite());
+                    return all.extend(halves.map(|(sign, bound)| Cone::Half { i, sign, bound }));
+                }
+            };
             let (of, slope) = slope_of[first].unwrap_or((0, 0.0));
             if radius == 0.0 && slope == 0.0 {
-                x[first..first + width].fill(0.0);
-                fixed[first..first + width].fill(true);
+                fix(first..first + width, 0.0);
             } else if radius.is_finite() {
                 let own = radius - slope * before[of];
                 all.push(Cone::Circle {
@@ -137,34 +185,14 @@ impl Cones {
                     slope,
                 });
             }
-        };
-        let mut halves = Vec::new();
-        let mut equal = Vec::new();
-        for_constrained(set, |block| match block {
-            Constrained::Disc { i, radius, .. } => circle(i, 2, radius, x),
-            Constrained::Bound { i, lower, upper, .. } if slope_of[i].is_some() => {
-                circle(i, 1, 0.5 * (upper - lower), x);
-            }
-            Constrained::Bound { i, lower, upper, .. } if lower == upper => equal.push((i, lower)),
-            Constrained::Bound { i, lower, upper, .. } => {
-                for (sign, bound) in [(-1.0, lower), (1.0, upper)] {
-                    if bound.is_finite() {
-                        halves.push(Cone::Half { i, sign, bound });
-                    }
-                }
-            }
         });
-        for (i, value) in equal {
-            x[i] = value;
-            fixed[i] = true;
-        }
-        all.extend(halves);
+        all.sort_by_key(|cone| matches!(cone, Cone::Circle { .. }));
         Self { all, fixed }
     }
 
     /// Whether `x` is inside of all.
     pub(crate) fn holds(&self, x: &[f64]) -> bool {
-        self.all.iter().all(|cone| cone.along(x, x).q > 0.0)
+        self.all.iter().all(|cone| cone.value(x) > 0.0)
     }
 }
 
@@ -224,7 +252,7 @@ mod tests {
             cone.derivative(&x, |i, a| rate += a * d[i]);
             assert!((along.rate - rate).abs() < 1e-14, "{cone:?}");
             let moved: Vec<f64> = x.iter().zip(&d).map(|(x, d)| x + 0.01 * d).collect();
-            let q = cone.along(&moved, &d).q;
+            let q = cone.value(&moved);
             assert!(
                 (along.q + 0.01 * along.rate + 1e-4 * along.bend - q).abs() < 1e-14,
                 "{cone:?}"

@@ -129,7 +129,7 @@ impl Run<'_> {
         let own = |cone: &Cone| {
             let (at, length) = match *cone {
                 Cone::Half { i, .. } => (i, 1.0),
-                Cone::Circle { first, .. } => (first, (2.0 * cone.along(self.x, self.x).q).sqrt()),
+                Cone::Circle { first, .. } => (first, (2.0 * cone.value(self.x)).sqrt()),
             };
             (size / self.weights[at] / length).max(f64::MIN_POSITIVE)
         };
@@ -221,7 +221,7 @@ impl Run<'_> {
     /// Values of the inequalities and multipliers.
     fn products(&self) -> Vec<[f64; 2]> {
         let blocks = self.cones.all.iter().zip(&self.multipliers);
-        blocks.map(|(cone, y)| [cone.along(self.x, self.x).q, *y]).collect()
+        blocks.map(|(cone, y)| [cone.value(self.x), *y]).collect()
     }
 
     /// Which inequalities the last step brought further to zero than their multipliers: those become active, in any units
@@ -242,7 +242,7 @@ impl Run<'_> {
             }
         }
         for (cone, y) in self.cones.all.iter().zip(&self.multipliers) {
-            let (x, q) = (&*self.x, cone.along(self.x, self.x).q);
+            let (x, q) = (&*self.x, cone.value(self.x));
             cone.curved().for_each(|i| self.system.add(i, i, *y));
             cone.normal(x, |row, n| {
                 cone.derivative(x, |column, a| self.system.add(row, column, -y / q * n * a))
@@ -255,15 +255,8 @@ impl Run<'_> {
     fn direction(&mut self, wanted: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let mut towards: Vec<f64> = self.residual.iter().map(|r| -r).collect();
         let x = &*self.x;
-        let lacking = |(cone, y): (&Cone, &f64), wanted: &f64| {
-            let q = cone.along(x, x).q;
-            (wanted - q * y) / q
-        };
-        let blocks = self.cones.all.iter().zip(&self.multipliers);
-        let lacks: Vec<f64> = blocks
-            .zip(wanted)
-            .map(|(block, wanted)| lacking(block, wanted))
-            .collect();
+        let lacking = |([q, y], wanted): ([f64; 2], &f64)| (wanted - q * y) / q;
+        let lacks: Vec<f64> = self.products().into_iter().zip(wanted).map(lacking).collect();
         for (cone, lacks) in self.cones.all.iter().zip(&lacks) {
             cone.normal(x, |i, n| towards[i] -= n * lacks);
         }
@@ -279,24 +272,8 @@ impl Run<'_> {
 
     /// Goes to bounds and circles that become active.
     fn settle(&mut self) {
-        let x = &mut *self.x;
-        let active = self.cones.all.iter().zip(&self.active).filter(|(_, active)| **active);
-        // radii follow bounded components
-        let (halves, circles): (Vec<Cone>, Vec<Cone>) = active
-            .map(|(cone, _)| *cone)
-            .partition(|cone| matches!(cone, Cone::Half { .. }));
-        for cone in halves.into_iter().chain(circles) {
-            let q = cone.along(x, x).q;
-            match cone {
-                Cone::Half { i, bound, .. } => x[i] = bound,
-                Cone::Circle { first, width, .. } => {
-                    let length = vector::norm(&x[first..first + width]);
-                    let radius = (2.0 * q + length * length).max(0.0).sqrt();
-                    if length > 0.0 {
-                        vector::scale(radius / length, &mut x[first..first + width]);
-                    }
-                }
-            }
+        for (cone, _) in self.cones.all.iter().zip(&self.active).filter(|(_, active)| **active) {
+            cone.settle(self.x);
         }
     }
 

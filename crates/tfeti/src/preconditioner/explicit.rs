@@ -72,9 +72,8 @@ impl Tfeti {
         let (rows, contact) = (self.dual_dim(), self.gluing().ranges().contact().end);
         let others = rows - contact;
         let ordered = |column: &[f64], out: &mut [f64]| {
-            let (own, behind) = column.split_at(contact);
-            out[..others].copy_from_slice(behind);
-            out[others..].copy_from_slice(own);
+            out.copy_from_slice(column);
+            out.rotate_left(contact);
         };
         let (dual, coarse) = (self.dual(), self.coarse());
         let (mut x, mut y, mut s) = (vec![0.0; rows], vec![0.0; rows], dual.scratch());
@@ -212,9 +211,8 @@ impl ExplicitInverse {
 
     fn solve(&self, x: &mut [f64], s: &mut ExplicitScratch) {
         let others = self.rows - self.contact;
-        let (own, behind) = x.split_at_mut(self.contact);
-        s.ordered[..others].copy_from_slice(behind);
-        s.ordered[others..].copy_from_slice(own);
+        s.ordered.copy_from_slice(x);
+        s.ordered.rotate_left(self.contact);
         dense::forward(&self.columns, self.rows, others, &mut s.ordered);
         let (size, contact) = (s.directions.len(), &mut s.ordered[others..]);
         let along = |direction: &Direction| direction.iter().map(|(row, v)| v * contact[*row]).sum::<f64>();
@@ -227,8 +225,8 @@ impl ExplicitInverse {
             direction.iter().for_each(|(row, v)| contact[*row] += v * value);
         }
         dense::backward(&self.columns, self.rows, others, &mut s.ordered);
-        own.copy_from_slice(&s.ordered[others..]);
-        behind.copy_from_slice(&s.ordered[..others]);
+        x.copy_from_slice(&s.ordered);
+        x.rotate_right(self.contact);
     }
 }
 
