@@ -11,14 +11,37 @@ use crate::vector;
 pub(crate) enum Cone {
     /// `q = sign (bound - x_i)`.
     Half { i: usize, sign: f64, bound: f64 },
-    /// `q = (r² - |t|²) / 2` for one or two components from `first` on, `r = own + slope * x[of]`.
-    Circle {
-        first: usize,
-        width: usize,
-        own: f64,
-        of: usize,
-        slope: f64,
-    },
+    /// `q = (r² - |t|²) / 2`.
+    Circle(Circle),
+}
+
+/// One or two components `t` from `first` on, in a circle of radius `r = own + slope * x[of]`.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Circle {
+    pub(crate) first: usize,
+    width: usize,
+    own: f64,
+    pub(crate) of: usize,
+    pub(crate) slope: f64,
+}
+
+impl Circle {
+    fn components(&self) -> Range<usize> {
+        self.first..self.first + self.width
+    }
+
+    fn radius(&self, x: &[f64]) -> f64 {
+        self.own + self.growth(x)
+    }
+
+    /// What `d` adds to the radius.
+    fn growth(&self, d: &[f64]) -> f64 {
+        if self.slope == 0.0 {
+            0.0
+        } else {
+            self.slope * d[self.of]
+        }
+    }
 }
 
 /// The value of an inequality along a line: `q + rate s + bend s²`.
@@ -46,23 +69,12 @@ impl Along {
 }
 
 impl Cone {
-    /// Radius of a circle at `x`.
-    fn radius(own: f64, of: usize, slope: f64, x: &[f64]) -> f64 {
-        if slope == 0.0 { own } else { own + slope * x[of] }
-    }
-
     /// The value at `x`.
     pub(crate) fn value(&self, x: &[f64]) -> f64 {
         match *self {
             Self::Half { i, sign, bound } => sign * (bound - x[i]),
-            Self::Circle {
-                first,
-                width,
-                own,
-                of,
-                slope,
-            } => {
-                let (r, length) = (Self::radius(own, of, slope, x), vector::norm(&x[first..first + width]));
+            Self::Circle(circle) => {
+                let (r, length) = (circle.radius(x), vector::norm(&x[circle.components()]));
                 // near the circle its digits count
                 0.5 * (r - length) * (r + length)
             }
@@ -73,15 +85,9 @@ impl Cone {
     pub(crate) fn along(&self, x: &[f64], d: &[f64]) -> Along {
         let (rate, bend) = match *self {
             Self::Half { i, sign, .. } => (-sign * d[i], 0.0),
-            Self::Circle {
-                first,
-                width,
-                own,
-                of,
-                slope,
-            } => {
-                let (r, grows) = (Self::radius(own, of, slope, x), Self::radius(0.0, of, slope, d));
-                let (x, d) = (&x[first..first + width], &d[first..first + width]);
+            Self::Circle(circle) => {
+                let (r, grows) = (circle.radius(x), circle.growth(d));
+                let [x, d] = [x, d].map(|v| &v[circle.components()]);
                 let bend = 0.5 * (grows * grows - vector::dot(d, d));
                 (r * grows - vector::dot(x, d), bend)
             }
@@ -94,15 +100,9 @@ impl Cone {
     pub(crate) fn settle(&self, x: &mut [f64]) {
         match *self {
             Self::Half { i, bound, .. } => x[i] = bound,
-            Self::Circle {
-                first,
-                width,
-                own,
-                of,
-                slope,
-            } => {
-                let radius = Self::radius(own, of, slope, x).max(0.0);
-                let t = &mut x[first..first + width];
+            Self::Circle(circle) => {
+                let radius = circle.radius(x).max(0.0);
+                let t = &mut x[circle.components()];
                 let length = vector::norm(t);
                 if length > 0.0 {
                     vector::scale(radius / length, t);
@@ -115,17 +115,17 @@ impl Cone {
     pub(crate) fn normal(&self, x: &[f64], mut f: impl FnMut(usize, f64)) {
         match *self {
             Self::Half { i, sign, .. } => f(i, sign),
-            Self::Circle { first, width, .. } => (first..first + width).for_each(|i| f(i, x[i])),
+            Self::Circle(circle) => circle.components().for_each(|i| f(i, x[i])),
         }
     }
 
     /// Calls `f` with those of the derivative of `q`, which is the normal turned round, and more where a radius follows.
     pub(crate) fn derivative(&self, x: &[f64], mut f: impl FnMut(usize, f64)) {
         self.normal(x, |i, n| f(i, -n));
-        if let Self::Circle { own, of, slope, .. } = *self
-            && slope != 0.0
+        if let Self::Circle(circle) = self
+            && circle.slope != 0.0
         {
-            f(of, slope * Self::radius(own, of, slope, x));
+            f(circle.of, circle.slope * circle.radius(x));
         }
     }
 
@@ -133,7 +133,7 @@ impl Cone {
     pub(crate) fn curved(&self) -> Range<usize> {
         match *self {
             Self::Half { .. } => 0..0,
-            Self::Circle { first, width, .. } => first..first + width,
+            Self::Circle(circle) => circle.components(),
         }
     }
 }
@@ -173,20 +173,20 @@ impl Cones {
                 }
             };
             let (of, slope) = slope_of[first].unwrap_or((0, 0.0));
+            let circle = Circle {
+                first,
+                width,
+                own: radius - slope * before[of],
+                of,
+                slope,
+            };
             if radius == 0.0 && slope == 0.0 {
-                fix(first..first + width, 0.0);
+                fix(circle.components(), 0.0);
             } else if radius.is_finite() {
-                let own = radius - slope * before[of];
-                all.push(Cone::Circle {
-                    first,
-                    width,
-                    own,
-                    of,
-                    slope,
-                });
+                all.push(Cone::Circle(circle));
             }
         });
-        all.sort_by_key(|cone| matches!(cone, Cone::Circle { .. }));
+        all.sort_by_key(|cone| matches!(cone, Cone::Circle(_)));
         Self { all, fixed }
     }
 

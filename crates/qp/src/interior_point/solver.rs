@@ -15,7 +15,7 @@ use crate::tolerances::{
 };
 use crate::vector;
 
-use super::cones::{Along, Cone, Cones};
+use super::cones::{Along, Circle, Cone, Cones};
 use super::system::System;
 
 /// What [`interior_point`] did.
@@ -105,7 +105,7 @@ impl Run<'_> {
         }
         for cone in &self.cones.all {
             // a circle needs a radius
-            if let Cone::Circle { of, slope, .. } = *cone
+            if let Cone::Circle(Circle { of, slope, .. }) = *cone
                 && bounds[of] == [f64::NEG_INFINITY, f64::INFINITY]
             {
                 inwards[of] = slope.signum() * f64::from(slope != 0.0);
@@ -129,7 +129,7 @@ impl Run<'_> {
         let own = |cone: &Cone| {
             let (at, length) = match *cone {
                 Cone::Half { i, .. } => (i, 1.0),
-                Cone::Circle { first, .. } => (first, (2.0 * cone.value(self.x)).sqrt()),
+                Cone::Circle(Circle { first, .. }) => (first, (2.0 * cone.value(self.x)).sqrt()),
             };
             (size / self.weights[at] / length).max(f64::MIN_POSITIVE)
         };
