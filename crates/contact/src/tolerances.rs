@@ -253,12 +253,13 @@ pub(crate) const LINEAR_SLACK: f64 = 15.0;
 pub(crate) const EASY: usize = 200;
 /// Products beyond those for which forming F does not pay, however small it is.
 pub(crate) const LITTLE: usize = 300;
-/// Complementarity, over that at the start, to which interior points are followed for a start of active sets.
-pub(crate) const INSIDE: f64 = 1e-9;
+/// Complementarity to which interior points are followed for a start of active sets: rounding of a load that holds the
+/// weight of the equality.
+pub(crate) const INSIDE: f64 = 1e-18;
 /// What forming F and a step with its inverse may cost, in products, to be tried as soon as predictions run in circles.
 pub(crate) const AT_ONCE: usize = 3000;
 /// Products of a step with that inverse after which interior points look for another start.
-pub(crate) const BEFORE_INSIDE: usize = 30;
+pub(crate) const BEFORE_INSIDE: usize = 12;
 /// Products of a step with that inverse after which it does not help: a set takes two or three.
 pub(crate) const EXPLICIT_PRODUCTS: usize = 1000;
 

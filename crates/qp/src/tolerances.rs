@@ -173,6 +173,8 @@ pub(crate) const TRIAL_AGAIN: usize = 4;
 pub(crate) const TRIAL_PART: f64 = 0.5;
 /// Decrease of the error on a set in a trial: with less the residual does not tell which way discs slip.
 pub(crate) const SLIPPING: f64 = 0.1;
+/// Decrease of the error on sets behind a start that tells its active set.
+pub(crate) const TOLD: f64 = 1e-3;
 /// Times that a body which constraints alone hold is balanced with a set that follows.
 pub(crate) const BALANCE_ROUNDS: usize = 3;
 /// Part of a round's way that the next one goes back, from which on they swing about their limit; rounds then, and the
@@ -224,18 +226,24 @@ pub(crate) const NEWTON_DECREASE: f64 = 1e-4;
 
 // Interior points
 
-/// How far from bounds the method begins, over what the load presses against all of them.
-pub(crate) const INTO_THE_SET: f64 = 2.0;
 /// Part of the way to the boundary that a step goes, and the least part of complementarity that it aims at.
 pub(crate) const SHORT_OF_BOUNDARY: f64 = 0.95;
 pub(crate) const CENTRED: f64 = 1e-4;
 /// Steps for which the same inequalities have to become active, and steps behind the target after which they need not.
 pub(crate) const SETTLED_STEPS: usize = 3;
 pub(crate) const MORE_STEPS: usize = 8;
-/// Most steps; part of the way that is a short one, and so many of those in a row that end it.
+/// Gradient that pushes a component off the bound on which it rests, over the largest of all.
+pub(crate) const PUSHES: f64 = 1e-6;
+/// A point on a circle is put this much of the radius from its centre: rounding of radii leaves it on the circle then.
+pub(crate) const BEYOND: f64 = 1.0 + 1e-13;
+/// Most steps; part of the least complementarity so far that a step leaves at most, so many in a row that fail to and end
+/// it, and complementarity up to which that is rounding.
 pub(crate) const INTERIOR_STEPS: usize = 100;
-pub(crate) const SHORT_STEP: f64 = 0.05;
-pub(crate) const STUCK: usize = 10;
+pub(crate) const FALLS: f64 = 0.9;
+pub(crate) const ROUGH: f64 = 1e-9;
+/// Work of the residual, likewise, up to which the equations are solved.
+pub(crate) const SOLVED: f64 = 1e-9;
+pub(crate) const STUCK: usize = 5;
 
 // Fixed points
 

@@ -80,6 +80,9 @@ pub(crate) const DEPENDENT: f64 = 0.3;
 /// Weight of `Gᵀ G` beside `F`, by their traces: the inverse of the sum is that of `F` on the kernel of `G` to about its
 /// inverse.
 pub(crate) const EXPLICIT_WEIGHT: f64 = 1e4;
+/// Most solves with it until `G x = e`, and what may be left of that beside `x`.
+pub(crate) const BALANCES: usize = 5;
+pub(crate) const BALANCED: f64 = 1e-10;
 /// Pivot of a row in such an `F`, over its largest entry, up to which the row depends on others.
 pub(crate) const LEFT_OF_ROW: f64 = 1e-11;
 /// Added to the diagonal of a matrix until it can be factored, relative to its largest entry.
@@ -122,9 +125,11 @@ pub(crate) const BANDWIDTH: [f64; 2] = [6e10, 1.2e10];
 pub(crate) const PRODUCTS: usize = 2000;
 /// Bytes of dense matrices that still stay in the caches of one processor.
 pub(crate) const CACHE: u64 = 16 << 20;
-/// Most rows of an `F` that is formed; factors of interior points and active sets of a step with its inverse.
-pub(crate) const EXPLICIT_ROWS: usize = 3000;
-pub(crate) const INTERIOR_FACTORS: f64 = 35.0;
+/// Most rows of an `F` that is formed (390 MB), and most contact rows of these; factors of interior points and active
+/// sets of a step with its inverse.
+pub(crate) const EXPLICIT_ROWS: usize = 7000;
+pub(crate) const EXPLICIT_CONTACT: usize = 2000;
+pub(crate) const INTERIOR_FACTORS: f64 = 250.0;
 pub(crate) const EXPLICIT_SETS: f64 = 20.0;
 /// Time of an operation of a product with `F` over that of a dense factor, and operations of such a factor in the time
 /// that a solve takes for a row beside that product (0.4 to 1.2 ms a product of 450 to 6000 rows).

@@ -6,8 +6,10 @@
 pub struct Counters {
     /// Products with F, including recoveries of the displacement.
     pub products: usize,
-    /// Products with F spent on estimating norms and on forming it, counted apart.
+    /// Products with F spent on estimating norms, counted apart.
     pub setup_products: usize,
+    /// F as a matrix, formed once for all later steps.
+    pub formed_operators: usize,
     /// Applications of the preconditioner.
     pub preconditionings: usize,
     /// Applications of projectors by SMALSE.
@@ -37,6 +39,7 @@ impl std::ops::AddAssign for Counters {
     fn add_assign(&mut self, other: Self) {
         self.products += other.products;
         self.setup_products += other.setup_products;
+        self.formed_operators += other.formed_operators;
         self.preconditionings += other.preconditionings;
         self.projections += other.projections;
         self.coarse_factorisations += other.coarse_factorisations;

@@ -26,23 +26,23 @@ use signorini_qp::{
     ActiveSetSettings, EqualityProjector, MovingSet, ProductSet, QpError, Status, SymmetricOperator, active_set,
     interior_point, vector,
 };
-use signorini_tfeti::internal::SystemPart;
+use signorini_tfeti::internal::{ExplicitCost, SystemPart};
 use signorini_tfeti::{ActiveSetProjector, DualOperator};
 
 /// Solves of a step with contradicting points released.
 const TURNS: usize = 8;
-/// The effort of steps that a formed F did not help.
-const NO_HELP: usize = usize::MAX;
 
 pub(crate) struct ActiveSetSolver {
     /// Of several processes, where vectors can be spread.
     part: Option<SystemPart>,
+    /// Contact rows.
+    contact: usize,
     space: ActiveSetProjector,
     preconditioner: SelectedPreconditioner,
     /// The one that is not in use, of that of the settings and the inverse of a formed F.
     other: Option<SelectedPreconditioner>,
-    /// What forming F costs in products, and a step with its inverse; `None` if that is not to be.
-    explicit_cost: Option<[usize; 2]>,
+    /// What forming F costs, and steps with its inverse; `None` if that is not to be.
+    explicit_cost: Option<ExplicitCost>,
     scale: Vec<f64>,
     set: ProductSet,
     work: ActiveSetWorkspace<DualOperator, SelectedPreconditioner>,
@@ -97,6 +97,7 @@ impl ActiveSetSolver {
             _ => model.tfeti.explicit_cost(),
         };
         Ok(Self {
+            contact,
             space,
             work: ActiveSetWorkspace::new(dual, &preconditioner),
             other: None,
@@ -179,17 +180,34 @@ impl ActiveSetSolver {
         iterate: &mut Iterate,
         report: &mut StepReport,
     ) -> Result<Status, ContactError> {
-        let costs = self.explicit_cost.filter(|_| iterate.effort < NO_HELP);
-        let cost = costs.map(|[forming, _]| forming.max(LITTLE));
-        let easy = costs.map_or(usize::MAX, |[_, step]| step.max(EASY));
+        let costs = self.explicit_cost;
+        let cost = costs.map(|costs| costs.forming.max(LITTLE));
+        let contact = self.contact;
+        let carrying = |x: &[f64]| x[..contact].iter().filter(|v| **v != 0.0).count();
+        let step = |x: &[f64]| costs.map_or(usize::MAX, |costs| costs.step(carrying(x)));
+        let at_once = |x: &[f64]| costs.is_some_and(|costs| costs.forming.saturating_add(step(x)) <= AT_ONCE);
         let mut status = Status::IterationLimit;
         if cost.is_none_or(|cost| iterate.effort < cost) {
             self.use_explicit(false, task, report);
-            let most = cost.map_or(usize::MAX, |cost| cost - iterate.effort + easy);
             // bodies that supports hold find a path out of circles
-            let brief =
-                !self.space.loose().is_empty() && costs.is_some_and(|[forming, step]| forming + step <= AT_ONCE);
-            status = self.active_sets(task, iterate, (most, brief), report)?;
+            let mut brief = !self.space.loose().is_empty() && at_once(&iterate.lambda);
+            loop {
+                let easy = step(&iterate.lambda).max(EASY);
+                let most = cost.map_or(usize::MAX, |cost| (cost - iterate.effort).saturating_add(easy));
+                let left = most.saturating_sub(report.counters.products);
+                if left == 0 {
+                    break;
+                }
+                status = self.active_sets(task, iterate, (left, brief), report)?;
+                let limited = status == Status::IterationLimit && report.counters.products >= most;
+                let circles = brief && status == Status::Stagnated && !at_once(&iterate.lambda);
+                // what carries now may make the inverse dearer
+                if !(limited || circles) {
+                    break;
+                }
+                brief &= limited;
+            }
+            let easy = step(&iterate.lambda).max(EASY);
             let effort = report.counters.products.saturating_sub(easy);
             iterate.effort = iterate.effort.saturating_add(effort);
         }
@@ -208,7 +226,8 @@ impl ActiveSetSolver {
                 }
             }
             if is_open(status) {
-                iterate.effort = NO_HELP;
+                // the next step may need it
+                iterate.effort = 0;
                 if !self.space.loose().is_empty() {
                     // bodies that contact alone holds may need other sets than these
                     self.use_explicit(false, task, report);
@@ -231,18 +250,26 @@ impl ActiveSetSolver {
         let SelectedPreconditioner::Explicit(explicit) = &self.preconditioner else {
             return Ok(());
         };
-        let mut x = vec![0.0; iterate.lambda.len()];
+        // what is open in the last iterate is left out at first
+        let mut x = iterate.lambda.clone();
         let mut set = model.set_with(0)?;
-        problem.write_slip_bounds(model, &x, &mut set)?;
         let slopes = match is_coulomb(model) {
             true => problem.slip_slopes(model),
             false => Vec::new(),
         };
         let data = (&problem.linear[..], &problem.rhs[..]);
+        let mut steps = 0;
+        let mut written = Ok(());
         let outcome = explicit.through_contact(model.tfeti.coarse(), data, &mut x, |matrix, load, x| {
-            interior_point(matrix, load, &set, &slopes, INSIDE, x)
+            if written.is_ok() {
+                written = problem.write_slip_bounds(model, x, &mut set);
+            }
+            let outcome = interior_point(matrix, load, &set, &slopes, INSIDE, x)?;
+            steps += outcome.steps;
+            Ok(outcome)
         })?;
-        report.counters.interior_steps += outcome.steps;
+        written?;
+        report.counters.interior_steps += steps;
         if outcome.status == Status::Converged && x.iter().all(|v| v.is_finite()) {
             iterate.lambda = x;
             iterate.known = false;
@@ -264,7 +291,7 @@ impl ActiveSetSolver {
         }
         if self.other.is_none() {
             self.other = SelectedPreconditioner::explicit(task.model, self.part.as_ref());
-            report.counters.setup_products += task.model.tfeti.dual_dim();
+            report.counters.formed_operators += 1;
         }
         let Some(other) = &mut self.other else {
             return false;

@@ -7,7 +7,7 @@ use crate::problem::{ConvexSet, EqualityProjector, Hook, MovingSet, ProductSet, 
 use crate::report::Status;
 use crate::tolerances::{
     BEHIND_PATH, FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NATURAL_STEP, NEGLIGIBLE, ON_PATH, PASSING_PART, PATIENCE,
-    PROGRESS, ROUNDED, RUNAWAY, SHRUNK, SLIPPING, SMALL_PART, TRIAL, UNBALANCED,
+    PROGRESS, ROUNDED, RUNAWAY, SHRUNK, SLIPPING, SMALL_PART, TOLD, TRIAL, UNBALANCED,
 };
 use crate::vector;
 
@@ -81,6 +81,8 @@ pub(crate) struct Run<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) hook: Option<&'s mut Hook<'s, ProductSet>>,
     /// Kind and length of each segment.
     shape: Vec<(Discriminant<Segment>, usize)>,
+    /// Whether the start tells its active set.
+    pub(crate) told: bool,
     /// Whether the product with the start is known.
     pub(crate) ax_known: bool,
     /// Whether unconstrained components alone stop every mode of the equality.
@@ -135,6 +137,7 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         };
         Self {
             shape: set.shape().collect(),
+            told: false,
             ax_known: known,
             repairs_suffice: projector.loose().is_empty(),
             settings,
@@ -417,6 +420,11 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
             false => self.forcing,
         };
         let forcing = if slipping { forcing.min(SLIPPING) } else { forcing };
+        // a set that a start tells is worth solving
+        let forcing = match self.told && self.progress.waited == 0 {
+            true => forcing.min(TOLD),
+            false => forcing,
+        };
         let goal = Goal {
             forcing: (at.work.coupling).forcing(forcing, self.moved.jump, self.first_error),
             // of an error in other blocks than before the last move tells nothing

@@ -19,8 +19,11 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         self.path.unknown = !self.is_known();
         let told = std::mem::take(&mut self.at.work.told);
         self.guess();
+        self.told = told;
         if told {
             self.at.work.active.foresee_guess();
+            // what slides all over stops a mode, too
+            self.at.work.active.guess_sliding(self.at.set, self.at.x);
         }
         let stopped = if self.repairs_suffice || told {
             self.at.set_weights(false)?.is_some()

@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use crate::active_set::RadiusSlope;
 use crate::problem::{Constrained, ProductSet, for_constrained};
+use crate::tolerances::{BEYOND, ROUNDED};
 use crate::vector;
 
 /// One inequality. A multiplier `y >= 0` pushes `x` along the normal: the gradient is `-y` times that.
@@ -11,7 +12,7 @@ use crate::vector;
 pub(crate) enum Cone {
     /// `q = sign (bound - x_i)`.
     Half { i: usize, sign: f64, bound: f64 },
-    /// `q = (r² - |t|²) / 2`.
+    /// `q = (r² - |t|²) / 2r`: its multiplier stays finite where a circle vanishes.
     Circle(Circle),
 }
 
@@ -44,11 +45,11 @@ impl Circle {
     }
 }
 
-/// The value of an inequality along a line: `q + rate s + bend s²`.
+/// The value of an inequality along a line, times the radius: `q + rate s + bend s²`.
 pub(crate) struct Along {
-    pub(crate) q: f64,
-    pub(crate) rate: f64,
-    pub(crate) bend: f64,
+    q: f64,
+    rate: f64,
+    bend: f64,
 }
 
 impl Along {
@@ -76,24 +77,37 @@ impl Cone {
             Self::Circle(circle) => {
                 let (r, length) = (circle.radius(x), vector::norm(&x[circle.components()]));
                 // near the circle its digits count
-                0.5 * (r - length) * (r + length)
+                0.5 * (r - length) * (1.0 + length / r)
             }
         }
     }
 
     /// How the value changes from `x` along `d`.
     pub(crate) fn along(&self, x: &[f64], d: &[f64]) -> Along {
-        let (rate, bend) = match *self {
-            Self::Half { i, sign, .. } => (-sign * d[i], 0.0),
+        match *self {
+            Self::Half { i, sign, .. } => Along {
+                q: self.value(x),
+                rate: -sign * d[i],
+                bend: 0.0,
+            },
             Self::Circle(circle) => {
                 let (r, grows) = (circle.radius(x), circle.growth(d));
+                let q = r * self.value(x);
                 let [x, d] = [x, d].map(|v| &v[circle.components()]);
-                let bend = 0.5 * (grows * grows - vector::dot(d, d));
-                (r * grows - vector::dot(x, d), bend)
+                Along {
+                    q,
+                    rate: r * grows - vector::dot(x, d),
+                    bend: 0.5 * (grows * grows - vector::dot(d, d)),
+                }
             }
-        };
-        let q = self.value(x);
-        Along { q, rate, bend }
+        }
+    }
+
+    /// The derivative of the value along `d`.
+    pub(crate) fn rate(&self, x: &[f64], d: &[f64]) -> f64 {
+        let mut rate = 0.0;
+        self.derivative(x, |i, a| rate += a * d[i]);
+        rate
     }
 
     /// Puts `x` on the boundary: on the bound, or along the radius on the circle.
@@ -101,7 +115,8 @@ impl Cone {
         match *self {
             Self::Half { i, bound, .. } => x[i] = bound,
             Self::Circle(circle) => {
-                let radius = circle.radius(x).max(0.0);
+                // a radius that is computed again may differ by rounding
+                let radius = circle.radius(x).max(0.0) * BEYOND;
                 let t = &mut x[circle.components()];
                 let length = vector::norm(t);
                 if length > 0.0 {
@@ -115,7 +130,10 @@ impl Cone {
     pub(crate) fn normal(&self, x: &[f64], mut f: impl FnMut(usize, f64)) {
         match *self {
             Self::Half { i, sign, .. } => f(i, sign),
-            Self::Circle(circle) => circle.components().for_each(|i| f(i, x[i])),
+            Self::Circle(circle) => {
+                let r = circle.radius(x);
+                circle.components().for_each(|i| f(i, x[i] / r));
+            }
         }
     }
 
@@ -125,29 +143,36 @@ impl Cone {
         if let Self::Circle(circle) = self
             && circle.slope != 0.0
         {
-            f(circle.of, circle.slope * circle.radius(x));
+            let part = vector::norm(&x[circle.components()]) / circle.radius(x);
+            f(circle.of, 0.5 * circle.slope * (1.0 + part * part));
         }
     }
 
-    /// Components on which the normal depends, by themselves.
-    pub(crate) fn curved(&self) -> Range<usize> {
-        match *self {
-            Self::Half { .. } => 0..0,
-            Self::Circle(circle) => circle.components(),
+    /// Calls `f` with the derivative of the normal: component, by which, value.
+    pub(crate) fn curvature(&self, x: &[f64], mut f: impl FnMut(usize, usize, f64)) {
+        if let Self::Circle(circle) = self {
+            let r = circle.radius(x);
+            for i in circle.components() {
+                f(i, i, 1.0 / r);
+                if circle.slope != 0.0 {
+                    f(i, circle.of, -circle.slope * x[i] / r / r);
+                }
+            }
         }
     }
 }
 
-/// The inequalities of a set, bounds before circles, which may follow them, and which components it leaves at what they
-/// are.
+/// The inequalities of a set, bounds before circles, which may follow them, and which components stay at what they are.
 pub(crate) struct Cones {
     pub(crate) all: Vec<Cone>,
+    /// Bounds on which components rest, and circles that vanish there.
+    resting: Vec<Cone>,
     pub(crate) fixed: Vec<bool>,
 }
 
 impl Cones {
     /// Puts fixed components of `x` where the set has them. The radii of the set, and intervals that slopes tell of, are
-    /// those at `x`.
+    /// those at `x`. What has one bound and is on it rests there, unless that is so everywhere.
     pub(crate) fn new(set: &ProductSet, slopes: &[RadiusSlope], x: &mut [f64]) -> Self {
         let mut slope_of = vec![None; x.len()];
         for slope in slopes.iter().filter(|s| s.slope != 0.0) {
@@ -156,7 +181,20 @@ impl Cones {
             }
         }
         let before = x.to_vec();
-        let (mut all, mut fixed) = (Vec::new(), vec![false; x.len()]);
+        let mut rests = vec![false; x.len()];
+        let mut some_do_not = false;
+        for_constrained(set, |block| {
+            if let Constrained::Bound { i, lower, upper, .. } = block
+                && lower.is_finite() != upper.is_finite()
+            {
+                rests[i] = before[i] == lower || before[i] == upper;
+                some_do_not |= !rests[i];
+            }
+        });
+        if !some_do_not {
+            rests.fill(false);
+        }
+        let (mut all, mut resting, mut fixed) = (Vec::new(), Vec::new(), vec![false; x.len()]);
         let mut fix = |components: Range<usize>, value: f64| {
             x[components.clone()].fill(value);
             fixed[components].fill(true);
@@ -169,25 +207,74 @@ impl Cones {
                 Constrained::Bound { i, lower, upper, .. } => {
                     let sides = [(-1.0, lower), (1.0, upper)];
                     let halves = sides.into_iter().filter(|(_, bound)| bound.is_finite());
-                    return all.extend(halves.map(|(sign, bound)| Cone::Half { i, sign, bound }));
+                    let halves = halves.map(|(sign, bound)| Cone::Half { i, sign, bound });
+                    if rests[i] {
+                        fix(i..i + 1, before[i]);
+                        return resting.extend(halves);
+                    }
+                    return all.extend(halves);
                 }
             };
             let (of, slope) = slope_of[first].unwrap_or((0, 0.0));
+            let own = radius - slope * before[of];
             let circle = Circle {
                 first,
                 width,
-                own: radius - slope * before[of],
+                own: if own.abs() > ROUNDED * radius { own } else { 0.0 },
                 of,
                 slope,
             };
-            if radius == 0.0 && slope == 0.0 {
-                fix(circle.components(), 0.0);
-            } else if radius.is_finite() {
-                all.push(Cone::Circle(circle));
+            match (radius == 0.0, slope == 0.0) {
+                (true, true) => fix(circle.components(), 0.0),
+                (true, false) if rests[of] => {
+                    fix(circle.components(), 0.0);
+                    resting.push(Cone::Circle(circle));
+                }
+                _ if radius.is_finite() => all.push(Cone::Circle(circle)),
+                _ => {}
             }
         });
-        all.sort_by_key(|cone| matches!(cone, Cone::Circle(_)));
-        Self { all, fixed }
+        let mut out = Self { all, resting, fixed };
+        out.sort();
+        out
+    }
+
+    fn sort(&mut self) {
+        self.all.sort_by_key(|cone| matches!(cone, Cone::Circle(_)));
+    }
+
+    /// Lets go what `pushes` off the bound on which it rests, given component and sign, with circles that follow. Whether
+    /// there is any.
+    pub(crate) fn let_go(&mut self, pushes: impl Fn(usize, f64) -> bool) -> bool {
+        let mut goes = vec![false; self.fixed.len()];
+        for cone in &self.resting {
+            if let Cone::Half { i, sign, .. } = *cone {
+                goes[i] = pushes(i, sign);
+            }
+        }
+        let before = self.all.len();
+        for cone in std::mem::take(&mut self.resting) {
+            let (components, of) = match cone {
+                Cone::Half { i, .. } => (i..i + 1, i),
+                Cone::Circle(circle) => (circle.components(), circle.of),
+            };
+            if goes[of] {
+                self.fixed[components].fill(false);
+                self.all.push(cone);
+            } else {
+                self.resting.push(cone);
+            }
+        }
+        self.sort();
+        self.all.len() > before
+    }
+
+    /// Components that rest on a bound.
+    pub(crate) fn rests(&self) -> impl Iterator<Item = usize> {
+        self.resting.iter().filter_map(|cone| match *cone {
+            Cone::Half { i, .. } => Some(i),
+            Cone::Circle(_) => None,
+        })
     }
 
     /// Whether `x` is inside of all.
@@ -248,15 +335,28 @@ mod tests {
         let d: Vec<f64> = (0..10).map(|k| (k as f64).sin()).collect();
         for cone in &cones.all {
             let along = cone.along(&x, &d);
-            let mut rate = 0.0;
-            cone.derivative(&x, |i, a| rate += a * d[i]);
-            assert!((along.rate - rate).abs() < 1e-14, "{cone:?}");
-            let moved: Vec<f64> = x.iter().zip(&d).map(|(x, d)| x + 0.01 * d).collect();
-            let q = cone.value(&moved);
-            assert!(
-                (along.q + 0.01 * along.rate + 1e-4 * along.bend - q).abs() < 1e-14,
-                "{cone:?}"
-            );
+            let moved = |s: f64| -> Vec<f64> { x.iter().zip(&d).map(|(x, d)| x + s * d).collect() };
+            let radius = |x: &[f64]| match *cone {
+                Cone::Half { .. } => 1.0,
+                Cone::Circle(circle) => circle.radius(x),
+            };
+            let far = moved(0.01);
+            let q = radius(&far) * cone.value(&far);
+            let told = along.q + 0.01 * along.rate + 1e-4 * along.bend;
+            assert!((told - q).abs() < 1e-14, "{cone:?}");
+            let [ahead, behind] = [1e-5, -1e-5].map(moved);
+            let rate = (cone.value(&ahead) - cone.value(&behind)) / 2e-5;
+            assert!((cone.rate(&x, &d) - rate).abs() < 1e-9, "{cone:?}");
+            let normal = |x: &[f64]| {
+                let mut out = vec![0.0; x.len()];
+                cone.normal(x, |i, n| out[i] += n);
+                out
+            };
+            let mut turns = vec![0.0; x.len()];
+            cone.curvature(&x, |i, j, v| turns[i] += v * d[j]);
+            for ((turns, a), b) in turns.iter().zip(normal(&ahead)).zip(normal(&behind)) {
+                assert!((turns - (a - b) / 2e-5).abs() < 1e-8, "{cone:?}");
+            }
         }
     }
 }

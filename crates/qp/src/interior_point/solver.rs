@@ -11,11 +11,11 @@ use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
 use crate::problem::{ConvexSet, DenseOperator, ProductSet, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    CENTRED, INTERIOR_STEPS, INTO_THE_SET, MORE_STEPS, SETTLED_STEPS, SHORT_OF_BOUNDARY, SHORT_STEP, STUCK,
+    CENTRED, FALLS, INTERIOR_STEPS, MORE_STEPS, PUSHES, ROUGH, SETTLED_STEPS, SHORT_OF_BOUNDARY, SOLVED, STUCK,
 };
 use crate::vector;
 
-use super::cones::{Along, Circle, Cone, Cones};
+use super::cones::{Circle, Cone, Cones};
 use super::system::System;
 
 /// What [`interior_point`] did.
@@ -27,17 +27,19 @@ pub struct InteriorPointReport {
     pub status: Status,
     /// Steps, with one factorisation each.
     pub steps: usize,
-    /// Residual of the gradient and the multipliers over the load, each component over the root of its diagonal entry. Large
-    /// where radii vanish: what is on those circles means nothing.
+    /// Residual of the gradient and the multipliers over the load, each component over the root of its diagonal entry. Where
+    /// radii vanish, what is on those circles means nothing.
     pub residual: f64,
 }
 
-/// Minimises `1/2 x·Ax - b·x` over the set from inside of it, up to `complementarity`: mean of the values of inequalities
-/// times their multipliers, relative to the start.
+/// Minimises `1/2 x·Ax - b·x` over the set from inside of it, up to `complementarity`: values of inequalities times their
+/// multipliers over twice `b·x`, or what rounding leaves.
 ///
-/// `x` is the point that the radii of the set belong to, where `slopes` tell that they follow it; its components mean
-/// nothing else, the method begins where it likes. A slope may also tell of an interval symmetric to zero. The result is on
-/// bounds and circles where multipliers tell so: a start for [`active_set()`](crate::active_set()).
+/// `x` is the point that the radii of the set belong to, where `slopes` tell that they follow it. What has one bound and is
+/// on it there begins fixed to it and is let go, with radii that follow it, once the gradient pushes it off: the equations
+/// of a step are those of all other components only. Beyond that the method begins where it likes; where nothing is off its
+/// bound, all are free. A slope may also tell of an interval symmetric to zero. The result is on bounds and circles where
+/// multipliers tell so: a start for [`active_set()`](crate::active_set()).
 ///
 /// # Errors
 /// [`QpError`] for wrong lengths or sets, and for NaN.
@@ -66,14 +68,25 @@ pub fn interior_point(
         weights: (0..n)
             .map(|i| matrix.entries()[i * (n + 1)].max(f64::MIN_POSITIVE).sqrt().recip())
             .collect(),
-        system: System::new(n),
+        system: System::new(&cones.fixed),
         cones,
         x,
     };
-    run.begin();
-    let report = run.solve(complementarity);
-    run.settle();
-    Ok(report)
+    let mut steps = 0;
+    loop {
+        run.begin();
+        let report = run.solve(complementarity);
+        steps += report.steps;
+        let goes_on = match report.status {
+            Status::Converged => run.let_go(),
+            // what is free may not carry the load
+            _ => run.let_all_go(),
+        };
+        if !goes_on {
+            run.settle();
+            return Ok(InteriorPointReport { steps, ..report });
+        }
+    }
 }
 
 struct Run<'a> {
@@ -85,7 +98,7 @@ struct Run<'a> {
     /// Which inequalities become equalities, as the last step tells, and for how many steps that has been so.
     active: Vec<bool>,
     unchanged: usize,
-    /// `A x - b + sum y n`, zero where fixed.
+    /// `A x - b + sum y n`.
     residual: Vec<f64>,
     /// One over the root of the diagonal.
     weights: Vec<f64>,
@@ -93,7 +106,7 @@ struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// A point inside, as far from bounds as the load would press against all of them, and multipliers to match.
+    /// A point inside, as far from bounds as the solution without them is from zero, and multipliers to match.
     fn begin(&mut self) {
         let n = self.x.len();
         let (mut bounds, mut inwards) = (vec![[f64::NEG_INFINITY, f64::INFINITY]; n], vec![0.0; n]);
@@ -111,9 +124,13 @@ impl Run<'_> {
                 inwards[of] = slope.signum() * f64::from(slope != 0.0);
             }
         }
-        let mut along = vec![0.0; n];
-        self.matrix.apply(&inwards, &mut along, &mut ());
-        let depth = INTO_THE_SET * vector::norm(self.linear) / vector::norm(&along);
+        self.system.set(self.matrix.entries());
+        self.system.factor();
+        let mut whole = self.linear.to_vec();
+        self.system.solve(&mut whole);
+        let of_bounds = || whole.iter().zip(&inwards).filter(|(_, inwards)| **inwards != 0.0);
+        let squares: f64 = of_bounds().map(|(x, _)| x * x).sum();
+        let depth = (squares / of_bounds().count() as f64).sqrt();
         let depth = if depth.is_finite() && depth > 0.0 { depth } else { 1.0 };
         for i in (0..n).filter(|i| !self.cones.fixed[*i]) {
             self.x[i] = match bounds[i] {
@@ -125,13 +142,11 @@ impl Run<'_> {
         }
         self.multipliers = vec![0.0; self.cones.all.len()];
         self.update_residual();
-        let size = self.weighted_norm(&self.residual) / (n.max(1) as f64).sqrt();
+        let free = self.cones.fixed.iter().filter(|fixed| !**fixed).count();
+        let size = self.weighted_norm(&self.residual) / (free.max(1) as f64).sqrt();
         let own = |cone: &Cone| {
-            let (at, length) = match *cone {
-                Cone::Half { i, .. } => (i, 1.0),
-                Cone::Circle(Circle { first, .. }) => (first, (2.0 * cone.value(self.x)).sqrt()),
-            };
-            (size / self.weights[at] / length).max(f64::MIN_POSITIVE)
+            let (Cone::Half { i: at, .. } | Cone::Circle(Circle { first: at, .. })) = *cone;
+            (size / self.weights[at]).max(f64::MIN_POSITIVE)
         };
         self.multipliers = self.cones.all.iter().map(own).collect();
     }
@@ -142,10 +157,31 @@ impl Run<'_> {
         for (cone, y) in self.cones.all.iter().zip(&self.multipliers) {
             cone.normal(self.x, |i, n| self.residual[i] += y * n);
         }
-        let fixed = self.residual.iter_mut().zip(&self.cones.fixed);
-        fixed
-            .filter(|(_, fixed)| **fixed)
-            .for_each(|(residual, _)| *residual = 0.0);
+    }
+
+    /// Lets go the components that the gradient pushes off their bounds; whether there are any.
+    fn let_go(&mut self) -> bool {
+        let residual = &self.residual;
+        let resting = self.cones.rests().map(|i| residual[i].abs());
+        let pressed = self.cones.all.iter().zip(&self.multipliers);
+        let pressed = pressed.map(|(cone, y)| if matches!(cone, Cone::Half { .. }) { *y } else { 0.0 });
+        let least = PUSHES * resting.chain(pressed).fold(0.0, f64::max);
+        let any = self.cones.let_go(|i, sign| sign * residual[i] > least);
+        self.renew(any)
+    }
+
+    fn let_all_go(&mut self) -> bool {
+        let any = self.cones.let_go(|_, _| true);
+        self.renew(any)
+    }
+
+    /// The equations of what is free now.
+    fn renew(&mut self, any: bool) -> bool {
+        if any {
+            self.system = System::new(&self.cones.fixed);
+            (self.unchanged, self.active) = (0, Vec::new());
+        }
+        any
     }
 
     /// Mean of `q y`.
@@ -154,19 +190,40 @@ impl Run<'_> {
         products.sum::<f64>() / self.cones.all.len().max(1) as f64
     }
 
+    /// What the residual does on the way from zero, a constraint: nothing on circles that vanish.
+    fn residual_work(&self) -> f64 {
+        let free = self
+            .residual
+            .iter()
+            .zip(&*self.x)
+            .zip(&self.cones.fixed)
+            .filter(|(_, fixed)| !**fixed);
+        free.map(|((r, x), _)| (r * x).abs()).sum::<f64>() / self.cones.all.len().max(1) as f64
+    }
+
+    /// What values of inequalities times multipliers are compared with.
+    fn energy(&self) -> f64 {
+        // A x = residual + b - sum y n
+        let mut twice = 2.0 * vector::dot(self.linear, self.x).abs();
+        twice += vector::dot(&self.residual, self.x).abs();
+        twice / self.cones.all.len().max(1) as f64
+    }
+
+    /// Of what is not fixed.
     fn weighted_norm(&self, v: &[f64]) -> f64 {
         let squares = v.iter().zip(&self.weights).map(|(v, w)| (v * w).powi(2));
-        squares.sum::<f64>().sqrt()
+        let free = squares.zip(&self.cones.fixed).filter(|(_, fixed)| !**fixed);
+        free.map(|(square, _)| square).sum::<f64>().sqrt()
     }
 
     fn solve(&mut self, target: f64) -> InteriorPointReport {
         let load = self.weighted_norm(self.linear).max(f64::MIN_POSITIVE);
-        let first = self.complementarity();
-        let (mut steps, mut stuck, mut small) = (0, 0, 0);
+        let (mut steps, mut stuck, mut small, mut last) = (0, 0, 0, f64::INFINITY);
         let status = loop {
             self.update_residual();
-            let tau = self.complementarity();
-            small = if tau <= target * first { small + 1 } else { 0 };
+            let (tau, size) = (self.complementarity(), self.energy());
+            let solved = self.residual_work() <= SOLVED * size;
+            small = if solved && tau <= target * size { small + 1 } else { 0 };
             // without inequalities one step is all
             let enough = match self.cones.all.is_empty() {
                 true => steps > 0,
@@ -175,9 +232,12 @@ impl Run<'_> {
             if enough {
                 break Status::Converged;
             }
+            let falls = tau < FALLS * last;
+            last = last.min(tau);
+            stuck = if falls { 0 } else { stuck + 1 };
             if stuck >= STUCK || !tau.is_finite() || !self.cones.holds(self.x) {
                 // rounding ends it, too
-                break if small > 0 {
+                break if solved && tau <= ROUGH * size {
                     Status::Converged
                 } else {
                     Status::Stagnated
@@ -186,8 +246,7 @@ impl Run<'_> {
             if steps >= INTERIOR_STEPS {
                 break Status::IterationLimit;
             }
-            let length = self.step(tau);
-            stuck = if length < SHORT_STEP { stuck + 1 } else { 0 };
+            self.step(tau);
             steps += 1;
         };
         InteriorPointReport {
@@ -197,15 +256,15 @@ impl Run<'_> {
         }
     }
 
-    /// One step of predictor and corrector; its length.
-    fn step(&mut self, tau: f64) -> f64 {
+    /// One step of predictor and corrector.
+    fn step(&mut self, tau: f64) {
         self.assemble();
         let (towards, change) = self.direction(&vec![0.0; self.cones.all.len()]);
         let length = self.longest(&towards, &change).min(1.0);
         let centring = (1.0 - length).powi(3).max(CENTRED);
         // what the predictor leaves of its own products, as far as it goes
         let second = |(k, cone): (usize, &Cone)| {
-            let rate = cone.along(self.x, &towards).rate;
+            let rate = cone.rate(self.x, &towards);
             centring * tau - length * length * rate * change[k]
         };
         let wanted: Vec<f64> = self.cones.all.iter().enumerate().map(second).collect();
@@ -215,7 +274,6 @@ impl Run<'_> {
         vector::axpy(length, &towards, self.x);
         vector::axpy(length, &change, &mut self.multipliers);
         self.tell_active(&before);
-        length
     }
 
     /// Values of the inequalities and multipliers.
@@ -236,14 +294,9 @@ impl Run<'_> {
     /// The matrix at the present point, factored.
     fn assemble(&mut self) {
         self.system.set(self.matrix.entries());
-        for (at, fixed) in self.cones.fixed.iter().enumerate() {
-            if *fixed {
-                self.system.decouple(at);
-            }
-        }
         for (cone, y) in self.cones.all.iter().zip(&self.multipliers) {
             let (x, q) = (&*self.x, cone.value(self.x));
-            cone.curved().for_each(|i| self.system.add(i, i, *y));
+            cone.curvature(x, |row, column, v| self.system.add(row, column, y * v));
             cone.normal(x, |row, n| {
                 cone.derivative(x, |column, a| self.system.add(row, column, -y / q * n * a))
             });
@@ -262,10 +315,7 @@ impl Run<'_> {
         }
         self.system.solve(&mut towards);
         let blocks = self.cones.all.iter().zip(&self.multipliers).zip(&lacks);
-        let change = |((cone, y), lacks): ((&Cone, &f64), &f64)| {
-            let Along { q, rate, .. } = cone.along(x, &towards);
-            lacks - y * rate / q
-        };
+        let change = |((cone, y), lacks): ((&Cone, &f64), &f64)| lacks - y * cone.rate(x, &towards) / cone.value(x);
         let change = blocks.map(change).collect();
         (towards, change)
     }

@@ -109,6 +109,25 @@ fn radii_follow_in_few_steps_whatever_bends() {
     }
 }
 
+/// Which bounds a start is on decides nothing but the cost.
+#[test]
+fn what_rests_at_the_start_is_let_go() {
+    let n = 40;
+    let (a, b, set, slopes) = beam(n, 2);
+    let mut x = vec![0.0; a.dim()];
+    let all = interior_point(&a, &b, &set, &slopes, TARGET, &mut x).expect("valid");
+    for pressed in [0..3, 20..21, 5..30] {
+        let mut other = vec![0.0; a.dim()];
+        pressed.clone().for_each(|i| other[i] = -1e-3);
+        let radii = other[..n].iter().map(|x| -0.3 * x).collect();
+        let set = ProductSet::new(vec![Segment::upper(vec![0.0; n]), Segment::discs(radii)]).expect("a set");
+        let report = interior_point(&a, &b, &set, &slopes, TARGET, &mut other).expect("valid");
+        assert_eq!([all.status, report.status], [Status::Converged; 2], "{pressed:?}");
+        let off = vector::distance(&x, &other) / vector::norm(&x);
+        assert!(off < 1e-6, "{pressed:?}: {off:e}");
+    }
+}
+
 #[test]
 fn sets_without_inequalities_take_one_step() {
     let mut r = Random::new(3);

@@ -135,19 +135,29 @@ pub(crate) fn eliminate_in_parts(
         solve_rows(triangle.rb(), below);
         let own = MatRef::from_column_major_slice(own, height, count);
         let parts = later.par_chunks_mut(PART * height).enumerate();
-        parts.for_each(|(k, part)| subtract_part(part, own, height, start + count + k * PART));
+        parts.for_each(|(k, part)| add_part(part, -1.0, own, height, start + count + k * PART));
     }
     let all = MatRef::from_column_major_slice(&a[..height * width], height, width);
-    let below = all.split_at_row(width).1;
-    let parts = out[..behind * behind]
-        .par_chunks_mut((PART * behind).max(1))
-        .enumerate();
-    parts.for_each(|(k, part)| subtract_part(part, below, behind, k * PART));
+    add_square_in_parts(&mut out[..behind * behind], -1.0, all.split_at_row(width).1);
     Ok(())
 }
 
-/// Subtracts `a a^T` from some of its columns, from row `first` on, which is that of the first of them.
-fn subtract_part(columns: &mut [f64], a: MatRef<'_, f64>, height: usize, first: usize) {
+/// Adds `factor a a^T` to the lower triangle of `out`, on several threads, for `a` of shape `n x k`.
+pub(crate) fn add_square(out: &mut [f64], factor: f64, a: &[f64], n: usize, k: usize) {
+    add_square_in_parts(
+        &mut out[..n * n],
+        factor,
+        MatRef::from_column_major_slice(&a[..n * k], n, k),
+    );
+}
+
+fn add_square_in_parts(out: &mut [f64], factor: f64, a: MatRef<'_, f64>) {
+    let parts = out.par_chunks_mut((PART * a.nrows()).max(1)).enumerate();
+    parts.for_each(|(k, part)| add_part(part, factor, a, a.nrows(), k * PART));
+}
+
+/// Adds `factor a a^T` to some of its columns, from row `first` on, which is that of the first of them.
+fn add_part(columns: &mut [f64], factor: f64, a: MatRef<'_, f64>, height: usize, first: usize) {
     let count = columns.len() / height;
     let out = MatMut::from_column_major_slice_mut(columns, height, count)
         .split_at_row_mut(first)
@@ -158,7 +168,7 @@ fn subtract_part(columns: &mut [f64], a: MatRef<'_, f64>, height: usize, first: 
         Accum::Add,
         rows,
         rows.split_at_row(count).0.transpose(),
-        -1.0,
+        factor,
         Par::Seq,
     );
 }

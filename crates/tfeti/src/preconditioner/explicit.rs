@@ -1,6 +1,6 @@
 //! The inverse of `F` on an active set, for systems of so few rows that `F` can be formed.
 //!
-//! A product for each row forms `H = F + w Gᵀ G`, which is definite; with a large `w` its inverse is that of `F` where
+//! Each subdomain adds what it answers to its rows. `H = F + w Gᵀ G` is definite; with a large `w` its inverse is that of `F` where
 //! `G x = 0`. Rows that no active set takes away are eliminated once, the Schur complement of the contact rows is
 //! factored on each set. A body that bends far more easily than it is pressed in (a plate on a floor) leaves no other
 //! choice: on part of its contact rows the stiffness of their nodes is nowhere near an inverse.
@@ -11,10 +11,11 @@ use crate::linalg::dense;
 use crate::system::part::SystemPart;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{
-    EXPLICIT_ROWS, EXPLICIT_SETS, EXPLICIT_WEIGHT, INTERIOR_FACTORS, LEFT_OF_ROW, ROW_OPERATIONS, SHIFTS, STREAMED,
+    BALANCED, BALANCES, EXPLICIT_CONTACT, EXPLICIT_ROWS, EXPLICIT_SETS, EXPLICIT_WEIGHT, INTERIOR_FACTORS, LEFT_OF_ROW,
+    ROW_OPERATIONS, SHIFTS, STREAMED,
 };
 use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView, Freedom};
-use signorini_qp::{DenseOperator, QpError, SymmetricOperator};
+use signorini_qp::{DenseOperator, QpError, SymmetricOperator, vector};
 use std::sync::Arc;
 
 /// A direction of a contact row, or of two that make a disc: rows and components.
@@ -50,48 +51,57 @@ pub struct ExplicitScratch {
     reduced: Vec<f64>,
 }
 
+/// What steps with a formed `F` cost, in products of a solve; the same for any number of processes.
+#[doc(hidden)]
+#[derive(Debug, Clone, Copy)]
+pub struct ExplicitCost {
+    /// Of forming and factoring it.
+    pub forming: usize,
+    solves: f64,
+    factors: f64,
+}
+
+impl ExplicitCost {
+    /// Of a step in which so many contact rows carry something.
+    #[must_use]
+    pub fn step(&self, carrying: usize) -> usize {
+        (self.solves + self.factors * (carrying as f64).powi(3)) as usize
+    }
+}
+
 impl Tfeti {
-    /// What forming `F` costs in products of a solve, and what a step with its inverse does, the same for any number of
-    /// processes; `None` where there are too many rows.
+    /// `None` where there are too many rows.
     #[doc(hidden)]
-    pub fn explicit_cost(&self) -> Option<[usize; 2]> {
-        let rows = self.dual_dim();
-        let [n, contact] = [rows, self.gluing().ranges().contact().end].map(|n| n as f64);
+    pub fn explicit_cost(&self) -> Option<ExplicitCost> {
+        let (rows, contact) = (self.dual_dim(), self.gluing().ranges().contact().end);
         let own: f64 = STREAMED * self.gather(self.dual().flops() as f64).ok()?.iter().sum::<f64>();
+        let [n, modes, parts] = [rows, self.coarse().rows(), self.subdomains().max(1)].map(|n| n as f64);
         // with what belongs to a product in a solve: projectors, preconditioner, sums
         let product = (own + ROW_OPERATIONS * n).max(1.0);
-        let forming = n * own + n.powi(3) / 3.0;
-        // factors of interior points, then of active sets with three solves each
-        let step = INTERIOR_FACTORS * contact.powi(3) / 1.5 + EXPLICIT_SETS * (contact.powi(3) / 3.0 + 6.0 * n * n);
-        let costs = [forming, step].map(|operations| (operations / product) as usize);
-        (rows <= EXPLICIT_ROWS).then_some(costs)
+        // a column is what two subdomains answer
+        let forming = 2.0 * n / parts * own + n * n * modes + n.powi(3) / 3.0;
+        let cost = ExplicitCost {
+            forming: (forming / product) as usize,
+            // of active sets, with three solves each
+            solves: EXPLICIT_SETS * 6.0 * n * n / product,
+            factors: (INTERIOR_FACTORS / 1.5 + EXPLICIT_SETS / 3.0) / product,
+        };
+        (rows <= EXPLICIT_ROWS && contact <= EXPLICIT_CONTACT).then_some(cost)
     }
 
-    /// Forms `F`, by as many products as there are rows. `None` if rounding leaves it indefinite.
+    /// Forms `F` and eliminates the rows behind the contact rows. `None` if rounding leaves it indefinite.
     pub fn explicit_inverse(&self) -> Option<ExplicitInverse> {
         let (rows, contact) = (self.dual_dim(), self.gluing().ranges().contact().end);
-        let others = rows - contact;
-        let ordered = |column: &[f64], out: &mut [f64]| {
-            out.copy_from_slice(column);
-            out.rotate_left(contact);
-        };
-        let (dual, coarse) = (self.dual(), self.coarse());
-        let (mut x, mut y, mut s) = (vec![0.0; rows], vec![0.0; rows], dual.scratch());
-        let mut matrix = vec![0.0; rows * rows];
-        for (k, out) in matrix.chunks_exact_mut(rows.max(1)).enumerate() {
-            let row = (k + contact) % rows;
-            x[row] = 1.0;
-            dual.apply(&x, &mut y, &mut s);
-            x[row] = 0.0;
-            ordered(&y, out);
-        }
-        let mut motions = vec![0.0; coarse.rows()];
-        let mut transposed = vec![0.0; rows * coarse.rows()];
-        for (k, out) in transposed.chunks_exact_mut(rows.max(1)).enumerate() {
+        let (others, coarse) = (rows - contact, self.coarse());
+        let mut matrix = self.dual().formed(contact);
+        let (mut motions, mut column) = (vec![0.0; coarse.rows()], vec![0.0; rows]);
+        let mut transposed = Vec::with_capacity(rows * coarse.rows());
+        for k in 0..coarse.rows() {
             motions[k] = 1.0;
-            coarse.transpose_times(&motions, &mut y);
+            coarse.transpose_times(&motions, &mut column);
             motions[k] = 0.0;
-            ordered(&y, out);
+            transposed.extend_from_slice(&column[contact..]);
+            transposed.extend_from_slice(&column[..contact]);
         }
         let trace: f64 = matrix.iter().step_by(rows + 1).sum();
         let square: f64 = transposed.iter().map(|v| v * v).sum();
@@ -100,18 +110,15 @@ impl Tfeti {
         } else {
             0.0
         };
-        let modes = coarse.rows();
-        dense::add_product_transposed(&mut matrix, weight, &transposed, &transposed, rows, modes, rows);
+        dense::add_square(&mut matrix, weight, &transposed, rows, coarse.rows());
         shift_diagonal(&mut matrix, rows, SHIFTS[0]);
-        let columns = &mut matrix[..rows * others];
-        dense::cholesky_columns(columns, rows, others, 0.0).ok()?;
         let mut schur = Vec::with_capacity(contact * contact);
         for column in matrix[rows * others..].chunks_exact(rows.max(1)) {
             schur.extend_from_slice(&column[others..]);
         }
         matrix.truncate(rows * others);
+        dense::eliminate_in_parts(&mut matrix, &mut schur, [rows, others], 0.0).ok()?;
         matrix.shrink_to_fit();
-        dense::subtract_columns(&mut schur, &matrix, rows, others);
         Some(ExplicitInverse {
             columns: matrix,
             schur,
@@ -146,8 +153,9 @@ impl ExplicitInverse {
         Self { part, ..self }
     }
 
-    /// Solves `F x = linear` with `G x = e` where a `solve` finds the contact rows: it has their matrix and load, all other
-    /// rows eliminated. For whole vectors.
+    /// Solves `F x = linear` with `G x = e` where a `solve` finds the contact rows from those of `x`: it has their matrix and
+    /// load, all other rows eliminated. It is asked again, with another load, until `G x = e` holds, which the weight leaves
+    /// to do (method of multipliers). For whole vectors.
     ///
     /// # Errors
     /// Those of `solve`, and [`QpError`] for a matrix that has overflowed.
@@ -157,25 +165,36 @@ impl ExplicitInverse {
         coarse: &Coarse,
         (linear, e): (&[f64], &[f64]),
         x: &mut [f64],
-        solve: impl FnOnce(&DenseOperator, &[f64], &mut [f64]) -> Result<T, QpError>,
+        mut solve: impl FnMut(&DenseOperator, &[f64], &mut [f64]) -> Result<T, QpError>,
     ) -> Result<T, QpError> {
         let others = self.rows - self.contact;
-        let mut load = vec![0.0; self.rows];
-        coarse.transpose_times(e, &mut load);
-        let load = linear.iter().zip(&load).map(|(linear, g)| linear + self.weight * g);
-        let mut ordered: Vec<f64> = load.collect();
-        ordered.rotate_left(self.contact);
-        dense::forward(&self.columns, self.rows, others, &mut ordered);
         let mut matrix = self.schur.clone();
         dense::mirror_lower(&mut matrix, self.contact);
         let matrix = DenseOperator::new(self.contact, matrix)?;
-        let (load, own) = (ordered[others..].to_vec(), &mut x[..self.contact]);
-        let outcome = solve(&matrix, &load, own)?;
-        ordered[others..].copy_from_slice(own);
-        dense::backward(&self.columns, self.rows, others, &mut ordered);
-        ordered.rotate_right(self.contact);
-        x.copy_from_slice(&ordered);
-        Ok(outcome)
+        let (mut aim, mut lacks) = (e.to_vec(), vec![0.0; e.len()]);
+        let (mut ordered, mut scratch) = (vec![0.0; self.rows], coarse.scratch());
+        let mut left = BALANCES;
+        loop {
+            coarse.transpose_times(&aim, &mut ordered);
+            for (load, linear) in ordered.iter_mut().zip(linear) {
+                *load = linear + self.weight * *load;
+            }
+            ordered.rotate_left(self.contact);
+            dense::forward(&self.columns, self.rows, others, &mut ordered);
+            let own = &mut x[..self.contact];
+            let outcome = solve(&matrix, &ordered[others..], own)?;
+            ordered[others..].copy_from_slice(own);
+            dense::backward(&self.columns, self.rows, others, &mut ordered);
+            ordered.rotate_right(self.contact);
+            x.copy_from_slice(&ordered);
+            coarse.apply(x, &mut lacks, &mut scratch);
+            lacks.iter_mut().zip(e).for_each(|(lacks, e)| *lacks = e - *lacks);
+            left -= 1;
+            if left == 0 || vector::norm(&lacks) <= BALANCED * vector::norm(x) {
+                return Ok(outcome);
+            }
+            vector::axpy(1.0, &lacks, &mut aim);
+        }
     }
 
     /// The Schur complement in some directions, lower triangle, with a multiple of its largest entry on the diagonal.
