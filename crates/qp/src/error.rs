@@ -63,6 +63,9 @@ errors! {
         Input { what: &'static str, entry: usize } = "{what} contains NaN or infinity at entry {entry}";
         Scale { entry: usize, value: f64 } =
             "the scale of component {entry} is {value}; that of a constrained component must be positive";
+        Slope { disc: usize, component: usize, slope: f64 } =
+            "the radius at component {disc} cannot follow component {component} by {slope}; give one finite slope to the \
+            first component of a disc, or to an interval symmetric to zero";
         NotFinite { quantity: &'static str, products: usize } =
             "{quantity} became NaN or infinite after {products} products; check the operator and the scale of the \
             data";

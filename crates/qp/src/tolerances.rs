@@ -232,8 +232,12 @@ pub(crate) const CENTRED: f64 = 1e-4;
 /// Steps for which the same inequalities have to become active, and steps behind the target after which they need not.
 pub(crate) const SETTLED_STEPS: usize = 3;
 pub(crate) const MORE_STEPS: usize = 8;
-/// Gradient that pushes a component off the bound on which it rests, over the largest of all.
-pub(crate) const PUSHES: f64 = 1e-6;
+/// Gradient that pushes a component off the bound on which it rests, over the largest of all, each over the root of its
+/// diagonal entry.
+pub(crate) const PUSHES: f64 = 1e-9;
+/// Rounds of letting go after which all goes, and halvings of the way inwards to a start.
+pub(crate) const ROUNDS: usize = 6;
+pub(crate) const DEPTHS: usize = 20;
 /// A point on a circle is put this much of the radius from its centre: rounding of radii leaves it on the circle then.
 pub(crate) const BEYOND: f64 = 1.0 + 1e-13;
 /// Most steps; part of the least complementarity so far that a step leaves at most, so many in a row that fail to and end

@@ -129,7 +129,7 @@ pub(crate) const CACHE: u64 = 16 << 20;
 /// sets of a step with its inverse.
 pub(crate) const EXPLICIT_ROWS: usize = 7000;
 pub(crate) const EXPLICIT_CONTACT: usize = 2000;
-pub(crate) const INTERIOR_FACTORS: f64 = 250.0;
+pub(crate) const INTERIOR_FACTORS: f64 = 100.0;
 pub(crate) const EXPLICIT_SETS: f64 = 20.0;
 /// Time of an operation of a product with `F` over that of a dense factor, and operations of such a factor in the time
 /// that a solve takes for a row beside that product (0.4 to 1.2 ms a product of 450 to 6000 rows).

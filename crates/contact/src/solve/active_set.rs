@@ -143,7 +143,7 @@ impl ActiveSetSolver {
         };
         task.model.tfeti.check_processes()?;
         if contact && !report.status.converged() {
-            if report.status.is_lost() || !iterate.lambda.iter().all(|v| v.is_finite()) {
+            if report.status.is_lost() || !is_finite(&iterate.lambda) {
                 self.begin_again(iterate);
             }
             // another start comes before another method
@@ -239,7 +239,7 @@ impl ActiveSetSolver {
         Ok(status)
     }
 
-    /// Looks for a start by interior points, with a formed F.
+    /// Looks for a start by interior points, with a formed F. None is no error.
     fn begin_inside(
         &mut self,
         task: Task<'_>,
@@ -250,6 +250,9 @@ impl ActiveSetSolver {
         let SelectedPreconditioner::Explicit(explicit) = &self.preconditioner else {
             return Ok(());
         };
+        if !is_finite(&iterate.lambda) {
+            self.begin_again(iterate);
+        }
         // what is open in the last iterate is left out at first
         let mut x = iterate.lambda.clone();
         let mut set = model.set_with(0)?;
@@ -260,17 +263,18 @@ impl ActiveSetSolver {
         let data = (&problem.linear[..], &problem.rhs[..]);
         let mut steps = 0;
         let mut written = Ok(());
-        let outcome = explicit.through_contact(model.tfeti.coarse(), data, &mut x, |matrix, load, x| {
-            if written.is_ok() {
-                written = problem.write_slip_bounds(model, x, &mut set);
+        let found = explicit.through_contact(model.tfeti.coarse(), data, &mut x, |matrix, load, x| {
+            written = problem.write_slip_bounds(model, x, &mut set);
+            if written.is_err() {
+                return Ok(Status::Stagnated);
             }
             let outcome = interior_point(matrix, load, &set, &slopes, INSIDE, x)?;
             steps += outcome.steps;
-            Ok(outcome)
-        })?;
+            Ok(outcome.status)
+        });
         written?;
         report.counters.interior_steps += steps;
-        if outcome.status == Status::Converged && x.iter().all(|v| v.is_finite()) {
+        if found.unwrap_or(false) && is_finite(&x) {
             iterate.lambda = x;
             iterate.known = false;
             self.work.trust_start();
@@ -291,9 +295,10 @@ impl ActiveSetSolver {
         }
         if self.other.is_none() {
             self.other = SelectedPreconditioner::explicit(task.model, self.part.as_ref());
-            report.counters.formed_operators += 1;
+            report.counters.formed_operators += usize::from(self.other.is_some());
         }
         let Some(other) = &mut self.other else {
+            self.explicit_cost = None;
             return false;
         };
         std::mem::swap(&mut self.preconditioner, other);
@@ -384,7 +389,10 @@ impl ActiveSetSolver {
                     outcome.status
                 }
                 // the prediction ran away, or the free rows do not hold the body: the paper's method needs neither
-                Err(QpError::CoarseDeficient { .. } | QpError::NotFinite { .. }) => Status::Stagnated,
+                Err(QpError::CoarseDeficient { .. } | QpError::NotFinite { .. }) => {
+                    iterate.known = false;
+                    Status::Stagnated
+                }
                 Err(error) => return Err(error.into()),
             };
             let size = vector::norm(&iterate.lambda).max(least);
@@ -434,4 +442,8 @@ impl ActiveSetSolver {
         iterate.multiplier.clear();
         Ok(report.resumed(second))
     }
+}
+
+fn is_finite(x: &[f64]) -> bool {
+    x.iter().all(|v| v.is_finite())
 }

@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use crate::active_set::RadiusSlope;
+use crate::error::QpError;
 use crate::problem::{Constrained, ProductSet, for_constrained};
 use crate::tolerances::{BEYOND, ROUNDED};
 use crate::vector;
@@ -16,14 +17,14 @@ pub(crate) enum Cone {
     Circle(Circle),
 }
 
-/// One or two components `t` from `first` on, in a circle of radius `r = own + slope * x[of]`.
+/// One or two components `t` from `first` on, in a circle of radius `r = own`, or `own + slope * x[of]` where it follows
+/// `(of, slope)`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Circle {
     pub(crate) first: usize,
     width: usize,
     own: f64,
-    pub(crate) of: usize,
-    pub(crate) slope: f64,
+    pub(crate) follows: Option<(usize, f64)>,
 }
 
 impl Circle {
@@ -37,11 +38,7 @@ impl Circle {
 
     /// What `d` adds to the radius.
     fn growth(&self, d: &[f64]) -> f64 {
-        if self.slope == 0.0 {
-            0.0
-        } else {
-            self.slope * d[self.of]
-        }
+        self.follows.map_or(0.0, |(of, slope)| slope * d[of])
     }
 }
 
@@ -141,10 +138,10 @@ impl Cone {
     pub(crate) fn derivative(&self, x: &[f64], mut f: impl FnMut(usize, f64)) {
         self.normal(x, |i, n| f(i, -n));
         if let Self::Circle(circle) = self
-            && circle.slope != 0.0
+            && let Some((of, slope)) = circle.follows
         {
             let part = vector::norm(&x[circle.components()]) / circle.radius(x);
-            f(circle.of, 0.5 * circle.slope * (1.0 + part * part));
+            f(of, 0.5 * slope * (1.0 + part * part));
         }
     }
 
@@ -154,8 +151,8 @@ impl Cone {
             let r = circle.radius(x);
             for i in circle.components() {
                 f(i, i, 1.0 / r);
-                if circle.slope != 0.0 {
-                    f(i, circle.of, -circle.slope * x[i] / r / r);
+                if let Some((of, slope)) = circle.follows {
+                    f(i, of, -slope * x[i] / r / r);
                 }
             }
         }
@@ -173,22 +170,20 @@ pub(crate) struct Cones {
 impl Cones {
     /// Puts fixed components of `x` where the set has them. The radii of the set, and intervals that slopes tell of, are
     /// those at `x`. What has one bound and is on it rests there, unless that is so everywhere.
-    pub(crate) fn new(set: &ProductSet, slopes: &[RadiusSlope], x: &mut [f64]) -> Self {
-        let mut slope_of = vec![None; x.len()];
-        for slope in slopes.iter().filter(|s| s.slope != 0.0) {
-            if slope.component < x.len() && slope.disc < x.len() {
-                slope_of[slope.disc] = Some((slope.component, slope.slope));
-            }
-        }
+    pub(crate) fn new(set: &ProductSet, slopes: &[RadiusSlope], x: &mut [f64]) -> Result<Self, QpError> {
+        let slope_of = slope_table(set, slopes, x.len())?;
         let before = x.to_vec();
-        let mut rests = vec![false; x.len()];
+        let (mut rests, mut held) = (vec![false; x.len()], vec![None; x.len()]);
         let mut some_do_not = false;
         for_constrained(set, |block| {
             if let Constrained::Bound { i, lower, upper, .. } = block
-                && lower.is_finite() != upper.is_finite()
+                && slope_of[i].is_none()
             {
-                rests[i] = before[i] == lower || before[i] == upper;
-                some_do_not |= !rests[i];
+                if lower.is_finite() != upper.is_finite() {
+                    rests[i] = before[i] == lower || before[i] == upper;
+                    some_do_not |= !rests[i];
+                }
+                held[i] = (lower == upper).then_some(lower);
             }
         });
         if !some_do_not {
@@ -202,9 +197,11 @@ impl Cones {
         for_constrained(set, |block| {
             let (first, width, radius) = match block {
                 Constrained::Disc { i, radius, .. } => (i, 2, radius),
-                Constrained::Bound { i, lower, upper, .. } if slope_of[i].is_some() => (i, 1, 0.5 * (upper - lower)),
-                Constrained::Bound { i, lower, upper, .. } if lower == upper => return fix(i..i + 1, lower),
+                Constrained::Bound { i, upper, .. } if slope_of[i].is_some() => (i, 1, upper),
                 Constrained::Bound { i, lower, upper, .. } => {
+                    if let Some(value) = held[i] {
+                        return fix(i..i + 1, value);
+                    }
                     let sides = [(-1.0, lower), (1.0, upper)];
                     let halves = sides.into_iter().filter(|(_, bound)| bound.is_finite());
                     let halves = halves.map(|(sign, bound)| Cone::Half { i, sign, bound });
@@ -215,28 +212,34 @@ impl Cones {
                     return all.extend(halves);
                 }
             };
-            let (of, slope) = slope_of[first].unwrap_or((0, 0.0));
-            let own = radius - slope * before[of];
-            let circle = Circle {
+            let mut circle = Circle {
                 first,
                 width,
-                own: if own.abs() > ROUNDED * radius { own } else { 0.0 },
-                of,
-                slope,
+                own: radius,
+                follows: slope_of[first],
             };
-            match (radius == 0.0, slope == 0.0) {
-                (true, true) => fix(circle.components(), 0.0),
-                (true, false) if rests[of] => {
+            let mut vanishes = radius == 0.0;
+            if let Some((of, slope)) = circle.follows {
+                let own = radius - slope * before[of];
+                circle.own = if own.abs() > ROUNDED * radius { own } else { 0.0 };
+                if let Some(value) = held[of] {
+                    (circle.own, circle.follows) = (own + slope * value, None);
+                    vanishes = circle.own <= 0.0;
+                }
+            }
+            match circle.follows {
+                _ if !radius.is_finite() => {}
+                Some((of, _)) if vanishes && rests[of] => {
                     fix(circle.components(), 0.0);
                     resting.push(Cone::Circle(circle));
                 }
-                _ if radius.is_finite() => all.push(Cone::Circle(circle)),
-                _ => {}
+                None if vanishes => fix(circle.components(), 0.0),
+                _ => all.push(Cone::Circle(circle)),
             }
         });
         let mut out = Self { all, resting, fixed };
         out.sort();
-        out
+        Ok(out)
     }
 
     fn sort(&mut self) {
@@ -255,10 +258,10 @@ impl Cones {
         let before = self.all.len();
         for cone in std::mem::take(&mut self.resting) {
             let (components, of) = match cone {
-                Cone::Half { i, .. } => (i..i + 1, i),
-                Cone::Circle(circle) => (circle.components(), circle.of),
+                Cone::Half { i, .. } => (i..i + 1, Some(i)),
+                Cone::Circle(circle) => (circle.components(), circle.follows.map(|(of, _)| of)),
             };
-            if goes[of] {
+            if of.is_some_and(|of| goes[of]) {
                 self.fixed[components].fill(false);
                 self.all.push(cone);
             } else {
@@ -281,6 +284,27 @@ impl Cones {
     pub(crate) fn holds(&self, x: &[f64]) -> bool {
         self.all.iter().all(|cone| cone.value(x) > 0.0)
     }
+}
+
+/// By component: which one the radius of the block that begins there follows, and how. No slope is as good as zero.
+fn slope_table(set: &ProductSet, slopes: &[RadiusSlope], n: usize) -> Result<Vec<Option<(usize, f64)>>, QpError> {
+    let mut has_radius = vec![false; n];
+    for_constrained(set, |block| match block {
+        Constrained::Disc { i, .. } => has_radius[i] = true,
+        Constrained::Bound { i, lower, upper, .. } => has_radius[i] = lower == -upper,
+    });
+    let mut table = vec![None; n];
+    for &RadiusSlope { disc, component, slope } in slopes {
+        let valid = has_radius.get(disc) == Some(&true) && component < n && slope.is_finite();
+        if !valid || table[disc].is_some() {
+            return Err(QpError::Slope { disc, component, slope });
+        }
+        table[disc] = Some((component, slope));
+    }
+    Ok(table
+        .into_iter()
+        .map(|entry| entry.filter(|(_, slope)| *slope != 0.0))
+        .collect())
 }
 
 #[cfg(test)]
@@ -323,7 +347,7 @@ mod tests {
         let follows = |disc, component, slope| RadiusSlope { disc, component, slope };
         let slopes = [follows(2, 0, -0.5), follows(4, 1, -0.2)];
         let mut x = vec![-1.0, -2.0, 0.3, 0.4, -0.1, 1.5, 9.0, 9.0, 9.0, 9.0];
-        let cones = Cones::new(&set, &slopes, &mut x);
+        let cones = Cones::new(&set, &slopes, &mut x).expect("valid slopes");
         assert_eq!(x[6..], [2.0, 0.0, 0.0, 9.0]);
         assert_eq!(
             cones.fixed,

@@ -4,14 +4,15 @@
 //! `tau` on the way to zero: predictor and corrector by Mehrotra (SIAM J. Optim. 2, 1992), inequalities of discs as in
 //! Kucera, Machalova, Netuka, Zencak (Optim. Methods Softw. 28, 2013). A radius that follows a component stays out of
 //! `n`, but not of the derivative of `q`: the equations are those of Coulomb friction itself, no sequence of problems
-//! with given radii. No active set is predicted, so the number of steps, 15 to 40, hardly depends on the problem.
+//! with given radii. No active set is predicted, so the number of steps, 15 to 40 a round, hardly depends on the problem.
 
 use crate::active_set::RadiusSlope;
 use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
 use crate::problem::{ConvexSet, DenseOperator, ProductSet, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    CENTRED, FALLS, INTERIOR_STEPS, MORE_STEPS, PUSHES, ROUGH, SETTLED_STEPS, SHORT_OF_BOUNDARY, SOLVED, STUCK,
+    CENTRED, DEPTHS, FALLS, INTERIOR_STEPS, MORE_STEPS, PUSHES, ROUGH, ROUNDS, SETTLED_STEPS, SHORT_OF_BOUNDARY,
+    SOLVED, STUCK,
 };
 use crate::vector;
 
@@ -23,17 +24,17 @@ use super::system::System;
 #[non_exhaustive]
 #[must_use = "it may not have converged: see `status`"]
 pub struct InteriorPointReport {
-    /// How it ended: [`Status::Stagnated`] tells that steps became too short.
+    /// How it ended: [`Status::Stagnated`] tells that complementarity fell no more, or that nothing inside was found.
     pub status: Status,
-    /// Steps, with one factorisation each.
+    /// Steps, with one factorisation each; the first round takes another one.
     pub steps: usize,
-    /// Residual of the gradient and the multipliers over the load, each component over the root of its diagonal entry. Where
-    /// radii vanish, what is on those circles means nothing.
+    /// Residual of the gradient and the multipliers of the last round, before it goes to bounds and circles, over the load,
+    /// each component over the root of its diagonal entry. Where radii vanish, what is on those circles means nothing.
     pub residual: f64,
 }
 
 /// Minimises `1/2 x·Ax - b·x` over the set from inside of it, up to `complementarity`: values of inequalities times their
-/// multipliers over twice `b·x`, or what rounding leaves.
+/// multipliers, in all, over the work of the load, or what rounding leaves, at most 1e-9.
 ///
 /// `x` is the point that the radii of the set belong to, where `slopes` tell that they follow it. What has one bound and is
 /// on it there begins fixed to it and is let go, with radii that follow it, once the gradient pushes it off: the equations
@@ -42,7 +43,7 @@ pub struct InteriorPointReport {
 /// multipliers tell so: a start for [`active_set()`](crate::active_set()).
 ///
 /// # Errors
-/// [`QpError`] for wrong lengths or sets, and for NaN.
+/// [`QpError`] for wrong lengths, sets and slopes, and for NaN.
 pub fn interior_point(
     matrix: &DenseOperator,
     linear: &[f64],
@@ -57,7 +58,21 @@ pub fn interior_point(
     set.validate()?;
     expect_finite("x", x)?;
     expect_finite("the linear term", linear)?;
-    let cones = Cones::new(set, slopes, x);
+    if !(0.0..1.0).contains(&complementarity) {
+        let (name, value, range) = ("complementarity", complementarity, "[0, 1)");
+        return Err(QpError::Setting { name, value, range });
+    }
+    let cones = Cones::new(set, slopes, x)?;
+    let origin = vec![0.0; n];
+    if set.violation(&origin) == 0.0 && linear.iter().all(|b| *b == 0.0) {
+        x.copy_from_slice(&origin);
+        let (status, steps, residual) = (Status::Converged, 0, 0.0);
+        return Ok(InteriorPointReport {
+            status,
+            steps,
+            residual,
+        });
+    }
     let mut run = Run {
         matrix,
         linear,
@@ -69,22 +84,31 @@ pub fn interior_point(
             .map(|i| matrix.entries()[i * (n + 1)].max(f64::MIN_POSITIVE).sqrt().recip())
             .collect(),
         system: System::new(&cones.fixed),
+        depth: None,
         cones,
         x,
     };
-    let mut steps = 0;
+    let (mut steps, mut rounds) = (0, 0);
     loop {
         run.begin();
-        let report = run.solve(complementarity);
-        steps += report.steps;
-        let goes_on = match report.status {
-            Status::Converged => run.let_go(),
+        let (status, more) = run.solve(complementarity);
+        steps += more;
+        rounds += 1;
+        let goes_on = match status {
+            Status::Converged => run.let_go(rounds < ROUNDS),
             // what is free may not carry the load
             _ => run.let_all_go(),
         };
         if !goes_on {
+            let residual = run.weighted_norm(&run.residual) / run.weighted_norm(linear).max(f64::MIN_POSITIVE);
             run.settle();
-            return Ok(InteriorPointReport { steps, ..report });
+            let lost = status == Status::Converged && !vector::norm(run.x).is_finite();
+            let status = if lost { Status::Stagnated } else { status };
+            return Ok(InteriorPointReport {
+                status,
+                steps,
+                residual,
+            });
         }
     }
 }
@@ -103,6 +127,8 @@ struct Run<'a> {
     /// One over the root of the diagonal.
     weights: Vec<f64>,
     system: System,
+    /// How far from bounds it begins.
+    depth: Option<f64>,
 }
 
 impl Run<'_> {
@@ -118,27 +144,32 @@ impl Run<'_> {
         }
         for cone in &self.cones.all {
             // a circle needs a radius
-            if let Cone::Circle(Circle { of, slope, .. }) = *cone
+            if let Cone::Circle(circle) = cone
+                && let Some((of, slope)) = circle.follows
                 && bounds[of] == [f64::NEG_INFINITY, f64::INFINITY]
             {
-                inwards[of] = slope.signum() * f64::from(slope != 0.0);
+                inwards[of] = slope.signum();
             }
         }
-        self.system.set(self.matrix.entries());
-        self.system.factor();
-        let mut whole = self.linear.to_vec();
-        self.system.solve(&mut whole);
-        let of_bounds = || whole.iter().zip(&inwards).filter(|(_, inwards)| **inwards != 0.0);
-        let squares: f64 = of_bounds().map(|(x, _)| x * x).sum();
-        let depth = (squares / of_bounds().count() as f64).sqrt();
-        let depth = if depth.is_finite() && depth > 0.0 { depth } else { 1.0 };
-        for i in (0..n).filter(|i| !self.cones.fixed[*i]) {
-            self.x[i] = match bounds[i] {
-                [lower, upper] if lower.is_finite() && upper.is_finite() => 0.5 * (lower + upper),
-                [lower, _] if lower.is_finite() => lower + depth,
-                [_, upper] if upper.is_finite() => upper - depth,
-                _ => depth * inwards[i],
-            };
+        let mut depth = match self.depth {
+            Some(depth) => depth,
+            None => self.without_bounds(&inwards),
+        };
+        self.depth = Some(depth);
+        for _ in 0..DEPTHS {
+            for i in (0..n).filter(|i| !self.cones.fixed[*i]) {
+                self.x[i] = match bounds[i] {
+                    [lower, upper] if lower.is_finite() && upper.is_finite() => 0.5 * (lower + upper),
+                    [lower, _] if lower.is_finite() => lower + depth,
+                    [_, upper] if upper.is_finite() => upper - depth,
+                    _ => depth * inwards[i],
+                };
+            }
+            // a radius may shrink on the way
+            if self.cones.holds(self.x) {
+                break;
+            }
+            depth *= 0.5;
         }
         self.multipliers = vec![0.0; self.cones.all.len()];
         self.update_residual();
@@ -151,6 +182,18 @@ impl Run<'_> {
         self.multipliers = self.cones.all.iter().map(own).collect();
     }
 
+    /// How large the components that go `inwards` are in the solution without bounds.
+    fn without_bounds(&mut self, inwards: &[f64]) -> f64 {
+        self.system.set(self.matrix.entries());
+        self.system.factor();
+        let mut whole = self.linear.to_vec();
+        self.system.solve(&mut whole);
+        let of_bounds = || whole.iter().zip(inwards).filter(|(_, inwards)| **inwards != 0.0);
+        let squares: f64 = of_bounds().map(|(x, _)| x * x).sum();
+        let depth = (squares / of_bounds().count() as f64).sqrt();
+        if depth.is_finite() && depth > 0.0 { depth } else { 1.0 }
+    }
+
     fn update_residual(&mut self) {
         self.matrix.apply(self.x, &mut self.residual, &mut ());
         vector::subtract(self.linear, &mut self.residual);
@@ -159,18 +202,27 @@ impl Run<'_> {
         }
     }
 
-    /// Lets go the components that the gradient pushes off their bounds; whether there are any.
-    fn let_go(&mut self) -> bool {
-        let residual = &self.residual;
-        let resting = self.cones.rests().map(|i| residual[i].abs());
+    /// Lets go the components that the gradient pushes off their bounds, or all if there is one and `only` they are not to
+    /// be; whether there are any.
+    fn let_go(&mut self, only: bool) -> bool {
+        // over the root of the diagonal: stiff components stand beside soft ones
+        let push = |i: usize| self.residual[i] * self.weights[i];
         let pressed = self.cones.all.iter().zip(&self.multipliers);
-        let pressed = pressed.map(|(cone, y)| if matches!(cone, Cone::Half { .. }) { *y } else { 0.0 });
+        let pressed = pressed.filter_map(|(cone, y)| match *cone {
+            Cone::Half { i, .. } => Some(y * self.weights[i]),
+            Cone::Circle(_) => None,
+        });
+        let resting = self.cones.rests().map(|i| push(i).abs());
         let least = PUSHES * resting.chain(pressed).fold(0.0, f64::max);
-        let any = self.cones.let_go(|i, sign| sign * residual[i] > least);
+        let any = self.cones.let_go(|i, sign| sign * push(i) > least);
+        if any && !only {
+            self.cones.let_go(|_, _| true);
+        }
         self.renew(any)
     }
 
     fn let_all_go(&mut self) -> bool {
+        self.depth = None;
         let any = self.cones.let_go(|_, _| true);
         self.renew(any)
     }
@@ -184,29 +236,27 @@ impl Run<'_> {
         any
     }
 
-    /// Mean of `q y`.
+    /// Sum of `q y`.
     fn complementarity(&self) -> f64 {
-        let products = self.products().into_iter().map(|[q, y]| q * y);
-        products.sum::<f64>() / self.cones.all.len().max(1) as f64
+        self.products().into_iter().map(|[q, y]| q * y).sum()
     }
 
     /// What the residual does on the way from zero, a constraint: nothing on circles that vanish.
     fn residual_work(&self) -> f64 {
-        let free = self
-            .residual
-            .iter()
-            .zip(&*self.x)
-            .zip(&self.cones.fixed)
-            .filter(|(_, fixed)| !**fixed);
-        free.map(|((r, x), _)| (r * x).abs()).sum::<f64>() / self.cones.all.len().max(1) as f64
+        let all = self.residual.iter().zip(&*self.x).zip(&self.cones.fixed);
+        all.filter(|(_, fixed)| !**fixed).map(|((r, x), _)| (r * x).abs()).sum()
     }
 
-    /// What values of inequalities times multipliers are compared with.
+    /// What values of inequalities times multipliers are compared with: twice the work of the load, that of the residual,
+    /// and of what bounds hold.
     fn energy(&self) -> f64 {
-        // A x = residual + b - sum y n
-        let mut twice = 2.0 * vector::dot(self.linear, self.x).abs();
-        twice += vector::dot(&self.residual, self.x).abs();
-        twice / self.cones.all.len().max(1) as f64
+        let mut held = 0.0;
+        for (cone, y) in self.cones.all.iter().zip(&self.multipliers) {
+            if let Cone::Half { i, .. } = *cone {
+                held += (y * self.x[i]).abs();
+            }
+        }
+        2.0 * vector::dot(self.linear, self.x).abs() + vector::dot(&self.residual, self.x).abs() + held
     }
 
     /// Of what is not fixed.
@@ -216,8 +266,8 @@ impl Run<'_> {
         free.map(|(square, _)| square).sum::<f64>().sqrt()
     }
 
-    fn solve(&mut self, target: f64) -> InteriorPointReport {
-        let load = self.weighted_norm(self.linear).max(f64::MIN_POSITIVE);
+    /// Status and steps.
+    fn solve(&mut self, target: f64) -> (Status, usize) {
         let (mut steps, mut stuck, mut small, mut last) = (0, 0, 0, f64::INFINITY);
         let status = loop {
             self.update_residual();
@@ -226,7 +276,7 @@ impl Run<'_> {
             small = if solved && tau <= target * size { small + 1 } else { 0 };
             // without inequalities one step is all
             let enough = match self.cones.all.is_empty() {
-                true => steps > 0,
+                true => solved && steps > 0,
                 false => self.unchanged >= SETTLED_STEPS && small > 0 || small >= MORE_STEPS,
             };
             if enough {
@@ -246,17 +296,13 @@ impl Run<'_> {
             if steps >= INTERIOR_STEPS {
                 break Status::IterationLimit;
             }
-            self.step(tau);
+            self.step(tau / self.cones.all.len().max(1) as f64);
             steps += 1;
         };
-        InteriorPointReport {
-            status,
-            steps,
-            residual: self.weighted_norm(&self.residual) / load,
-        }
+        (status, steps)
     }
 
-    /// One step of predictor and corrector.
+    /// One step of predictor and corrector from a mean `tau` of `q y`.
     fn step(&mut self, tau: f64) {
         self.assemble();
         let (towards, change) = self.direction(&vec![0.0; self.cones.all.len()]);

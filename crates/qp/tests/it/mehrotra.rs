@@ -161,4 +161,111 @@ fn wrong_input_is_refused() {
     let other = ProductSet::free(4);
     let refused = interior_point(&a, &b, &other, &slopes, TARGET, &mut [0.0; 9]);
     assert!(matches!(refused, Err(QpError::Length { what: "the set", .. })));
+    // not finite, out of range, twice, to the second component of a disc, to what has no radius
+    let wrong = [
+        (3, 0, f64::NAN),
+        (3, 9, -0.3),
+        (9, 0, -0.3),
+        (3, 1, -0.3),
+        (4, 0, -0.3),
+        (1, 0, -0.3),
+    ];
+    for (disc, component, slope) in wrong {
+        let slopes = [slopes[0], RadiusSlope { disc, component, slope }];
+        let refused = interior_point(&a, &b, &set, &slopes, TARGET, &mut [0.0; 9]);
+        assert!(
+            matches!(refused, Err(QpError::Slope { .. })),
+            "{disc} {component} {slope}"
+        );
+    }
+    let refused = interior_point(&a, &b, &set, &slopes, f64::NAN, &mut [0.0; 9]);
+    assert!(matches!(refused, Err(QpError::Setting { .. })));
+}
+
+fn diagonal(d: &[f64]) -> DenseOperator {
+    let n = d.len();
+    let mut a = vec![0.0; n * n];
+    d.iter().enumerate().for_each(|(i, d)| a[i * (n + 1)] = *d);
+    DenseOperator::new(n, a).expect("a matrix")
+}
+
+/// Steel beside rubber: what pushes off a bound is a matter of each component's own stiffness.
+#[test]
+fn stiff_components_beside_soft_ones_are_let_go() {
+    for soft in [1e-5, 1e-6, 1e-8] {
+        let a = diagonal(&[1.0, 1.0, soft]);
+        let set = ProductSet::new(vec![Segment::upper(vec![0.0; 3])]).expect("a set");
+        for start in [[-1.0; 3], [-1.0, 0.0, 0.0]] {
+            let mut x = start;
+            let report = interior_point(&a, &[-1.0, 1.0, -soft], &set, &[], TARGET, &mut x).expect("valid");
+            assert_eq!(report.status, Status::Converged, "{soft:e} {start:?}");
+            let off = vector::distance(&x, &[-1.0, 0.0, -1.0]);
+            assert!(off < 1e-5, "{soft:e} {start:?}: {x:?}");
+        }
+    }
+}
+
+/// A chain in which each component pushes the next one off its bound.
+#[test]
+fn letting_go_takes_few_rounds() {
+    let n = 200;
+    let mut a = vec![0.0; n * n];
+    for i in 0..n {
+        a[i * (n + 1)] = 2.0;
+        if i > 0 {
+            a[i * n + i - 1] = -1.0;
+            a[(i - 1) * n + i] = -1.0;
+        }
+    }
+    let a = DenseOperator::new(n, a).expect("a matrix");
+    let mut b = vec![0.0; n];
+    b[0] = 1.0;
+    let set = ProductSet::new(vec![Segment::lower(vec![0.0; n])]).expect("a set");
+    let mut x = vec![0.0; n];
+    x[0] = 1.0;
+    let report = interior_point(&a, &b, &set, &[], TARGET, &mut x).expect("valid");
+    assert_eq!(report.status, Status::Converged);
+    assert!(report.steps < 100, "{}", report.steps);
+    let last = n as f64 / (n + 1) as f64;
+    assert!((x[0] - last).abs() < 1e-6, "{}", x[0]);
+}
+
+/// A disc that follows nothing beside one that does; components that are held; nothing to do; nothing that answers.
+#[test]
+fn corners_have_answers() {
+    let follows = |disc, component, slope| [RadiusSlope { disc, component, slope }];
+    let ones = [1.0; 5];
+    let free = || vec![Segment::Free(1), Segment::discs(vec![0.0, 0.5])];
+    let held = |at| {
+        vec![
+            Segment::bounds(vec![at], vec![at]),
+            Segment::discs(vec![0.0]),
+            Segment::upper(vec![0.0, 0.5]),
+        ]
+    };
+    let cases = [
+        (free(), &follows(1, 0, 0.5)[..], [2.0, 3.0, 0.0, 1.0, 0.0]),
+        (held(0.0), &follows(1, 0, -0.3), [-1.0, 2.0, 0.0, -1.0, 5.0]),
+        (held(-1.0), &follows(1, 0, -0.3), [-1.0, 2.0, 0.0, -1.0, 5.0]),
+        (held(0.0), &[], [0.0; 5]),
+        (vec![Segment::lower(vec![1.0; 5])], &[], [0.0; 5]),
+    ];
+    let answers = [
+        [2.0, 1.0, 0.0, 0.5, 0.0],
+        [0.0, 0.0, 0.0, -1.0, 0.5],
+        [-1.0, 0.3, 0.0, -1.0, 0.5],
+        [0.0; 5],
+        [1.0; 5],
+    ];
+    for (k, ((set, slopes, b), answer)) in cases.into_iter().zip(answers).enumerate() {
+        let set = ProductSet::new(set).expect("a set");
+        let mut x = vec![0.0; 5];
+        let report = interior_point(&diagonal(&ones), &b, &set, slopes, TARGET, &mut x).expect("valid");
+        assert_eq!(report.status, Status::Converged, "{k}: {report:?}");
+        assert!(vector::distance(&x, &answer) < 1e-5, "{k}: {x:?}");
+    }
+    let singular = DenseOperator::new(2, vec![1.0; 4]).expect("a matrix");
+    let set = ProductSet::new(vec![Segment::Free(2)]).expect("a set");
+    let report = interior_point(&singular, &[1.0, 0.0], &set, &[], TARGET, &mut [0.0; 2]).expect("valid");
+    assert_eq!(report.status, Status::Stagnated);
 }

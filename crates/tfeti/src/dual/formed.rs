@@ -1,5 +1,7 @@
 //! `F` as a matrix: each subdomain answers for the rows that touch it, so a column costs what its subdomains do.
 
+use std::borrow::Cow;
+
 use crate::dual::operator::DualOperator;
 
 /// Coefficients of rows at one subdomain, by row: its place, unknown of the boundary, coefficient.
@@ -34,19 +36,20 @@ impl DualOperator {
     }
 
     /// The inverse of a class on its boundary, from a rank that holds it.
-    fn boundary_inverse(&self, class: usize) -> Vec<f64> {
+    fn boundary_inverse(&self, class: usize) -> Cow<'_, [f64]> {
         let (nodes, ownership) = (&self.map.classes[class].nodes, &self.subdomains.ownership);
         let size = (3 * nodes.len()).pow(2);
+        let (from, exchange) = (ownership.rank_of(class, 0), &ownership.exchange);
         let mut matrix = match &self.inverses[class] {
-            None => vec![0.0; size],
-            Some(own) => match &own.boundary {
-                Some(matrix) => matrix.clone(),
-                None => own.full.boundary_block(&self.subdomains.bases[class].kernel, nodes),
+            Some(own) if from == exchange.rank() => match &own.boundary {
+                Some(matrix) => Cow::from(matrix),
+                None => Cow::from(own.full.boundary_block(&self.subdomains.bases[class].kernel, nodes)),
             },
+            _ => Cow::from(vec![0.0; size]),
         };
-        ownership
-            .exchange
-            .complete(&mut matrix, &[(ownership.rank_of(class, 0), 0..size)]);
+        if exchange.ranks() > 1 {
+            exchange.complete(matrix.to_mut(), &[(from, 0..size)]);
+        }
         matrix
     }
 

@@ -15,7 +15,7 @@ use crate::tolerances::{
     ROW_OPERATIONS, SHIFTS, STREAMED,
 };
 use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView, Freedom};
-use signorini_qp::{DenseOperator, QpError, SymmetricOperator, vector};
+use signorini_qp::{DenseOperator, QpError, Status, SymmetricOperator, vector};
 use std::sync::Arc;
 
 /// A direction of a contact row, or of two that make a disc: rows and components.
@@ -70,7 +70,7 @@ impl ExplicitCost {
 }
 
 impl Tfeti {
-    /// `None` where there are too many rows.
+    /// `None` where there are too many rows, or unknowns on the boundary of a subdomain.
     #[doc(hidden)]
     pub fn explicit_cost(&self) -> Option<ExplicitCost> {
         let (rows, contact) = (self.dual_dim(), self.gluing().ranges().contact().end);
@@ -86,7 +86,10 @@ impl Tfeti {
             solves: EXPLICIT_SETS * 6.0 * n * n / product,
             factors: (INTERIOR_FACTORS / 1.5 + EXPLICIT_SETS / 3.0) / product,
         };
-        (rows <= EXPLICIT_ROWS && contact <= EXPLICIT_CONTACT).then_some(cost)
+        // of each class the whole boundary answers
+        let boundaries = self.dual().map.classes.iter().map(|class| 3 * class.nodes.len());
+        let largest = boundaries.max().unwrap_or(0).max(rows);
+        (largest <= EXPLICIT_ROWS && contact <= EXPLICIT_CONTACT).then_some(cost)
     }
 
     /// Forms `F` and eliminates the rows behind the contact rows. `None` if rounding leaves it indefinite.
@@ -155,26 +158,27 @@ impl ExplicitInverse {
 
     /// Solves `F x = linear` with `G x = e` where a `solve` finds the contact rows from those of `x`: it has their matrix and
     /// load, all other rows eliminated. It is asked again, with another load, until `G x = e` holds, which the weight leaves
-    /// to do (method of multipliers). For whole vectors.
+    /// to do (method of multipliers), a few times at most, from where the last time ended whether that was a solution or
+    /// not. For whole vectors. Whether the last one was.
     ///
     /// # Errors
     /// Those of `solve`, and [`QpError`] for a matrix that has overflowed.
     #[doc(hidden)]
-    pub fn through_contact<T>(
+    pub fn through_contact(
         &self,
         coarse: &Coarse,
         (linear, e): (&[f64], &[f64]),
         x: &mut [f64],
-        mut solve: impl FnMut(&DenseOperator, &[f64], &mut [f64]) -> Result<T, QpError>,
-    ) -> Result<T, QpError> {
+        mut solve: impl FnMut(&DenseOperator, &[f64], &mut [f64]) -> Result<Status, QpError>,
+    ) -> Result<bool, QpError> {
         let others = self.rows - self.contact;
         let mut matrix = self.schur.clone();
         dense::mirror_lower(&mut matrix, self.contact);
         let matrix = DenseOperator::new(self.contact, matrix)?;
         let (mut aim, mut lacks) = (e.to_vec(), vec![0.0; e.len()]);
         let (mut ordered, mut scratch) = (vec![0.0; self.rows], coarse.scratch());
-        let mut left = BALANCES;
-        loop {
+        let mut solved = false;
+        for _ in 0..BALANCES {
             coarse.transpose_times(&aim, &mut ordered);
             for (load, linear) in ordered.iter_mut().zip(linear) {
                 *load = linear + self.weight * *load;
@@ -182,19 +186,22 @@ impl ExplicitInverse {
             ordered.rotate_left(self.contact);
             dense::forward(&self.columns, self.rows, others, &mut ordered);
             let own = &mut x[..self.contact];
-            let outcome = solve(&matrix, &ordered[others..], own)?;
+            solved = solve(&matrix, &ordered[others..], own)? == Status::Converged;
+            if !vector::norm(own).is_finite() {
+                return Ok(false);
+            }
             ordered[others..].copy_from_slice(own);
             dense::backward(&self.columns, self.rows, others, &mut ordered);
             ordered.rotate_right(self.contact);
             x.copy_from_slice(&ordered);
             coarse.apply(x, &mut lacks, &mut scratch);
             lacks.iter_mut().zip(e).for_each(|(lacks, e)| *lacks = e - *lacks);
-            left -= 1;
-            if left == 0 || vector::norm(&lacks) <= BALANCED * vector::norm(x) {
-                return Ok(outcome);
+            if vector::norm(&lacks) <= BALANCED * vector::norm(x) {
+                break;
             }
             vector::axpy(1.0, &lacks, &mut aim);
         }
+        Ok(solved)
     }
 
     /// The Schur complement in some directions, lower triangle, with a multiple of its largest entry on the diagonal.
