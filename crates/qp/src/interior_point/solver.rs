@@ -66,11 +66,10 @@ pub fn interior_point(
     let origin = vec![0.0; n];
     if set.violation(&origin) == 0.0 && linear.iter().all(|b| *b == 0.0) {
         x.copy_from_slice(&origin);
-        let (status, steps, residual) = (Status::Converged, 0, 0.0);
         return Ok(InteriorPointReport {
-            status,
-            steps,
-            residual,
+            status: Status::Converged,
+            steps: 0,
+            residual: 0.0,
         });
     }
     let mut run = Run {
@@ -202,8 +201,8 @@ impl Run<'_> {
         }
     }
 
-    /// Lets go the components that the gradient pushes off their bounds, or all if there is one and `only` they are not to
-    /// be; whether there are any.
+    /// Lets go the components that the gradient pushes off their bounds, `only` those or all that rest as soon as there is
+    /// one; whether there is.
     fn let_go(&mut self, only: bool) -> bool {
         // over the root of the diagonal: stiff components stand beside soft ones
         let push = |i: usize| self.residual[i] * self.weights[i];
