@@ -4,6 +4,15 @@
 use crate::common::*;
 use signorini_tfeti::internal::on_ranks;
 
+/// Products and interior steps of each step, and both to print.
+fn costs(results: &[Solved]) -> ([Vec<usize>; 2], String) {
+    let of = |of: fn(&Counters) -> usize| -> Vec<usize> { results.iter().map(|r| of(&r.report.counters)).collect() };
+    let [products, inside] = [of(|c| c.products), of(|c| c.interior_steps)];
+    let what = format!("{products:?} products, {inside:?} interior steps");
+    println!("{what}");
+    ([products, inside], what)
+}
+
 /// A quadratic plate of 50 times its thickness, held at an edge, that a load presses on a rough floor below and another
 /// one pulls along it. Most of it lifts off again: without a formed F two of the steps reach a limit of 30,000 products.
 fn plate(boxes: usize) -> Scene {
@@ -88,11 +97,7 @@ fn a_sheet_pressed_on_a_patch_is_solved_from_inside() {
         .with_load(Load::force(brick::X_MAX, [250.0, 20.0, 0.0]).with_history(table([0.0, 0.0, 1.0, -1.0])))
         .with_analysis(Analysis::quasistatic(3.0, 6));
     let (_, results) = run(scene, Settings::default());
-    let counters: Vec<Counters> = results.iter().map(|r| r.report.counters).collect();
-    let [products, inside]: [Vec<usize>; 2] =
-        [|c: &Counters| c.products, |c: &Counters| c.interior_steps].map(|of| counters.iter().map(of).collect());
-    let what = format!("{products:?} products, {inside:?} interior steps");
-    println!("{what}");
+    let ([products, inside], what) = costs(&results);
     assert!(
         results
             .iter()
@@ -139,4 +144,42 @@ fn what_is_hard_has_the_same_bits_on_several_processes() {
             "{ranks} ranks"
         );
     }
+}
+
+/// A washer of a fiftieth of its width between a plate and the head of a bolt, meshed apart. The head presses and is pushed
+/// to and fro by more than half of what friction holds.
+#[test]
+fn a_washer_under_a_head_is_solved_from_inside() {
+    let centred = |lengths: [f64; 3], cells, z: f64| {
+        let mesh = block(lengths, cells);
+        let moved = mesh.map_points(|[x, y, at]| [x - 0.5 * lengths[0], y - 0.5 * lengths[1], at + z]);
+        moved.expect("moved")
+    };
+    let plate = centred([36.0, 36.0, 6.0], [12, 12, 2], -6.0);
+    let head = centred([17.0, 17.0, 6.0], [6, 6, 2], 0.5);
+    let washer = centred([24.0, 24.0, 0.5], [11, 11, 1], 0.0);
+    let third = |tag: FacetTag| FacetTag(tag.0 + 200);
+    let washer = washer.map_tags(third);
+    let mesh = with_second(&plate, &head).append(&washer).expect("three bodies");
+    let table = |values: [f64; 5]| {
+        let times = values.iter().enumerate().map(|(k, v)| (k as f64, *v));
+        History::table(times.collect()).expect("history")
+    };
+    let rough = || Friction::coulomb(0.15);
+    let scene = Scene::new(mesh, uniform(2.1e5, 0.3))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_contact(Contact::between(third(brick::Z_MIN), brick::Z_MAX).with_friction(rough()))
+        .with_contact(Contact::between(second(brick::Z_MIN), third(brick::Z_MAX)).with_friction(rough()))
+        .with_load(Load::force(second(brick::Z_MAX), [0.0, 0.0, -5e3]).with_history(table([0.0, 1.0, 1.0, 1.0, 1.0])))
+        .with_load(Load::force(second(brick::Z_MAX), [450.0, 0.0, 0.0]).with_history(table([0.0, 0.0, 1.0, -1.0, 0.0])))
+        .with_analysis(Analysis::quasistatic(4.0, 8));
+    let (_, results) = run(scene, Settings::default());
+    let ([products, inside], what) = costs(&results);
+    assert!(
+        results
+            .iter()
+            .all(|r| r.report.status.converged() && !r.report.fallback),
+        "{what}"
+    );
+    assert!(inside[0] > 0 && products.iter().sum::<usize>() <= 350, "{what}");
 }
