@@ -161,6 +161,8 @@ impl Plan {
         let mut touching: BTreeSet<u32> = touching.flat_map(|p| nodes_of(&p)).collect();
         touching.extend(discrete.springs.nodal.iter().map(|s| s.node));
         touching.extend(discrete.equations.iter().flat_map(|e| &e.terms).map(|t| t.0));
+        let at_zero = fixed.values().flatten().filter(|held| !held.moves);
+        let at_zero: Vec<_> = at_zero.map(|held| (held.node, held.direction)).collect();
         let find = || {
             Forecast::new(
                 &scene.mesh,
@@ -168,6 +170,7 @@ impl Plan {
                 &scene.materials,
                 settings.share_translates,
                 &settings.inverse,
+                &at_zero,
                 |node| fixed.contains_key(&node) || touching.contains(&node),
             )
         };

@@ -32,10 +32,10 @@ impl ByCertificate {
 
     /// How the step ended with this round; `None` if another one is to come.
     fn judge(&mut self, round: usize, status: StepStatus, largest: f64) -> Option<StepStatus> {
-        let (first, certified) = (round == 1, largest <= self.limit);
+        let certified = largest <= self.limit;
         // what is wanted is there, whatever the solver says; or an earlier round converged, and what this one could not
         // improve is certified
-        let enough = largest <= self.aim || certified && !first;
+        let enough = largest <= self.aim || certified && round > 2;
         let status = if enough { StepStatus::Converged } else { status };
         if enough || !status.converged() || self.tolerance <= LEAST_TOLERANCE {
             let refused = status.converged() && !certified;

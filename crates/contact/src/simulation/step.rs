@@ -13,6 +13,7 @@ use crate::solve::{Attempt, Iterate, Task};
 use crate::state::{Kept, Peak, State};
 use crate::status::StepStatus;
 use crate::step::StepProblem;
+use crate::tolerances::CERTIFIED;
 use signorini_qp::vector;
 use signorini_tfeti::internal::{of_length, zeros};
 use std::sync::Arc;
@@ -105,13 +106,17 @@ impl Simulation {
         let (model, problem) = (&self.model, &self.problem);
         let certificate = &recovered.certificate;
         let unbalanced = certificate.equilibrium.relative() >= certificate.largest();
-        let slides_perhaps = match report.status {
-            StepStatus::NotHeld => true,
-            StepStatus::IterationLimit | StepStatus::Stagnated => unbalanced,
-            _ => false,
+        // the force from which on a body slides
+        let least = match report.status {
+            StepStatus::NotHeld => Some(0.0),
+            StepStatus::IterationLimit | StepStatus::Stagnated if unbalanced => {
+                Some(CERTIFIED * self.settings.tolerance * certificate.equilibrium.reference)
+            }
+            _ => None,
         };
-        if slides_perhaps {
-            report.slide = slides(model, &problem.rhs, &problem.multipliers(&self.iterate.lambda))?;
+        if let Some(least) = least {
+            let slide = slides(model, &problem.rhs, &problem.multipliers(&self.iterate.lambda))?;
+            report.slide = slide.filter(|slide| slide.force > least);
         }
         let before: Vec<f64> = (0..model.tangential_rows()).map(|k| state.traces(k).0).collect();
         Ok(StepResult {

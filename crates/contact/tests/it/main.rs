@@ -57,6 +57,7 @@ mod restart;
 mod sanity;
 mod shapes;
 mod sheets;
+mod slices;
 mod springs;
 mod stages;
 mod stages_start;

@@ -4,7 +4,7 @@ use crate::dual::boundary::BoundaryMap;
 use crate::error::TfetiError;
 use crate::linalg::sparse::Symbolic;
 use crate::subdomain::cost::{ClassReport, InverseSettings, Size, choose};
-use crate::subdomain::inverse::{Inverse, regularised};
+use crate::subdomain::inverse::Inverse;
 use crate::subdomain::matrices::{ClassMatrices, Subdomains};
 use rayon::prelude::*;
 
@@ -36,8 +36,7 @@ pub(crate) fn invert(
     let symbolic = |k: usize| {
         let own = |own: &ClassMatrices| match known {
             Some(known) => Ok(known[k].clone()),
-            None => Symbolic::new(&regularised(&own.stiffness, &bases[k].kernel), 3)
-                .map_err(|e| TfetiError::pattern(e, first(k))),
+            None => Symbolic::new(&own.regularised(&bases[k].kernel), 3).map_err(|e| TfetiError::pattern(e, first(k))),
         };
         subdomains.held(k).map(own).transpose()
     };
@@ -54,7 +53,7 @@ pub(crate) fn invert(
             return Ok(None);
         };
         let kernel = &bases[k].kernel;
-        let full = Inverse::new(&own.stiffness, kernel, pattern, first(k))?;
+        let full = Inverse::new(&own.regularised(kernel), pattern, first(k))?;
         let boundary = dense[k].then(|| full.boundary_block(kernel, &map.classes[k].nodes));
         let full = match &boundary {
             None if sizes[k].is_packed(dense[k]) => full.packed(&own.stiffness),

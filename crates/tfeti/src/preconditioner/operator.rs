@@ -15,8 +15,9 @@ use crate::linalg::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, Spars
 use crate::preconditioner::evened::even_out;
 use crate::preconditioner::released::Released;
 use crate::preconditioner::scaling::{Scaling, ScalingScratch};
-use crate::preconditioner::split::{ClassRows, Eliminated, Split, is_thin};
+use crate::preconditioner::split::{ClassRows, Eliminated, Split};
 use crate::preconditioner::springs::Springs;
+use crate::subdomain::class::is_thin;
 use crate::subdomain::matrices::ClassMatrices;
 use crate::system::part::SystemPart;
 use crate::system::tfeti::Tfeti;
@@ -230,14 +231,15 @@ impl BoundaryStiffness {
         let (layout, rows) = class;
         let shared = layout.members.len() >= SHARED;
         let touched = rows.all();
-        let thin = is_thin(&touched);
+        let count = |counts: [usize; 2]| touched.iter().filter(|d| counts.contains(&d.count)).count();
+        let thin = is_thin(count([1, 2]), count([0; 2]));
         let eliminated = match kind {
             _ if thin && !shared && !rows.contact.is_empty() => Eliminated::Contact,
             Kind::Lumped if !thin => Eliminated::Nodes,
             _ => Eliminated::Directions,
         };
         let stiffness = base.preconditioning();
-        let split = Split::new(stiffness, (touched, &rows.always), eliminated);
+        let split = Split::new(&stiffness, (touched, &rows.always), eliminated);
         let lumped = || Self::Lumped(BlockRows::new(&split.boundary));
         if kind == Kind::Lumped && !thin || split.interior.dim == 0 {
             // Sparse also for shared classes: a tenth of the operations of a dense product.

@@ -202,6 +202,8 @@ pub struct PrescribedDirection {
     pub direction: [f64; 3],
     /// Position of the support in the list.
     pub support: usize,
+    /// Whether it may be displaced: some case prescribes more than zero.
+    pub moves: bool,
 }
 
 /// The directions that supports fix, nodes ascending, each once.
@@ -215,6 +217,7 @@ pub fn prescribed_directions(supports: &[NodeSupport], nodes: usize) -> Result<V
             node: fixed.node,
             direction: d.direction,
             support: d.support,
+            moves: !d.values.is_empty(),
         };
         fixed.directions.iter().map(prescribed).collect::<Vec<_>>()
     };

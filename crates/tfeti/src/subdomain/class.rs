@@ -4,7 +4,7 @@
 //! by a cheap key and then compared entry by entry: a class is never formed because two hashes agree.
 
 use crate::error::TfetiError;
-use crate::tolerances::TRANSLATE;
+use crate::tolerances::{THIN, THIN_NODES, TRANSLATE};
 use rayon::prelude::*;
 use signorini_fem_mesh::decomposition::Subdomain;
 use signorini_fem_mesh::{Decomposition, Hooke, Materials, TetMesh};
@@ -12,7 +12,7 @@ use std::collections::HashMap;
 use std::hash::{DefaultHasher, Hash, Hasher};
 
 /// Subdomains that share one set of matrices.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Class {
     /// Subdomain numbers, ascending. The first is the representative from which the matrices are computed.
     pub members: Vec<u32>,
@@ -20,10 +20,16 @@ pub struct Class {
     pub nodes: usize,
     /// Whether they have no elements, and no matrices: nothing but rigid motions moves them.
     pub is_rigid: bool,
+    /// Directions of their nodes that supports hold at zero, where they make the bodies stiff; see
+    /// [`Held`](crate::subdomain::held::Held).
+    pub held: Vec<HeldDirection>,
 }
 
+/// A local node and a unit direction.
+pub(crate) type HeldDirection = (u32, [f64; 3]);
+
 /// Partition of the subdomains into classes.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Classes {
     classes: Vec<Class>,
     /// Of each subdomain: class and position among its members.
@@ -88,6 +94,7 @@ impl Classes {
                     members: Vec::new(),
                     nodes: subdomains[s].nodes.len(),
                     is_rigid: subdomains[s].is_rigid(),
+                    held: Vec::new(),
                 });
                 classes.len() - 1
             });
@@ -96,6 +103,65 @@ impl Classes {
         }
         Ok(Self { classes, place })
     }
+
+    /// Splits the classes by what supports hold `at_zero`: nodes of the mesh, ascending, with unit directions. Subdomains
+    /// that are not thin between planes stay together.
+    pub(crate) fn with_held(self, decomposition: &Decomposition, at_zero: &[(u32, [f64; 3])]) -> Self {
+        if at_zero.is_empty() {
+            return self;
+        }
+        let directions = |node: u32| {
+            let from = at_zero.partition_point(|held| held.0 < node);
+            at_zero[from..].iter().take_while(move |held| held.0 == node)
+        };
+        let (mut classes, mut place) = (Vec::<Class>::new(), Vec::with_capacity(self.place.len()));
+        let mut known: HashMap<(u32, Vec<(u32, [u64; 3])>), usize> = HashMap::new();
+        for (s, (&(old, _), subdomain)) in self.place.iter().zip(decomposition.subdomains()).enumerate() {
+            let local = subdomain.nodes.iter().zip(0..);
+            let mut held: Vec<HeldDirection> = local
+                .clone()
+                .flat_map(|(&node, k)| directions(node).map(move |held| (k, held.1)))
+                .collect();
+            let holds = |counts: [usize; 2]| {
+                let held = local
+                    .clone()
+                    .filter(|(node, _)| counts.contains(&directions(**node).count()));
+                held.count()
+            };
+            let (size, [free, partly]) = (subdomain.nodes.len(), [[0; 2], [1, 2]].map(holds));
+            // alone it has a preconditioner that is the inverse
+            let alone = || {
+                subdomain
+                    .nodes
+                    .iter()
+                    .all(|&n| decomposition.copies(n as usize).len() == 1)
+            };
+            let few = size < THIN_NODES || (partly as f64) < THIN * size as f64;
+            if few || subdomain.is_rigid() || is_thin(partly, free) && alone() {
+                held.clear();
+            }
+            let key = held.iter().map(|(k, n)| (*k, n.map(f64::to_bits))).collect();
+            let class = *known.entry((old, key)).or_insert_with(|| {
+                let Class { nodes, is_rigid, .. } = self.classes[old as usize];
+                let members = Vec::new();
+                classes.push(Class {
+                    members,
+                    nodes,
+                    is_rigid,
+                    held,
+                });
+                classes.len() - 1
+            });
+            place.push((class as u32, classes[class].members.len() as u32));
+            classes[class].members.push(s as u32);
+        }
+        Self { classes, place }
+    }
+}
+
+/// Whether far more nodes of a subdomain are touched in part than not at all: a thin body between two planes.
+pub(crate) fn is_thin(partly: usize, free: usize) -> bool {
+    2 * partly > 3 * free
 }
 
 /// The signature is a weighted sum of relative positions with weights of modulus at most one: this bounds the change

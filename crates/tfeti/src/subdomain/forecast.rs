@@ -46,8 +46,8 @@ pub struct CoarseForecast {
 }
 
 impl<'a> Forecast<'a> {
-    /// Counts all but the coarse factor. `touched` tells of a mesh node whether a support or contact row acts on it; the interface is known from
-    /// the decomposition.
+    /// Counts all but the coarse factor. Supports hold mesh nodes, ascending, `at_zero` in some directions. `touched` tells of
+    /// a mesh node whether a support or contact row acts on it; the interface is known from the decomposition.
     ///
     /// # Errors
     /// [`TfetiError::Material`] for elements without material, and those of patterns too large to be analysed. A memory
@@ -58,9 +58,10 @@ impl<'a> Forecast<'a> {
         materials: &'a Materials,
         share_translates: bool,
         settings: &InverseSettings,
+        at_zero: &[(u32, [f64; 3])],
         touched: impl Fn(u32) -> bool,
     ) -> Result<Self, TfetiError> {
-        let found = Classes::find(mesh, decomposition, materials, share_translates)?;
+        let found = Classes::find(mesh, decomposition, materials, share_translates)?.with_held(decomposition, at_zero);
         let subdomains = decomposition.subdomains();
         let list = found.classes();
         let analysed = list.par_iter().map(|class| {

@@ -23,19 +23,13 @@ pub(crate) enum Inverse {
 }
 
 impl Inverse {
-    /// Factorises the regularised matrix. The symbolic factor is that of [`regularised`].
-    pub(crate) fn new(
-        stiffness: &Columns,
-        kernel: &Kernel,
-        symbolic: &Symbolic,
-        subdomain: usize,
-    ) -> Result<Self, TfetiError> {
-        let matrix = regularised(stiffness, kernel);
-        let factor = SparseCholesky::new(symbolic, &matrix).map_err(|error| TfetiError::pattern(error, subdomain))?;
+    /// Factorises a [`regularised`] matrix of this symbolic factor.
+    pub(crate) fn new(matrix: &Columns, symbolic: &Symbolic, subdomain: usize) -> Result<Self, TfetiError> {
+        let factor = SparseCholesky::new(symbolic, matrix).map_err(|error| TfetiError::pattern(error, subdomain))?;
         let (smallest, pivot, largest) = factor.pivots();
         let stiff = matrix.diagonal(factor.order()[pivot] as usize);
         // what is soft beside other materials has little of the largest, but not of its own
-        let rounding = smallest <= largest * stiffness.dim as f64 * f64::EPSILON;
+        let rounding = smallest <= largest * matrix.dim as f64 * f64::EPSILON;
         let vanishes = smallest <= FURTHER_MOTION * largest && smallest <= LEFT_OF_IT * stiff;
         if smallest.is_nan() || rounding || vanishes {
             return Err(TfetiError::Singular { subdomain, pivot });
@@ -146,7 +140,7 @@ fn remove_rigid(kernel: &Kernel, x: &mut [f64]) {
 }
 
 /// Mean of the diagonal: the scale of the matrix.
-fn scale(stiffness: &Columns) -> f64 {
+pub(super) fn scale(stiffness: &Columns) -> f64 {
     let trace: f64 = (0..stiffness.dim).map(|i| stiffness.diagonal(i)).sum();
     trace / stiffness.dim.max(1) as f64
 }
@@ -216,8 +210,8 @@ mod tests {
         let hooke = Hooke::isotropic(2.0e11, 0.3).unwrap();
         let stiffness = Columns::from_symmetric(&assemble_stiffness(points, tets, |_| &hooke).unwrap());
         let kernel = Kernel::new(points, 4).unwrap();
-        let symbolic = Symbolic::new(&regularised(&stiffness, &kernel), 3).unwrap();
-        let inverse = Inverse::new(&stiffness, &kernel, &symbolic, 4)?;
+        let matrix = regularised(&stiffness, &kernel);
+        let inverse = Inverse::new(&matrix, &Symbolic::new(&matrix, 3).unwrap(), 4)?;
         Ok((stiffness, kernel, inverse))
     }
 
@@ -290,9 +284,9 @@ mod tests {
                 let stiffness = assemble_stiffness(&points, &three.quadratic_tets(), |_| &hooke).unwrap();
                 let stiffness = Columns::from_symmetric(&stiffness);
                 let kernel = Kernel::new(&points, 0).unwrap();
-                let symbolic = Symbolic::new(&regularised(&stiffness, &kernel), 3).unwrap();
+                let matrix = regularised(&stiffness, &kernel);
                 tried += 1;
-                if Inverse::new(&stiffness, &kernel, &symbolic, 0).is_ok() {
+                if Inverse::new(&matrix, &Symbolic::new(&matrix, 3).unwrap(), 0).is_ok() {
                     passed.push((seed, first));
                 }
             }

@@ -4,10 +4,13 @@ use crate::error::TfetiError;
 use crate::linalg::block_rows::BlockRows;
 use crate::linalg::sparse::Columns;
 use crate::subdomain::class::{Class, Classes};
+use crate::subdomain::held::Held;
+use crate::subdomain::inverse::regularised;
 use crate::subdomain::kernel::Kernel;
 use crate::subdomain::ownership::Ownership;
 use rayon::prelude::*;
 use signorini_fem_mesh::{Decomposition, Hooke, Materials, TetMesh, assemble_stiffness};
+use std::borrow::Cow;
 use std::sync::OnceLock;
 
 /// All subdomains with their matrices.
@@ -39,12 +42,25 @@ pub(crate) struct ClassMatrices {
     /// What preconditioners are made of where the material is nearly incompressible and elements do not lock: the
     /// stiffness of a compressible one. With its own they would need many times more iterations.
     pub(crate) compressible: Option<Columns>,
+    /// What supports hold.
+    pub(crate) held: Option<Held>,
 }
 
 impl ClassMatrices {
     /// The stiffness that preconditioners are made of.
-    pub(crate) fn preconditioning(&self) -> &Columns {
-        self.compressible.as_ref().unwrap_or(&self.stiffness)
+    pub(crate) fn preconditioning(&self) -> Cow<'_, Columns> {
+        let own = self.compressible.as_ref().unwrap_or(&self.stiffness);
+        self.held
+            .as_ref()
+            .map_or(Cow::Borrowed(own), |held| Cow::Owned(held.stiffened(own)))
+    }
+
+    /// A positive definite matrix whose inverse is a generalised one of the stiffness.
+    pub(crate) fn regularised(&self, kernel: &Kernel) -> Columns {
+        match &self.held {
+            None => regularised(&self.stiffness, kernel),
+            Some(held) => held.regularised(&self.stiffness),
+        }
     }
 }
 
@@ -67,7 +83,7 @@ impl Subdomains {
                 message: e.to_string(),
             })
         };
-        let matrices = |class: &Class, points: &[[f64; 3]], hooke: &[&Hooke]| {
+        let matrices = |class: &Class, points: &[[f64; 3]], kernel: &Kernel, hooke: &[&Hooke]| {
             let s = class.members[0] as usize;
             let subdomain = &decomposition.subdomains()[s];
             let element = subdomain.elements[0] as usize;
@@ -89,8 +105,10 @@ impl Subdomains {
                     .map(|(soft, &law)| soft.as_ref().unwrap_or(law));
                 assemble(&laws.collect::<Vec<_>>())
             });
+            let stiffness = assemble(hooke)?;
             Ok::<_, TfetiError>(ClassMatrices {
-                stiffness: assemble(hooke)?,
+                held: Held::new(&stiffness, kernel, &class.held),
+                stiffness,
                 compressible: compressible.transpose()?,
                 blocks: OnceLock::new(),
             })
@@ -99,17 +117,20 @@ impl Subdomains {
             let s = class.members[0] as usize;
             let nodes = decomposition.subdomains()[s].nodes.iter();
             let points: Vec<[f64; 3]> = nodes.map(|&n| mesh.points()[n as usize]).collect();
-            let laws = laws(class)?;
+            let (laws, kernel) = (laws(class)?, Kernel::new(&points, s)?);
             let shear = |law: &&Hooke| (3..6).map(|i| law.voigt()[i][i]).sum::<f64>() / 3.0;
-            let held = (ownership.holds(k) && !class.is_rigid).then(|| matrices(class, &points, &laws));
+            let held = (ownership.holds(k) && !class.is_rigid).then(|| matrices(class, &points, &kernel, &laws));
             let held = held.transpose()?;
             let moduli = laws.iter().map(shear);
-            let diagonal = |m: &ClassMatrices| (0..m.stiffness.dim).map(|i| m.preconditioning().diagonal(i)).collect();
+            let diagonal = |m: &ClassMatrices| {
+                let own = m.preconditioning();
+                (0..own.dim).map(|i| own.diagonal(i)).collect()
+            };
             Ok(ClassBase {
                 diagonal: held.as_ref().map_or_else(|| vec![0.0; 3 * class.nodes], diagonal),
                 held,
                 moduli: moduli.map(|v| [v; 2]).reduce(|[a, b], [c, d]| [a.min(c), b.max(d)]),
-                kernel: Kernel::new(&points, s)?,
+                kernel,
             })
         };
         let each = classes.classes().par_iter().enumerate();

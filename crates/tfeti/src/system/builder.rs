@@ -12,7 +12,7 @@ use crate::rows::equations::{NodalEquation, independent_equations};
 use crate::rows::gluing::Gluing;
 use crate::rows::rigid::{RigidRow, RigidSupport};
 use crate::rows::side::ContactConstraint;
-use crate::rows::supports::{NodalSpring, NodeSupport};
+use crate::rows::supports::{NodalSpring, NodeSupport, prescribed_directions};
 use crate::subdomain::class::Classes;
 use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::subdomain::cost::InverseSettings;
@@ -148,7 +148,12 @@ impl<'a> TfetiBuilder<'a> {
         check("elements", decomposition.parts().len(), mesh.tets().len())?;
         let classes = match self.forecast {
             Some(forecast) => forecast.found.clone(),
-            None => Classes::find(mesh, decomposition, self.materials, self.share_translates)?,
+            None => {
+                let held = prescribed_directions(self.supports, mesh.points().len())?.into_iter();
+                let at_zero: Vec<_> = held.filter(|h| !h.moves).map(|h| (h.node, h.direction)).collect();
+                Classes::find(mesh, decomposition, self.materials, self.share_translates)?
+                    .with_held(decomposition, &at_zero)
+            }
         };
         let exchange = Arc::new(self.communicator.cloned().map_or_else(Exchange::default, Exchange::new));
         let ownership = Ownership::new(&classes, exchange.clone());

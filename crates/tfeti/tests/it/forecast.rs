@@ -12,7 +12,7 @@ fn both(mesh: &TetMesh, decomposition: &Decomposition, share: bool, mut check: i
     let supports = [NodeSupport::fixed(held.clone())];
     let (materials, settings) = (steel(), InverseSettings::default());
     let touched = |node| held.contains(&node);
-    let mut found = Forecast::new(mesh, decomposition, &materials, share, &settings, touched).unwrap();
+    let mut found = Forecast::new(mesh, decomposition, &materials, share, &settings, &[], touched).unwrap();
     found.count_coarse().unwrap();
     let build = |b: TfetiBuilder<'_>| b.with_supports(&supports).build().unwrap();
     let alone = build(TfetiBuilder::new(mesh, decomposition, &materials).with_share_translates(share));

@@ -257,7 +257,7 @@ fn a_forecast_counts_what_two_levels_store() {
         let b = Brick::of(n, 1, perturbation);
         let system = b.system();
         let settings = InverseSettings::default();
-        let found = Forecast::new(&b.mesh, &b.decomposition, &b.materials, true, &settings, |_| false).unwrap();
+        let found = Forecast::new(&b.mesh, &b.decomposition, &b.materials, true, &settings, &[], |_| false).unwrap();
         let forecast = |rows| forecast_levels(&found, b.bottom.iter().copied(), b.fixed.iter().copied(), rows, true);
         let mut space = space(&system, ActiveSetFactor::Auto);
         assert!(space.has_levels());
@@ -280,7 +280,7 @@ fn a_forecast_counts_what_two_levels_store() {
     // one level
     let b = Brick::new(3, 1);
     let (materials, settings) = (steel(), InverseSettings::default());
-    let found = Forecast::new(&b.mesh, &b.decomposition, &materials, true, &settings, |_| false).unwrap();
+    let found = Forecast::new(&b.mesh, &b.decomposition, &materials, true, &settings, &[], |_| false).unwrap();
     assert_eq!(
         forecast_levels(&found, b.bottom.iter().copied(), b.fixed.iter().copied(), 5000, true),
         None
@@ -320,7 +320,7 @@ fn methods_without_active_sets_share_equal_regions() {
         rows.apply_transpose(&c, &mut along, &mut memory);
         assert!(distance(&motion, &along) < 1e-11 * norm(&along));
         let settings = InverseSettings::default();
-        let found = Forecast::new(&b.mesh, &b.decomposition, &b.materials, true, &settings, |_| false).unwrap();
+        let found = Forecast::new(&b.mesh, &b.decomposition, &b.materials, true, &settings, &[], |_| false).unwrap();
         let (bottom, fixed) = (b.bottom.iter().copied(), b.fixed.iter().copied());
         let counted = forecast_levels(&found, bottom, fixed, system.dual_dim(), false).unwrap();
         let ratio = counted.bytes as f64 / (8 * shared.stored()) as f64;

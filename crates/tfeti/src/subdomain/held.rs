@@ -1,0 +1,124 @@
+//! What supports hold of a subdomain that is thin between planes, as springs.
+//!
+//! Free of its supports a slice bends as a plate, softer than what it is part of by the square of its length over its
+//! thickness, and conjugate gradients take as much longer. Its solution is zero where supports hold it at zero, so that
+//! springs `D` there change nothing: with forces in balance `(K + D) u = f` has `Rᵀ D u = 0`, and `u` is a solution of
+//! `(K + D - D R (Rᵀ D R)⁺ Rᵀ D) u = f`, whose kernel is that of `K`, for every `u` that [`Held`] makes. The multipliers
+//! stay what they are.
+
+use crate::linalg::sparse::Columns;
+use crate::subdomain::class::HeldDirection;
+use crate::subdomain::inverse::scale;
+use crate::subdomain::kernel::Kernel;
+use crate::tolerances::{FREE, HELD_MOTION, PLANE_SPRINGS};
+use nalgebra::{Matrix6, SymmetricEigen, Vector6};
+
+/// Springs of a class at the directions that supports hold, and what stops the motions that these leave free.
+#[derive(Debug)]
+pub(crate) struct Held {
+    /// Node, direction and stiffness.
+    springs: Vec<(usize, [f64; 3], f64)>,
+    /// Unknowns, as many as free motions, which none of these leaves at rest.
+    anchors: Vec<usize>,
+}
+
+impl Held {
+    /// `None` if nothing is held, or a motion neither clearly held nor clearly free.
+    pub(crate) fn new(stiffness: &Columns, kernel: &Kernel, held: &[HeldDirection]) -> Option<Self> {
+        let spring = |&(node, n): &HeldDirection| {
+            let node = node as usize;
+            (node, n, PLANE_SPRINGS * quadratic(stiffness, node, n))
+        };
+        let springs: Vec<_> = held.iter().map(spring).collect();
+        let mut work = Matrix6::zeros();
+        for &(node, n, k) in &springs {
+            let modes = kernel.node_modes(node);
+            let along = Vector6::from_fn(|m, _| (0..3).map(|c| n[c] * modes[c][m]).sum());
+            work += k * along * along.transpose();
+        }
+        let eigen = SymmetricEigen::new(work);
+        let largest = eigen.eigenvalues.max();
+        let is_free = |v: f64| v <= FREE * largest;
+        let is_clear = |v: &f64| is_free(*v) || *v >= HELD_MOTION * largest;
+        if largest <= 0.0 || !eigen.eigenvalues.iter().all(is_clear) {
+            return None;
+        }
+        let free = (0..6).filter(|&k| is_free(eigen.eigenvalues[k]));
+        let free = free.map(|k| eigen.eigenvectors.column(k).into_owned()).collect();
+        Some(Self {
+            springs,
+            anchors: anchors(kernel, free),
+        })
+    }
+
+    /// A stiffness with the springs.
+    pub(crate) fn stiffened(&self, stiffness: &Columns) -> Columns {
+        let mut matrix = stiffness.clone();
+        for &(node, n, k) in &self.springs {
+            for i in 0..3 {
+                for j in 0..3 {
+                    if let Some(at) = matrix.find(3 * node + i, 3 * node + j) {
+                        matrix.values[at] += k * n[i] * n[j];
+                    }
+                }
+            }
+        }
+        matrix
+    }
+
+    /// The same, held at the anchors: positive definite.
+    pub(crate) fn regularised(&self, stiffness: &Columns) -> Columns {
+        let mut matrix = self.stiffened(stiffness);
+        for &i in &self.anchors {
+            if let Some(at) = matrix.find(i, i) {
+                matrix.values[at] += scale(stiffness);
+            }
+        }
+        matrix
+    }
+}
+
+/// `nᵀ K n` of a node.
+fn quadratic(stiffness: &Columns, node: usize, n: [f64; 3]) -> f64 {
+    let entry = |i: usize, j: usize| {
+        stiffness
+            .find(3 * node + i, 3 * node + j)
+            .map_or(0.0, |at| stiffness.values[at])
+    };
+    (0..3)
+        .map(|i| (0..3).map(|j| n[i] * n[j] * entry(i, j)).sum::<f64>())
+        .sum()
+}
+
+/// For each free motion, of orthonormal amplitudes, the unknown that moves farthest where those before are at rest.
+fn anchors(kernel: &Kernel, mut free: Vec<Vector6<f64>>) -> Vec<usize> {
+    let mut out = Vec::with_capacity(free.len());
+    while !free.is_empty() {
+        let moves = |i: usize| {
+            let modes = Vector6::from(kernel.node_modes(i / 3)[i % 3]);
+            free.iter().map(|f| f * f.dot(&modes)).sum::<Vector6<f64>>()
+        };
+        let farther = |a: (usize, Vector6<f64>), b: (usize, Vector6<f64>)| {
+            if b.1.norm_squared() > a.1.norm_squared() { b } else { a }
+        };
+        let all = (0..3 * kernel.nodes()).map(|i| (i, moves(i)));
+        let Some((anchor, motion)) = all.reduce(farther) else {
+            break;
+        };
+        out.push(anchor);
+        let motion = motion.normalize();
+        // what is left of the others; the one that is left least of is the motion itself
+        let mut left: Vec<Vector6<f64>> = free.iter().map(|f| f - motion * motion.dot(f)).collect();
+        left.sort_by(|a, b| b.norm_squared().total_cmp(&a.norm_squared()));
+        left.pop();
+        for k in 0..left.len() {
+            let (before, own) = left.split_at_mut(k);
+            for _ in 0..2 {
+                before.iter().for_each(|b| own[0] -= *b * b.dot(&own[0]));
+            }
+            own[0].normalize_mut();
+        }
+        free = left;
+    }
+    out
+}
