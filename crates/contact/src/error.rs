@@ -107,6 +107,9 @@ signorini_fem_mesh::errors! {
         OnAxis { support: usize, node: u32 } =
             "support {support}: node {node} lies on its axis, where no direction is radial or tangential; leave it out, \
             or hold it along x, y, z by a support of its own";
+        MotionNotHeld { support: usize, node: u32, value: f64, along: &'static str } =
+            "support {support}: it is to move node {node} by {value} {along}, a direction that it does not hold; hold this \
+            direction, too (Support::components), or make this part of the motion zero";
         Gap { contact: usize, node: u32, position: [f64; 3], value: f64 } =
             "contact {contact}: the gap at node {node}, at {position:?}, is {value}; it must be finite at every \
             node of the surface";

@@ -119,7 +119,9 @@ impl ContactError {
             | Self::SupportAxis { support, .. } => {
                 vec![Part::Support(*support)]
             }
-            Self::OnAxis { support, node } => vec![Part::Support(*support), Part::Node(*node)],
+            Self::OnAxis { support, node } | Self::MotionNotHeld { support, node, .. } => {
+                vec![Part::Support(*support), Part::Node(*node)]
+            }
             Self::TooLarge { part, .. } => vec![*part],
             Self::Stiffness { region, .. } => vec![Part::Region(*region)],
             Self::NotConverged(failure) => {

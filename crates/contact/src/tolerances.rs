@@ -132,6 +132,10 @@ pub(crate) const LEFT_OFF: f64 = 1e-3;
 /// What is left of a direction that other supports hold already.
 pub(crate) const HELD_ALREADY: f64 = 1e-8;
 
+/// Motion in a direction that a support does not hold, over its largest one, that is no mistake but what is left of turned
+/// axes.
+pub(crate) const NOT_MOVED: f64 = 1e-9;
+
 // ---- equilibrium of free bodies (model) ----
 
 /// Work on a free motion below this part of the size of the loads is rounding.

@@ -1,8 +1,8 @@
 //! Supports at the nodes of the mesh.
 
 use crate::error::ContactError;
-use crate::scene::Scene;
-use crate::tolerances::{HELD_ALREADY, LEFT_OFF};
+use crate::scene::{Scene, Support};
+use crate::tolerances::{HELD_ALREADY, LEFT_OFF, NOT_MOVED, ROUNDING};
 use signorini_fem_mesh::History;
 use signorini_fem_mesh::internal::cylindrical;
 use signorini_fem_mesh::vec3::{Vec3, combine, dot, is_finite, norm, scale, sub, unit};
@@ -32,6 +32,7 @@ impl Supports {
         let mut started = Vec::new();
         for (index, support) in scene.supports.iter().enumerate() {
             let own = scene.support_nodes(index)?;
+            check_motion(index, support, &own)?;
             if !scene.acts(support.span) {
                 nodes.push(NodeSupport::partial(own, Directions::Nothing));
                 continue;
@@ -78,6 +79,35 @@ impl Supports {
     pub(super) fn case(&mut self, history: &History) -> u32 {
         case_of(&mut self.motions, history)
     }
+}
+
+/// Refuses a motion along x, y or z, or along one of those of an axis, of which no held direction has a part: it would
+/// not take place. Directions of each node, such as normals of a curved surface, take what is along them.
+fn check_motion(index: usize, support: &Support, nodes: &[u32]) -> Result<(), ContactError> {
+    let each = matches!(support.directions, Directions::EachNode(_) | Directions::Nothing);
+    let Some((values, _)) = support.motion.as_ref().filter(|_| !each) else {
+        return Ok(());
+    };
+    let size = |v: &Vec3| v.iter().fold(0.0, |m: f64, c| m.max(c.abs()));
+    let directions = support.directions.vectors();
+    // those that are not finite are told with the others
+    let nothing = |c: usize| directions.iter().all(|d| d[c].abs() <= ROUNDING * size(d));
+    let free = [0, 1, 2].map(nothing);
+    let least = NOT_MOVED * values.iter().map(size).fold(0.0, f64::max);
+    let lost = |v: &Vec3| (0..3).find(|&c| free[c] && v[c].abs() > least).map(|c| (c, v[c]));
+    let first = values.iter().zip(nodes).find_map(|(v, &node)| Some((node, lost(v)?)));
+    first.map_or(Ok(()), |(node, (component, value))| {
+        let names = match support.axis {
+            None => ["along x", "along y", "along z"],
+            Some(_) => ["radially", "tangentially", "along its axis"],
+        };
+        Err(ContactError::MotionNotHeld {
+            support: index,
+            node,
+            value,
+            along: names[component],
+        })
+    })
 }
 
 /// Supports that started later hold what those before them leave free, where it is.

@@ -106,6 +106,10 @@ impl Support {
 
     /// The fixed directions follow `history(t) * displacement` (m) instead of staying at zero.
     ///
+    /// What it moves it must hold: a part of the displacement along x, y or z, or along those of its
+    /// [axis](Self::with_axis), is refused if no fixed direction has a part along that. Of oblique directions, and of
+    /// those of each node, such as the normals of a curved surface, what is along them counts.
+    ///
     /// A support that prescribes the normal displacement of a contact node must keep it outside the obstacle at all
     /// times, since no contact force could; otherwise the scene is refused.
     ///

@@ -337,3 +337,56 @@ fn sizes_whose_squares_overflow_are_named() {
         }
     }
 }
+
+/// What a support moves it must hold, whatever the axes and for each node; what rounding leaves of turned axes is no
+/// motion, and oblique directions and those of each node take what is along them.
+#[test]
+fn motions_that_a_support_does_not_hold_are_refused() {
+    let scene = |support: Support| clamped().with_support(support);
+    let up = || Support::components(brick::X_MAX, [false, false, true]);
+    let vectors = |list: &[[f64; 3]]| Support::partial(brick::X_MAX, Directions::Vectors(list.to_vec()));
+    let (nodes, way) = (clamped().mesh().nodes_on(brick::X_MAX), [0.01, 0.0, -1e-3]);
+    let mut each = vec![[0.0, 0.0, -1e-3]; nodes.len()];
+    each[4][1] = 1e-5;
+    let about = |on| Support::components(brick::X_MAX, on).with_axis([0.0, -5.0, 0.0], [1.0, 0.0, 0.0]);
+    for (support, at, says) in [
+        (up().with_motion(way, ramp()), nodes[0], "by 0.01 along x"),
+        (up().with_motions(each, ramp()), nodes[4], "by 0.00001 along y"),
+        (
+            vectors(&[[0.0, 0.0, 2.0]]).with_motion(way, ramp()),
+            nodes[0],
+            "along x",
+        ),
+        (
+            vectors(&[[0.0, 3.0, 4.0], [0.0, 1.0, 0.0]]).with_motion(way, ramp()),
+            nodes[0],
+            "along x",
+        ),
+        (
+            about([true, false, true]).with_motion([1e-3, 2e-3, 0.0], ramp()),
+            nodes[0],
+            "by 0.002 tangentially",
+        ),
+    ] {
+        let error = refused(&scene(support));
+        let text = error.to_string();
+        assert!(
+            text.contains(says) && text.contains("make this part of the motion zero"),
+            "{text}"
+        );
+        assert!(
+            matches!(error, ContactError::MotionNotHeld { support: 1, node, .. } if node == at),
+            "{text}"
+        );
+        assert_eq!(error.parts(), [Part::Support(1), Part::Node(at)]);
+    }
+    let normals = nodes.iter().map(|_| vec![[0.0, 0.0, 1.0]]).collect();
+    for support in [
+        up().with_motion([1e-13, 0.0, -1e-3], ramp()),
+        vectors(&[[1.0, 0.0, -1.0]]).with_motion(way, ramp()),
+        Support::partial(brick::X_MAX, Directions::EachNode(normals)).with_motion(way, ramp()),
+        about([false, true, false]).with_motion([0.0, 1e-3, 0.0], ramp()),
+    ] {
+        Plan::new(&scene(support), &Settings::default()).expect("accepted");
+    }
+}

@@ -101,9 +101,14 @@ impl Bench<'_> {
     fn motion(&mut self, hold: &Hold) -> (Vec<Vec3>, Course) {
         let course = self.frame.shaft.course(self.dice);
         let (centre, axis, way) = (self.centre, self.axis, self.frame.way);
+        // about the axis what is not held must not be moved
+        let held = |v: Vec3| match hold.fixed {
+            Fixed::About(_, _, on) => [0, 1, 2].map(|c| if on[c] { v[c] } else { 0.0 }),
+            _ => v,
+        };
         if self.dice.chance(0.5) {
             let by = scale(0.5 * way, self.dice.vector());
-            return (vec![by], course);
+            return (vec![held(by)], course);
         }
         let angle = self.frame.strain * self.dice.between(0.1, 2.0);
         let rise = way * self.dice.either();
@@ -111,7 +116,7 @@ impl Bench<'_> {
         let values = hold.nodes(mesh).into_iter().map(|n| {
             let arm = across(sub(mesh.points()[n as usize], centre), axis);
             match hold.fixed {
-                Fixed::About(..) => [0.2 * rise, angle * norm(arm), rise],
+                Fixed::About(..) => held([0.2 * rise, angle * norm(arm), rise]),
                 _ => add(scale(angle, cross(axis, arm)), scale(rise, axis)),
             }
         });
