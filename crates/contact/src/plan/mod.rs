@@ -6,6 +6,7 @@
 mod cost;
 mod effects;
 mod mesh_error;
+mod never;
 mod plan;
 mod print;
 mod sanity;

@@ -1,5 +1,6 @@
 //! What a scene alone shows of what is hardly meant.
 
+use super::never;
 use crate::discrete::{ContactPoint, DiscreteScene, Extents, FacetedOverlaps};
 use crate::report::Warning;
 use crate::scene::{Contact, Coupling, Equation, Friction, Load, Scene, Support};
@@ -15,6 +16,8 @@ pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> 
     let [closed, pressing] = faceted_overlaps(discrete);
     let found = [
         idle(scene, discrete),
+        never::between_steps(scene),
+        never::zero_at_steps(scene, discrete),
         unused_materials(listed, &present),
         locking(scene, &present),
         large_gap(scene, discrete),

@@ -23,7 +23,7 @@ signorini_fem_mesh::errors! {
     ///
     /// Fields: `step` from 0; `node`, `tet`, `contact` and `region` are numbers in mesh and scene; `place` and lengths
     /// in m (of a tetrahedron its centroid), `turn` in degrees, other figures relative. `extent` is the length of the
-    /// body, `edge` the longest one of the facets at the node, `present` what the mesh has; `path` is the damaged
+    /// body, `edge` the longest one of the facets at the node, `part` what never acts, `present` what the mesh has; `path` is the damaged
     /// checkpoint under its new name, `taken` the one in its place.
     #[derive(Clone, PartialEq)]
     Warning {
@@ -72,6 +72,13 @@ signorini_fem_mesh::errors! {
             "no load acts, no support or obstacle moves and no sides overlap, so that all results are zero{}: look for \
             loads, or supports that move, that are missing",
             if *held { "" } else { "; no support or spring holds a body either" };
+        BetweenSteps { part: Part, start: f64, end: Option<f64>, last: f64 } =
+            "{part} is to act from {start} s {}, but no step ends then, so that it never does (the last one ends at \
+            {last} s): take more steps, or times of steps that end then (Analysis::Quasistatic), or correct the span",
+            end.map_or_else(|| "on".to_owned(), |end| format!("to {end} s"));
+        ZeroAtSteps { part: Part, time: f64, factor: f64 } =
+            "{part} never acts: its history is zero at the end of each step, and only these count, though it is \
+            {factor} at {time} s; take more steps, or times of steps at which it is not zero (Analysis::Quasistatic)";
         UnusedMaterials { regions: Vec<u32>, present: Vec<u32> } =
             "materials are given for the regions {regions:?}, which the mesh does not have; it has {present:?}: look at \
             the numbers, or leave them out";
@@ -116,6 +123,7 @@ impl Warning {
             | Self::LargeCoefficient { contact, node, .. } => {
                 vec![Part::Contact(*contact), Part::Node(*node)]
             }
+            Self::BetweenSteps { part, .. } | Self::ZeroAtSteps { part, .. } => vec![*part],
             Self::UnusedMaterials { regions, .. } => regions.iter().copied().map(Part::Region).collect(),
             Self::Locking { region, .. } => vec![Part::Region(*region)],
             Self::NothingActs { .. } | Self::DamagedCheckpoint { .. } | Self::Named { .. } => Vec::new(),

@@ -40,6 +40,7 @@ mod methods;
 mod mortar;
 mod moving_field;
 mod moving_obstacle;
+mod never;
 mod orthotropic;
 mod pairs;
 mod pairs_cost;
