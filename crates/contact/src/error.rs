@@ -21,7 +21,9 @@ fn held_remedy(friction: Option<f64>, coupling: Option<&FreeCoupling>) -> String
              move the body by its supports if it is to slide",
             (1e3 * factor).floor() / 1e3
         ),
-        None => "add a support, contact or friction, or balance the loads".to_owned(),
+        None => "add a support, contact or friction, merge its nodes with those of a body that it is a part of \
+            (mesh::merge_nodes), or balance the loads"
+            .to_owned(),
     };
     others + &freed_remedy(coupling)
 }

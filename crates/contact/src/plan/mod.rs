@@ -10,6 +10,7 @@ mod never;
 mod plan;
 mod print;
 mod sanity;
+mod unmerged;
 
 pub use cost::{Estimate, Times};
 pub use effects::{Effects, FrictionKind};

@@ -1,6 +1,7 @@
 //! What a scene alone shows of what is hardly meant.
 
 use super::never;
+use super::unmerged::unmerged;
 use crate::discrete::{ContactPoint, DiscreteScene, Extents, FacetedOverlaps};
 use crate::report::Warning;
 use crate::scene::{Contact, Coupling, Equation, Friction, Load, Scene, Support};
@@ -18,6 +19,7 @@ pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> 
         idle(scene, discrete),
         never::between_steps(scene),
         never::zero_at_steps(scene, discrete),
+        unmerged(scene, discrete),
         unused_materials(listed, &present),
         locking(scene, &present),
         large_gap(scene, discrete),

@@ -79,6 +79,11 @@ signorini_fem_mesh::errors! {
         ZeroAtSteps { part: Part, time: f64, factor: f64 } =
             "{part} never acts: its history is zero at the end of each step, and only these count, though it is \
             {factor} at {time} s; take more steps, or times of steps at which it is not zero (Analysis::Quasistatic)";
+        Unmerged { node: u32, partner: u32, place: [f64; 3], nodes: usize } =
+            "{nodes} node(s) of the body of node {node} coincide with nodes of the body of node {partner}, these two at \
+            {}, and nothing acts between the bodies, so that they pass through each other: merge the nodes \
+            (mesh::merge_nodes) if the bodies are one, tie their sides (Contact::tied), or let them touch \
+            (Contact::between)", at(place);
         UnusedMaterials { regions: Vec<u32>, present: Vec<u32> } =
             "materials are given for the regions {regions:?}, which the mesh does not have; it has {present:?}: look at \
             the numbers, or leave them out";
@@ -123,6 +128,7 @@ impl Warning {
             | Self::LargeCoefficient { contact, node, .. } => {
                 vec![Part::Contact(*contact), Part::Node(*node)]
             }
+            Self::Unmerged { node, partner, .. } => vec![Part::Node(*node), Part::Node(*partner)],
             Self::BetweenSteps { part, .. } | Self::ZeroAtSteps { part, .. } => vec![*part],
             Self::UnusedMaterials { regions, .. } => regions.iter().copied().map(Part::Region).collect(),
             Self::Locking { region, .. } => vec![Part::Region(*region)],

@@ -68,4 +68,5 @@ mod tables;
 mod tresca;
 mod unconverged;
 mod unloaded;
+mod unmerged;
 mod wedge;

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use crate::tables::{ascending, distinct};
+use crate::tolerances::COINCIDENT;
 use crate::vec3::{self, Vec3};
 
 use super::check;
@@ -214,6 +215,24 @@ impl TetMesh {
     /// Bounding box of the mesh: its lowest and highest corner.
     pub fn extent(&self) -> ([f64; 3], [f64; 3]) {
         check::extent(self.points.iter().copied())
+    }
+
+    /// Pairs of these nodes that coincide, the one that comes first in the list first: of bodies that match where they
+    /// touch, of cracks, or of parts that are to be [merged](super::merge_nodes).
+    ///
+    /// ```
+    /// use signorini_fem_mesh::Brick;
+    ///
+    /// let lower = Brick::new([1.0; 3], [1; 3]).build()?;
+    /// let both = lower.append(&lower.map_points(|[x, y, z]| [x, y, z + 1.0])?)?;
+    /// assert_eq!(both.coincident(&[0, 4, 5, 8, 9]), [[4, 8], [5, 9]]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn coincident(&self, nodes: &[u32]) -> Vec<[u32; 2]> {
+        let places: Vec<Vec3> = nodes.iter().map(|&n| self.points[n as usize]).collect();
+        let (low, high) = self.extent();
+        let pairs = check::close_pairs(&places, COINCIDENT * vec3::norm(vec3::sub(high, low)));
+        pairs.into_iter().map(|(a, b)| [nodes[a], nodes[b]]).collect()
     }
 
     /// The tetrahedra across the four faces of a tetrahedron, `None` at the boundary. Face number
