@@ -7,7 +7,11 @@ use crate::common::*;
 fn slid(layers: usize, order: usize, planes_move: bool) -> Scene {
     let slice = Brick::new([12.0, 0.5, 3.0], [24, layers, 6]).perturbed(0.12, 7);
     let slice = slice.build().expect("slice");
-    let slice = if order == 2 { slice.raise_order().expect("order 2") } else { slice };
+    let slice = if order == 2 {
+        slice.raise_order().expect("order 2")
+    } else {
+        slice
+    };
     let plane = |tag| {
         let plane = Support::components(tag, [false, true, false]);
         match planes_move {
@@ -37,6 +41,9 @@ fn a_slice_is_no_plate_that_bends() {
         let [(held, u), (free, other)] = &found;
         println!("{layers} {order}: {held} {free}");
         assert_close(u, other, 1e-5, "the same solution");
-        assert!(2 * held <= *free, "{layers} layers, order {order}: {held} products, {free}");
+        assert!(
+            2 * held <= *free,
+            "{layers} layers, order {order}: {held} products, {free}"
+        );
     }
 }

@@ -20,8 +20,7 @@ pub struct Class {
     pub nodes: usize,
     /// Whether they have no elements, and no matrices: nothing but rigid motions moves them.
     pub is_rigid: bool,
-    /// Directions of their nodes that supports hold at zero, where they make the bodies stiff; see
-    /// [`Held`](crate::subdomain::held::Held).
+    /// Local nodes with unit directions in which supports hold them at zero, where springs stand for that.
     pub held: Vec<HeldDirection>,
 }
 
@@ -115,7 +114,7 @@ impl Classes {
             at_zero[from..].iter().take_while(move |held| held.0 == node)
         };
         let (mut classes, mut place) = (Vec::<Class>::new(), Vec::with_capacity(self.place.len()));
-        let mut known: HashMap<(u32, Vec<(u32, [u64; 3])>), usize> = HashMap::new();
+        let mut known: HashMap<(u32, Vec<u64>), usize> = HashMap::new();
         for (s, (&(old, _), subdomain)) in self.place.iter().zip(decomposition.subdomains()).enumerate() {
             let local = subdomain.nodes.iter().zip(0..);
             let mut held: Vec<HeldDirection> = local
@@ -140,7 +139,8 @@ impl Classes {
             if few || subdomain.is_rigid() || is_thin(partly, free) && alone() {
                 held.clear();
             }
-            let key = held.iter().map(|(k, n)| (*k, n.map(f64::to_bits))).collect();
+            let bits = |(k, n): &HeldDirection| [u64::from(*k), n[0].to_bits(), n[1].to_bits(), n[2].to_bits()];
+            let key = held.iter().flat_map(bits).collect();
             let class = *known.entry((old, key)).or_insert_with(|| {
                 let Class { nodes, is_rigid, .. } = self.classes[old as usize];
                 let members = Vec::new();
