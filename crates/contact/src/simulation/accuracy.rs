@@ -12,7 +12,7 @@ use crate::status::StepStatus;
 use crate::tolerances::{CERTIFIED, LEAST_TOLERANCE, NEXT_AIM, NEXT_TOLERANCE, ROUNDS};
 
 /// Ends the rounds of a step by its certificate, which has the last word: where it is above the tolerance, the solver
-/// goes on once with a smaller one; where it stays far above (thin bodies, whose displacement magnifies errors of the
+/// goes on once or twice with a smaller one; where it stays far above (thin bodies, whose displacement magnifies errors of the
 /// forces), with ever smaller ones.
 struct ByCertificate {
     tolerance: f64,

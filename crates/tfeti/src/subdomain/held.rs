@@ -122,3 +122,59 @@ fn anchors(kernel: &Kernel, mut free: Vec<Vector6<f64>>) -> Vec<usize> {
     }
     out
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::{DMatrix, DVector};
+    use signorini_fem_mesh::{Brick, Hooke, assemble_stiffness, brick};
+
+    /// Between parallel planes, planes at an angle, and on a curved side: forces in balance leave the anchors at rest and
+    /// make no wrench of the springs.
+    #[test]
+    fn springs_and_anchors_are_in_balance_by_themselves() {
+        let mesh = Brick::new([3.0, 0.4, 1.0], [4, 2, 2])
+            .perturbed(0.1, 3)
+            .build()
+            .unwrap();
+        let hooke = Hooke::isotropic(2.0e11, 0.3).unwrap();
+        let stiffness = Columns::from_symmetric(&assemble_stiffness(mesh.points(), mesh.tets(), |_| &hooke).unwrap());
+        let kernel = Kernel::new(mesh.points(), 0).unwrap();
+        let on = |tag, normal: fn([f64; 3]) -> [f64; 3]| -> Vec<HeldDirection> {
+            let nodes = mesh.nodes_on(tag).into_iter();
+            nodes.map(|n| (n, normal(mesh.points()[n as usize]))).collect()
+        };
+        let along_y = |tag| on(tag, |_| [0.0, 1.0, 0.0]);
+        let planes = [along_y(brick::Y_MIN), along_y(brick::Y_MAX)].concat();
+        let wedge = [along_y(brick::Y_MIN), on(brick::Z_MAX, |_| [0.6, 0.0, 0.8])].concat();
+        let curved = on(brick::Z_MIN, |[x, ..]| [(x - 1.0).sin(), 0.0, (x - 1.0).cos()]);
+        for (held, free) in [(planes, 3), (wedge, 1), (curved, 1)] {
+            let own = Held::new(&stiffness, &kernel, &held).expect("clearly held");
+            assert_eq!(own.anchors.len(), free);
+            let matrix = own.regularised(&stiffness);
+            let mut dense = DMatrix::zeros(matrix.dim, matrix.dim);
+            for j in 0..matrix.dim {
+                let (rows, values) = matrix.column(j);
+                rows.iter().zip(values).for_each(|(&i, v)| dense[(i, j)] = *v);
+            }
+            let mut force: Vec<f64> = (0..matrix.dim).map(|i| (1.7 * i as f64).sin()).collect();
+            let rigid = kernel.transpose_times(&force);
+            kernel.add_motion(-1.0, &rigid, &mut force);
+            let u = dense.cholesky().expect("definite").solve(&DVector::from_vec(force));
+            let at_rest = own.anchors.iter().all(|&i| u[i].abs() < 1e-9 * u.amax());
+            let mut springs = vec![0.0; u.len()];
+            for &(node, n, k) in &own.springs {
+                let along: f64 = (0..3).map(|c| n[c] * u[3 * node + c]).sum();
+                (0..3).for_each(|c| springs[3 * node + c] += k * along * n[c]);
+            }
+            let wrench = kernel
+                .transpose_times(&springs)
+                .into_iter()
+                .fold(0.0, |m: f64, w| m.max(w.abs()));
+            assert!(at_rest && wrench < 1e-9, "{free}: {wrench:e}");
+        }
+        // far less than a thousandth of the work of the others
+        let nearly = on(brick::Y_MIN, |[x, _, z]| [1e-4 * (x + z), 1.0, 0.0]);
+        assert!(Held::new(&stiffness, &kernel, &nearly).is_none());
+    }
+}
