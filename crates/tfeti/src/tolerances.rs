@@ -108,10 +108,10 @@ pub(crate) const GROUP_ROWS: usize = 120;
 /// Weight of the rows that an active set holds in the matrix of such a group, relative to their own entry.
 pub(crate) const HELD_ROWS: f64 = 1e8;
 
-/// Share of the nodes of a subdomain that supports hold in one or two directions, from which on it is thin between planes;
-/// the nodes that it has at least, for random bodies of fewer gain and lose alike; and stiffness of its springs there over that of
-/// the node. Slices of cylinders on blocks, of one to ten layers of cells, take a half to an eighth of the products; with
-/// 0.25 half a slice held on one side thrice as many, with springs of 10 a third more, of 0.1 the same.
+/// Share of the nodes of a subdomain that supports hold in one or two directions, from which on it is thin between
+/// planes; the nodes that it has at least, for random bodies of fewer gain and lose alike; and stiffness of its springs
+/// there over that of the node. Slices of cylinders on blocks, of one to ten layers of cells, take a half to an eighth of
+/// the products; with 0.25 a slice held on one side takes thrice as many, with springs of 10 a third more, of 0.1 the same.
 pub(crate) const THIN: f64 = 0.2;
 pub(crate) const THIN_NODES: usize = 30;
 pub(crate) const PLANE_SPRINGS: f64 = 1.0;

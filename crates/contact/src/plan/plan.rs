@@ -161,8 +161,7 @@ impl Plan {
         let mut touching: BTreeSet<u32> = touching.flat_map(|p| nodes_of(&p)).collect();
         touching.extend(discrete.springs.nodal.iter().map(|s| s.node));
         touching.extend(discrete.equations.iter().flat_map(|e| &e.terms).map(|t| t.0));
-        let at_zero = fixed.values().flatten().filter(|held| !held.moves);
-        let at_zero: Vec<_> = at_zero.map(|held| (held.node, held.direction)).collect();
+        let at_zero: Vec<_> = fixed.values().flatten().filter_map(|held| held.at_zero()).collect();
         let find = || {
             Forecast::new(
                 &scene.mesh,

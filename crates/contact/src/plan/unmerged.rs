@@ -2,7 +2,7 @@
 
 use crate::discrete::{DiscreteScene, Extents};
 use crate::report::Warning;
-use crate::scene::{Coupled, Place, Scene};
+use crate::scene::{Coupled, Scene};
 use signorini_fem_mesh::FacetTag;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -70,15 +70,8 @@ fn held(scene: &Scene) -> HashSet<u32> {
     let couplings = scene.couplings.iter().filter_map(|c| c.place());
     supports
         .chain(couplings)
-        .flat_map(|place| nodes_of(scene, place))
+        .flat_map(|place| place.nodes(&scene.mesh))
         .collect()
-}
-
-fn nodes_of(scene: &Scene, place: &Place) -> Vec<u32> {
-    match place {
-        Place::Tag(tag) => scene.mesh.nodes_on(*tag),
-        Place::Nodes(nodes) => nodes.clone(),
-    }
 }
 
 /// Whether a contact, an equation or a coupling acts between two bodies at some step.
@@ -100,7 +93,7 @@ fn act_between(
     };
     let mut equations = scene.equations.iter();
     let mut couplings = scene.couplings.iter().filter_map(|c| match &c.coupled {
-        Coupled::Nodes(place) => Some(nodes_of(scene, place)),
+        Coupled::Nodes(place) => Some(place.nodes(&scene.mesh)),
         Coupled::Tied(_) | Coupled::Point => None,
     });
     touch.any(|touch| touch)

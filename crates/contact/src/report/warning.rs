@@ -23,8 +23,8 @@ signorini_fem_mesh::errors! {
     ///
     /// Fields: `step` from 0; `node`, `tet`, `contact` and `region` are numbers in mesh and scene; `place` and lengths
     /// in m (of a tetrahedron its centroid), `turn` in degrees, other figures relative. `extent` is the length of the
-    /// body, `edge` the longest one of the facets at the node, `part` what never acts, `present` what the mesh has; `path` is the damaged
-    /// checkpoint under its new name, `taken` the one in its place.
+    /// body, `edge` the longest one of the facets at the node, `part` what never acts, `present` what the mesh has;
+    /// `path` is the damaged checkpoint under its new name, `taken` the one in its place.
     #[derive(Clone, PartialEq)]
     Warning {
         LargeDisplacement { step: usize, node: u32, place: [f64; 3], displacement: f64, extent: f64 } =

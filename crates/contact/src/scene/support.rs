@@ -1,7 +1,7 @@
 //! Supports: where displacements are prescribed.
 
 use super::span::Span;
-use signorini_fem_mesh::{FacetTag, History};
+use signorini_fem_mesh::{FacetTag, History, TetMesh};
 use signorini_tfeti::Directions;
 
 /// Where a support acts.
@@ -12,6 +12,16 @@ pub enum Place {
     Tag(FacetTag),
     /// Single nodes, by their numbers in the mesh.
     Nodes(Vec<u32>),
+}
+
+impl Place {
+    /// Its nodes in a mesh, as they are given.
+    pub(crate) fn nodes(&self, mesh: &TetMesh) -> Vec<u32> {
+        match self {
+            Self::Tag(tag) => mesh.nodes_on(*tag),
+            Self::Nodes(nodes) => nodes.clone(),
+        }
+    }
 }
 
 impl From<FacetTag> for Place {
@@ -131,7 +141,7 @@ impl Support {
     ///
     /// ```
     /// use signorini_contact::Support;
-    /// use signorini_fem_mesh::{FacetTag, History};
+    /// use signorini_fem_mesh::{FacetTag, History, TetMesh};
     ///
     /// # let (bore, rim) = (FacetTag(1), FacetTag(2));
     /// let (point, axis) = ([0.0; 3], [0.0, 0.0, 1.0]);

@@ -17,10 +17,7 @@ impl Scene {
     pub(crate) fn support_nodes(&self, support: usize) -> Result<Vec<u32>, ContactError> {
         let count = self.mesh.points().len();
         let own = &self.supports[support];
-        let nodes = match &own.place {
-            Place::Tag(tag) => self.mesh.nodes_on(*tag),
-            Place::Nodes(nodes) => nodes.clone(),
-        };
+        let nodes = own.place.nodes(&self.mesh);
         if let (Place::Tag(tag), []) = (&own.place, &nodes[..]) {
             return Err(self.unknown_tag("support", support, *tag));
         }

@@ -20,6 +20,18 @@ fn never(scene: &Scene) -> Vec<Warning> {
     plan.warnings().iter().filter(such).cloned().collect()
 }
 
+/// One warning is told, such a one, of this part, with the remedy.
+fn assert_told(scene: &Scene, is_such: impl Fn(&Warning) -> bool, part: Part, says: &str) {
+    let found = never(scene);
+    let [warning] = &found[..] else {
+        panic!("{found:?}");
+    };
+    let text = warning.to_string();
+    assert!(is_such(warning), "{text}");
+    assert!(text.contains(says) && text.contains("take more steps"), "{text}");
+    assert_eq!(warning.parts(), [part]);
+}
+
 #[test]
 fn spans_between_the_ends_of_steps_are_told() {
     let floor = || Contact::rigid(brick::Z_MIN);
@@ -41,21 +53,8 @@ fn spans_between_the_ends_of_steps_are_told() {
             "from 0 s to 0.3 s",
         ),
     ] {
-        let found = never(&scene);
-        let [
-            warning @ Warning::BetweenSteps {
-                part: own, last: 1.0, ..
-            },
-        ] = &found[..]
-        else {
-            panic!("{found:?}");
-        };
-        let text = warning.to_string();
-        assert!(
-            *own == part && text.contains(says) && text.contains("take more steps"),
-            "{text}"
-        );
-        assert_eq!(warning.parts(), [part]);
+        let is_such = |w: &Warning| matches!(w, Warning::BetweenSteps { part: own, last: 1.0, .. } if *own == part);
+        assert_told(&scene, is_such, part, says);
     }
     for scene in [
         scene().with_contact(floor().with_start(0.5)),
@@ -87,16 +86,8 @@ fn histories_that_are_zero_at_all_steps_are_told() {
         ),
         (scene().with_support(moved(hat)), Part::Support(1), "it is 1 at 0.2 s"),
     ] {
-        let found = never(&scene);
-        let [warning @ Warning::ZeroAtSteps { part: own, .. }] = &found[..] else {
-            panic!("{found:?}");
-        };
-        let text = warning.to_string();
-        assert!(
-            *own == part && text.contains(says) && text.contains("more steps"),
-            "{text}"
-        );
-        assert_eq!(warning.parts(), [part]);
+        let is_such = |w: &Warning| matches!(w, Warning::ZeroAtSteps { part: own, .. } if *own == part);
+        assert_told(&scene, is_such, part, says);
     }
     for scene in [
         scene().with_load(load(table(&[(0.0, 0.0), (0.5, 1.0), (0.7, 0.0)]))),

@@ -103,6 +103,17 @@ impl Columns {
             .map(|k| range.start + k)
     }
 
+    /// Adds to the stored entries of the block of a node with itself, three unknowns a node.
+    pub(crate) fn add_to_node(&mut self, node: usize, block: impl Fn(usize, usize) -> f64) {
+        for i in 0..3 {
+            for j in 0..3 {
+                if let Some(k) = self.find(3 * node + i, 3 * node + j) {
+                    self.values[k] += block(i, j);
+                }
+            }
+        }
+    }
+
     /// Diagonal entry; 0 if it is not stored.
     pub(crate) fn diagonal(&self, i: usize) -> f64 {
         self.find(i, i).map_or(0.0, |k| self.values[k])

@@ -231,8 +231,9 @@ impl BoundaryStiffness {
         let (layout, rows) = class;
         let shared = layout.members.len() >= SHARED;
         let touched = rows.all();
-        let count = |counts: [usize; 2]| touched.iter().filter(|d| counts.contains(&d.count)).count();
-        let thin = is_thin(count([1, 2]), count([0; 2]));
+        let mut counts = [0; 4];
+        touched.iter().for_each(|directions| counts[directions.count] += 1);
+        let thin = is_thin(counts);
         let eliminated = match kind {
             _ if thin && !shared && !rows.contact.is_empty() => Eliminated::Contact,
             Kind::Lumped if !thin => Eliminated::Nodes,

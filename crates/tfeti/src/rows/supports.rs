@@ -206,6 +206,13 @@ pub struct PrescribedDirection {
     pub moves: bool,
 }
 
+impl PrescribedDirection {
+    /// Node and direction where it is held at zero.
+    pub fn at_zero(&self) -> Option<(u32, [f64; 3])> {
+        (!self.moves).then_some((self.node, self.direction))
+    }
+}
+
 /// The directions that supports fix, nodes ascending, each once.
 ///
 /// # Errors

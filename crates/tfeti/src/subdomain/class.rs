@@ -103,8 +103,8 @@ impl Classes {
         Ok(Self { classes, place })
     }
 
-    /// Splits the classes by what supports hold `at_zero`: nodes of the mesh, ascending, with unit directions. Subdomains
-    /// that are not thin between planes stay together.
+    /// Splits the classes by what supports hold `at_zero`: nodes of the mesh, ascending, with unit directions at right
+    /// angles. Subdomains that are not thin between planes stay together.
     pub(crate) fn with_held(self, decomposition: &Decomposition, at_zero: &[(u32, [f64; 3])]) -> Self {
         if at_zero.is_empty() {
             return self;
@@ -116,27 +116,18 @@ impl Classes {
         let (mut classes, mut place) = (Vec::<Class>::new(), Vec::with_capacity(self.place.len()));
         let mut known: HashMap<(u32, Vec<u64>), usize> = HashMap::new();
         for (s, (&(old, _), subdomain)) in self.place.iter().zip(decomposition.subdomains()).enumerate() {
-            let local = subdomain.nodes.iter().zip(0..);
-            let mut held: Vec<HeldDirection> = local
-                .clone()
-                .flat_map(|(&node, k)| directions(node).map(move |held| (k, held.1)))
-                .collect();
-            let holds = |counts: [usize; 2]| {
-                let held = local
-                    .clone()
-                    .filter(|(node, _)| counts.contains(&directions(**node).count()));
-                held.count()
-            };
-            let (size, [free, partly]) = (subdomain.nodes.len(), [[0; 2], [1, 2]].map(holds));
+            let (mut held, mut counts) = (Vec::<HeldDirection>::new(), [0; 4]);
+            for (&node, k) in subdomain.nodes.iter().zip(0..) {
+                let before = held.len();
+                held.extend(directions(node).map(|held| (k, held.1)));
+                counts[held.len() - before] += 1;
+            }
+            let (size, partly) = (subdomain.nodes.len(), counts[1] + counts[2]);
             // alone it has a preconditioner that is the inverse
-            let alone = || {
-                subdomain
-                    .nodes
-                    .iter()
-                    .all(|&n| decomposition.copies(n as usize).len() == 1)
-            };
+            let is_alone = |&n: &u32| decomposition.copies(n as usize).len() == 1;
+            let alone = || subdomain.nodes.iter().all(is_alone);
             let few = size < THIN_NODES || (partly as f64) < THIN * size as f64;
-            if few || subdomain.is_rigid() || is_thin(partly, free) && alone() {
+            if few || subdomain.is_rigid() || is_thin(counts) && alone() {
                 held.clear();
             }
             let bits = |(k, n): &HeldDirection| [u64::from(*k), n[0].to_bits(), n[1].to_bits(), n[2].to_bits()];
@@ -159,9 +150,10 @@ impl Classes {
     }
 }
 
-/// Whether far more nodes of a subdomain are touched in part than not at all: a thin body between two planes.
-pub(crate) fn is_thin(partly: usize, free: usize) -> bool {
-    2 * partly > 3 * free
+/// Whether far more nodes of a subdomain are touched in part than not at all: a thin body between two planes. Nodes are
+/// counted by the directions in which they are touched.
+pub(crate) fn is_thin(counts: [usize; 4]) -> bool {
+    2 * (counts[1] + counts[2]) > 3 * counts[0]
 }
 
 /// The signature is a weighted sum of relative positions with weights of modulus at most one: this bounds the change

@@ -46,8 +46,8 @@ pub struct CoarseForecast {
 }
 
 impl<'a> Forecast<'a> {
-    /// Counts all but the coarse factor. Supports hold mesh nodes, ascending, `at_zero` in some directions. `touched` tells of
-    /// a mesh node whether a support or contact row acts on it; the interface is known from the decomposition.
+    /// Counts all but the coarse factor. Supports hold mesh nodes, ascending, `at_zero` in some directions. `touched`
+    /// tells of a mesh node whether a support or contact row acts on it; the interface is known from the decomposition.
     ///
     /// # Errors
     /// [`TfetiError::Material`] for elements without material, and those of patterns too large to be analysed. A memory

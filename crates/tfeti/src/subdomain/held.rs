@@ -55,24 +55,17 @@ impl Held {
     pub(crate) fn stiffened(&self, stiffness: &Columns) -> Columns {
         let mut matrix = stiffness.clone();
         for &(node, n, k) in &self.springs {
-            for i in 0..3 {
-                for j in 0..3 {
-                    if let Some(at) = matrix.find(3 * node + i, 3 * node + j) {
-                        matrix.values[at] += k * n[i] * n[j];
-                    }
-                }
-            }
+            matrix.add_to_node(node, |i, j| k * n[i] * n[j]);
         }
         matrix
     }
 
     /// The same, held at the anchors: positive definite.
     pub(crate) fn regularised(&self, stiffness: &Columns) -> Columns {
-        let mut matrix = self.stiffened(stiffness);
-        for &i in &self.anchors {
-            if let Some(at) = matrix.find(i, i) {
-                matrix.values[at] += scale(stiffness);
-            }
+        let (mut matrix, strength) = (self.stiffened(stiffness), scale(stiffness));
+        for &anchor in &self.anchors {
+            let own = |i: usize| f64::from(u8::from(i == anchor % 3));
+            matrix.add_to_node(anchor / 3, |i, j| strength * own(i) * own(j));
         }
         matrix
     }

@@ -183,19 +183,10 @@ pub(crate) fn regularised(stiffness: &Columns, kernel: &Kernel) -> Columns {
     let from_first = |node: usize| sub(*kernel.arm(node), *kernel.arm(first));
     let axis = unit(from_first(second));
     let normal = unit(cross(axis, from_first(third)));
-    let mut spring = |node: usize, block: &dyn Fn(usize, usize) -> f64| {
-        for i in 0..3 {
-            for j in 0..3 {
-                if let Some(k) = matrix.find(3 * node + i, 3 * node + j) {
-                    matrix.values[k] += strength * block(i, j);
-                }
-            }
-        }
-    };
     let identity = |i: usize, j: usize| f64::from(u8::from(i == j));
-    spring(first, &identity);
-    spring(second, &|i, j| identity(i, j) - axis[i] * axis[j]);
-    spring(third, &|i, j| normal[i] * normal[j]);
+    matrix.add_to_node(first, |i, j| strength * identity(i, j));
+    matrix.add_to_node(second, |i, j| strength * (identity(i, j) - axis[i] * axis[j]));
+    matrix.add_to_node(third, |i, j| strength * (normal[i] * normal[j]));
     matrix
 }
 

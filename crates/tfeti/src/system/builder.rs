@@ -149,8 +149,8 @@ impl<'a> TfetiBuilder<'a> {
         let classes = match self.forecast {
             Some(forecast) => forecast.found.clone(),
             None => {
-                let held = prescribed_directions(self.supports, mesh.points().len())?.into_iter();
-                let at_zero: Vec<_> = held.filter(|h| !h.moves).map(|h| (h.node, h.direction)).collect();
+                let held = prescribed_directions(self.supports, mesh.points().len())?;
+                let at_zero: Vec<_> = held.iter().filter_map(|held| held.at_zero()).collect();
                 Classes::find(mesh, decomposition, self.materials, self.share_translates)?
                     .with_held(decomposition, &at_zero)
             }
