@@ -15,9 +15,8 @@ use crate::linalg::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, Spars
 use crate::preconditioner::evened::even_out;
 use crate::preconditioner::released::Released;
 use crate::preconditioner::scaling::{Scaling, ScalingScratch};
-use crate::preconditioner::split::{ClassRows, Eliminated, Split};
+use crate::preconditioner::split::{ClassRows, Eliminated, Split, is_thin};
 use crate::preconditioner::springs::Springs;
-use crate::subdomain::class::is_thin;
 use crate::subdomain::matrices::ClassMatrices;
 use crate::system::part::SystemPart;
 use crate::system::tfeti::Tfeti;
@@ -231,9 +230,7 @@ impl BoundaryStiffness {
         let (layout, rows) = class;
         let shared = layout.members.len() >= SHARED;
         let touched = rows.all();
-        let mut counts = [0; 4];
-        touched.iter().for_each(|directions| counts[directions.count] += 1);
-        let thin = is_thin(counts);
+        let thin = is_thin(&touched);
         let eliminated = match kind {
             _ if thin && !shared && !rows.contact.is_empty() => Eliminated::Contact,
             Kind::Lumped if !thin => Eliminated::Nodes,

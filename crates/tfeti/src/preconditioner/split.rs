@@ -13,7 +13,7 @@ use signorini_fem_mesh::vec3;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Directions {
     axes: [[f64; 3]; 3],
-    pub(super) count: usize,
+    count: usize,
 }
 
 /// What rows touch of the nodes of a class in some member.
@@ -116,6 +116,12 @@ impl ClassRows {
             .for_each(|(_, node, vector)| all[*node].touch(*vector));
         all
     }
+}
+
+/// Whether far more nodes are touched in part than not at all: a thin body between two planes.
+pub(super) fn is_thin(touched: &[Directions]) -> bool {
+    let partly = touched.iter().filter(|d| matches!(d.count, 1 | 2)).count();
+    2 * partly > 3 * touched.iter().filter(|d| d.count == 0).count()
 }
 
 /// What a Schur complement eliminates besides the nodes that no row touches.

@@ -116,18 +116,18 @@ impl Classes {
         let (mut classes, mut place) = (Vec::<Class>::new(), Vec::with_capacity(self.place.len()));
         let mut known: HashMap<(u32, Vec<u64>), usize> = HashMap::new();
         for (s, (&(old, _), subdomain)) in self.place.iter().zip(decomposition.subdomains()).enumerate() {
-            let (mut held, mut counts) = (Vec::<HeldDirection>::new(), [0; 4]);
+            let (mut held, mut partly) = (Vec::<HeldDirection>::new(), 0);
             for (&node, k) in subdomain.nodes.iter().zip(0..) {
                 let before = held.len();
                 held.extend(directions(node).map(|held| (k, held.1)));
-                counts[held.len() - before] += 1;
+                partly += usize::from(matches!(held.len() - before, 1 | 2));
             }
-            let (size, partly) = (subdomain.nodes.len(), counts[1] + counts[2]);
-            // alone it has a preconditioner that is the inverse
+            // alone it has a preconditioner that is nearly the inverse
             let is_alone = |&n: &u32| decomposition.copies(n as usize).len() == 1;
             let alone = || subdomain.nodes.iter().all(is_alone);
+            let size = subdomain.nodes.len();
             let few = size < THIN_NODES || (partly as f64) < THIN * size as f64;
-            if few || subdomain.is_rigid() || is_thin(counts) && alone() {
+            if few || subdomain.is_rigid() || alone() {
                 held.clear();
             }
             let bits = |(k, n): &HeldDirection| [u64::from(*k), n[0].to_bits(), n[1].to_bits(), n[2].to_bits()];
@@ -148,12 +148,6 @@ impl Classes {
         }
         Self { classes, place }
     }
-}
-
-/// Whether far more nodes of a subdomain are touched in part than not at all: a thin body between two planes. Nodes are
-/// counted by the directions in which they are touched.
-pub(crate) fn is_thin(counts: [usize; 4]) -> bool {
-    2 * (counts[1] + counts[2]) > 3 * counts[0]
 }
 
 /// The signature is a weighted sum of relative positions with weights of modulus at most one: this bounds the change
