@@ -1,8 +1,8 @@
 //! How large the bodies are.
 
 use rstar::{AABB, Envelope};
+use signorini_fem_mesh::decomposition::volumes_and_surfaces;
 use signorini_fem_mesh::internal::DisjointSets;
-use signorini_fem_mesh::vec3::{area_vector, norm, tet_volume};
 use signorini_fem_mesh::{Decomposition, TetMesh};
 use std::collections::BTreeSet;
 
@@ -54,17 +54,7 @@ impl Extents {
     /// The length of the longest subdomain with one of some nodes over its thickness: the longest side of the box around
     /// it, and its hydraulic diameter, four times volume over surface.
     pub(crate) fn slenderness(mesh: &TetMesh, decomposition: &Decomposition, nodes: impl Iterator<Item = u32>) -> f64 {
-        let parts = decomposition.parts();
-        let mut sizes = vec![[0.0; 2]; decomposition.subdomains().len()];
-        for (tet, &part) in parts.iter().enumerate() {
-            let (corners, [volume, surface]) = (mesh.tet_points(tet), &mut sizes[part as usize]);
-            *volume += tet_volume(&corners);
-            for (face, other) in mesh.neighbours(tet).into_iter().enumerate() {
-                if other.is_none_or(|other| parts[other] != part) {
-                    *surface += norm(area_vector(&[1, 2, 3].map(|k| corners[(face + k) % 4])));
-                }
-            }
-        }
+        let sizes = volumes_and_surfaces(mesh, decomposition.parts());
         let copies = nodes.flat_map(|node| decomposition.copies(node as usize));
         let elastic = copies.filter(|copy| !decomposition.subdomains()[copy.subdomain as usize].is_rigid());
         let touched: BTreeSet<u32> = elastic.map(|copy| copy.subdomain).collect();

@@ -21,7 +21,7 @@ const MOST: usize = 1000;
 #[non_exhaustive]
 pub enum Partition {
     /// Parts of several hundred tetrahedra each, by [`even_parts`]; materials are not mixed. A mesh with less than 1400
-    /// tetrahedra, or 240 of order 2, has one part a body, whatever its materials.
+    /// tetrahedra, or 240 of order 2, has one part a body, whatever its materials; rods are cut in lengths.
     Automatic,
     /// As [`Partition::Automatic`], with this number of parts.
     Subdomains(usize),
@@ -48,8 +48,8 @@ impl Partition {
         let tets = mesh.tets().len();
         let own = if mesh.order() == 2 { QUADRATIC } else { TETS };
         match self {
-            // bodies in one piece, but for cracks
-            Self::Automatic if tets < 2 * own => cut(&vec![0; tets], PartCount::Exactly(1)),
+            // bodies in one piece, but for cracks and rods
+            Self::Automatic if tets < 2 * own => cut(&vec![0; tets], PartCount::About(1)),
             Self::Automatic => even(PartCount::About((tets / own).min(MOST))),
             Self::Subdomains(count) => even(PartCount::Exactly(*count)),
             Self::Whole => Ok(Decomposition::whole(mesh)),

@@ -1,4 +1,5 @@
-//! Slices between planes, as the strain is in a long body: supports hold most of their nodes in one direction.
+//! Thin bodies that are not to bend as such: slices between planes, most of whose nodes supports hold in one direction, and
+//! rods.
 
 use crate::common::*;
 
@@ -46,4 +47,26 @@ fn a_slice_is_no_plate_that_bends() {
             "{layers} layers, order {order}: {held} products, {free}"
         );
     }
+}
+
+/// A strap on a floor, pulled at its end: a mesh so small that other bodies stay in one piece.
+#[test]
+fn a_rod_is_cut_in_lengths() {
+    let scene = || {
+        let strap = Brick::new([69.0, 2.0, 2.0], [69, 2, 2]).build().expect("strap");
+        let floor = Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3));
+        Scene::new(strap, uniform(2.1e5, 0.3))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::pressure(brick::Z_MAX, 1.0))
+            .with_load(Load::traction(brick::X_MAX, [1.0, 0.3, 0.0]))
+            .with_contact(floor)
+    };
+    let found = [scene(), scene().without_subdomains()].map(|scene| {
+        let (simulation, results) = run(scene, Settings::default());
+        (simulation.counters().products, results[0].displacement.clone())
+    });
+    let [(cut, u), (whole, other)] = &found;
+    println!("{cut} {whole}");
+    assert_close(u, other, 1e-5, "the same solution");
+    assert!(3 * cut <= *whole, "{cut} products, {whole}");
 }

@@ -2,11 +2,11 @@
 
 use super::compact::{compact, join_pieces};
 use super::cracks::split_at_cracks;
-use super::parts::expect_parts;
+use super::parts::{expect_parts, volumes_and_surfaces};
 use super::subdomains::DecompositionError;
 use crate::mesh::{TetMesh, connected_sets, extent};
 use crate::tables::Lists;
-use crate::tolerances::{BOX, EDGE_STEPS, FILLED, GRADED, LARGER, PLANE, SNAP, STRONGLY};
+use crate::tolerances::{BOX, EDGE_STEPS, FILLED, GRADED, LARGER, PLANE, ROD, ROD_BEND, SNAP, STRONGLY};
 use crate::vec3::{self, Vec3};
 
 /// How many parts [`even_parts`] makes.
@@ -15,7 +15,9 @@ pub enum PartCount {
     /// So many; more where bodies or groups are, or cracks split them.
     Exactly(usize),
     /// A number near by for which the parts of a body that fills its box are nearest to cubes; a sixth of it where
-    /// quadratic cells are graded so strongly along all axes that many parts would be flat.
+    /// quadratic cells are graded so strongly along all axes that many parts would be flat. Rods, more than eight times as
+    /// long as thick, have a part for each two thicknesses at least: in long parts, bending costs iterations. Of one part,
+    /// other bodies stay whole.
     About(usize),
 }
 
@@ -57,6 +59,7 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
         false => ([1.0; 3], [const { None }; 3]),
     };
     let graded = Some(cutter(shares)).filter(|cutter| cutter.shares.iter().any(Option::is_some));
+    let bulk = volumes_and_surfaces(mesh, &groups);
     let (mut slabs, mut next) = (vec![0; tets], 0);
     let mut whole = vec![false; members.count()];
     for group in 0..members.count() {
@@ -68,7 +71,11 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
         let cutter = layered.unwrap_or(&plain);
         let pieces = match count {
             PartCount::Exactly(_) => cutter.pieces(own, share),
-            PartCount::About(_) => cutter.nearest_to_cubes(own, if flat { share.div_ceil(LARGER) } else { share }),
+            PartCount::About(_) => match share.max(cutter.lengths(own, bulk[group])) {
+                1 if number == 1 => cutter.pieces(own, 1),
+                share if flat => cutter.nearest_to_cubes(own, share.div_ceil(LARGER)),
+                share => cutter.nearest_to_cubes(own, share),
+            },
         };
         whole[group] = layered.is_some() && pieces.iter().all(|piece| cutter.is_box(piece));
         for piece in pieces {
@@ -155,6 +162,19 @@ impl Cutter<'_> {
             }
         }
         best.1
+    }
+
+    /// How many pieces, twice as long as thick, these tetrahedra make if they are a rod; else one.
+    fn lengths(&self, tets: &[u32], [volume, surface]: [f64; 2]) -> usize {
+        let longest = self.size(tets).0.into_iter().fold(0.0, f64::max);
+        let thickness = 4.0 * volume / surface;
+        let is_rod = volume < ROD_BEND * longest * thickness.powi(2);
+        let times = volume / thickness.powi(3);
+        if is_rod && times > ROD {
+            (times / 2.0) as usize
+        } else {
+            1
+        }
     }
 
     /// Cuts these tetrahedra into `count` parts, 1 at least and one a tetrahedron at most.

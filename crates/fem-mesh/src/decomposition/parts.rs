@@ -2,6 +2,7 @@
 
 use crate::mesh::{NONE, TetMesh, connected_sets};
 use crate::tables::distinct;
+use crate::vec3;
 
 use super::subdomains::{Decomposition, DecompositionError};
 
@@ -89,4 +90,22 @@ pub(super) fn expect_parts(mesh: &TetMesh, parts: &[u32]) -> Result<(), Decompos
         return Err(DecompositionError::PartCount { given, tets });
     }
     Ok(())
+}
+
+/// Volume and surface of each part, by numbers from zero. Of a rod four times their ratio is the thickness.
+#[doc(hidden)]
+#[must_use]
+pub fn volumes_and_surfaces(mesh: &TetMesh, parts: &[u32]) -> Vec<[f64; 2]> {
+    let count = parts.iter().max().map_or(0, |&last| last as usize + 1);
+    let mut out = vec![[0.0; 2]; count];
+    for (tet, &part) in parts.iter().enumerate() {
+        let (corners, [volume, surface]) = (mesh.tet_points(tet), &mut out[part as usize]);
+        *volume += vec3::tet_volume(&corners);
+        for (face, other) in mesh.neighbours(tet).into_iter().enumerate() {
+            if other.is_none_or(|other| parts[other] != part) {
+                *surface += vec3::norm(vec3::area_vector(&[1, 2, 3].map(|k| corners[(face + k) % 4])));
+            }
+        }
+    }
+    out
 }

@@ -56,6 +56,50 @@ fn about_so_many_is_the_grid_nearest_by() {
     }
 }
 
+/// Straight, oblique and bent by half a circle; other bodies are not cut for their shape.
+#[test]
+fn rods_fall_into_lengths_of_about_twice_their_thickness() {
+    let rod = |long: f64, wide: f64, cells| Brick::new([long, wide, 1.0], cells).build().expect("a rod");
+    let straight = rod(30.0, 1.0, [60, 2, 2]);
+    let turned = |[x, y, z]: [f64; 3]| {
+        [
+            0.8 * x - 0.48 * y - 0.36 * z,
+            0.6 * x + 0.64 * y + 0.48 * z,
+            0.8 * z - 0.6 * y,
+        ]
+    };
+    let oblique = straight.map_points(turned).expect("turned");
+    let about = |turn: f64| move |[x, y, z]: [f64; 3]| ((x * turn / 30.0).sin_cos(), 30.0 / turn - y, z);
+    let bent = |turn| {
+        let place = about(turn);
+        straight.map_points(move |p| {
+            let ((sin, cos), radius, z) = place(p);
+            [radius * sin, -radius * cos, z]
+        })
+    };
+    let half = bent(std::f64::consts::PI).expect("bent");
+    let count = |mesh: &TetMesh| {
+        let parts = even_parts(mesh, &vec![0; mesh.tets().len()], PartCount::About(1)).expect("parts");
+        sizes(&parts).len()
+    };
+    for rod in [straight.clone(), oblique, half] {
+        let count = count(&rod);
+        assert!((12..=16).contains(&count), "{count}");
+    }
+    let nearly_a_ring = bent(6.2).expect("bent");
+    let strip = rod(16.0, 4.0, [32, 8, 2]);
+    assert!((9..=18).contains(&count(&strip)));
+    for whole in [nearly_a_ring, rod(6.0, 1.0, [12, 2, 2]), rod(30.0, 30.0, [12, 12, 1])] {
+        assert_eq!(count(&whole), 1);
+    }
+    // a rod beside a block
+    let beside = straight.map_points(|[x, y, z]| [x, y + 5.0, z]).expect("moved");
+    assert_eq!(
+        count(&rod(4.0, 4.0, [4, 4, 2]).append(&beside).expect("two")),
+        1 + count(&straight)
+    );
+}
+
 /// Parts that cut through long cells, and flat ones, take up to fifty times the iterations.
 #[test]
 fn graded_bricks_fall_into_boxes_that_are_not_flat() {
