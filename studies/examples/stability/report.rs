@@ -72,7 +72,7 @@ pub(crate) fn plain(line: &Line<'_>) -> String {
 }
 
 /// The document; what is measured stands in place of the words in capitals.
-const DOCUMENT: &str = include_str!("report.md");
+const DOCUMENT: &str = include_str!("report.txt");
 
 /// The document. `command` wrote it.
 pub(crate) fn document(lines: &[Line<'_>], command: &str) -> Result<String, Failure> {
