@@ -38,8 +38,8 @@ signorini_fem_mesh::errors! {
         BadMotion { support: usize, node: u32 } =
             "support {support}, node {node}: the prescribed displacement is not finite";
         ContradictorySupports { node: u32, first: usize, second: usize, case: u32, difference: f64 } =
-            "node {node}: supports {first} and {second} prescribe different displacements in the same direction (case \
-            {case}, difference {difference:e}); make them agree or remove one";
+            "node {node}: supports {first} and {second} prescribe different displacements in the same direction ({}\
+            difference {difference:e}); make them agree or remove one", later(*case);
         ContactNodeTwice { node: u32 } =
             "node {node} has two contact points with the same partner along the same normal, or is its own partner; \
             give each pair of nodes, and each obstacle of a node, once";
@@ -72,6 +72,15 @@ signorini_fem_mesh::errors! {
         DependentRows { node: u32 } =
             "node {node}: its rows depend on one another, no preconditioner can scale them; give each contact once";
         TooLarge { what: &'static str, count: usize } = "{what} = {count} is more than the 32-bit tables can number";
+    }
+}
+
+/// A displacement case after the first, which may be the only one.
+fn later(case: u32) -> String {
+    if case > 0 {
+        format!("case {case}, ")
+    } else {
+        String::new()
     }
 }
 

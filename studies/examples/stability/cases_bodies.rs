@@ -298,7 +298,7 @@ pub(crate) fn supports() -> Vec<Case> {
             },
         )
         .expect(Expect::Refused(
-            "supports 0 and 1 prescribe different displacements in the same direction (case 0, difference 1e-3)",
+            "supports 0 and 1 prescribe different displacements in the same direction (difference 1e-3)",
         )),
         Case::new(
             GROUP,

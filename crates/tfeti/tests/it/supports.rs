@@ -85,6 +85,11 @@ fn doubled_supports_are_removed_and_contradictions_refused() {
         matches!(error, TfetiError::ContradictorySupports { second: 1, case: 0, .. }),
         "{error}"
     );
+    // the first case may be the only one
+    assert!(error.to_string().contains("direction (difference "), "{error}");
+    contradicting[1].motions = moved(1, [1e-3, 0.0, 0.0]);
+    let error = gluing(&b, &contradicting, &[]).unwrap_err();
+    assert!(error.to_string().contains("direction (case 1, difference "), "{error}");
 
     // Equal motions of skew directions agree.
     let w = [1e-3, -2e-3, 5e-4];
