@@ -2,6 +2,7 @@
 
 use crate::status::FreeCoupling;
 use signorini_fem_mesh as fem;
+use signorini_fem_mesh::internal::{number, place};
 use signorini_qp::QpError;
 use signorini_tfeti::TfetiError;
 
@@ -64,24 +65,24 @@ signorini_fem_mesh::errors! {
         Output(fem::output::OutputError),
     } {
         Coefficient { contact: usize, what: &'static str, value: f64 } =
-            "friction of contact {contact}: the {what} is {value}; it must be finite and not negative (a decay rate \
-            positive)";
+            "friction of contact {contact}: the {what} is {}; it must be finite and not negative (a decay rate \
+            positive)", number(*value);
         ContactValue { contact: usize, name: &'static str, value: f64, range: &'static str } =
-            "contact {contact}: {name} = {value} is outside its range {range}";
+            "contact {contact}: {name} = {} is outside its range {range}", number(*value);
         Compliance { contact: usize, value: f64 } =
-            "contact {contact}: its compliance is {value}; it must be finite and not negative, a length over a stress, \
-            0 for the exact law";
+            "contact {contact}: its compliance is {}; it must be finite and not negative, a length over a stress, \
+            0 for the exact law", number(*value);
         EmptyTable { contact: usize } =
             "friction of contact {contact}: the table of coefficients has no entries; give at least one slip rate \
             with its coefficient";
         TableRate { contact: usize, entry: usize, rate: f64 } =
-            "friction of contact {contact}: the slip rate of entry {entry} (from 0) of the table is {rate}, which \
-            is not finite or out of order; give finite slip rates, each larger than the one before";
+            "friction of contact {contact}: the slip rate of entry {entry} (from 0) of the table is {}, which \
+            is not finite or out of order; give finite slip rates, each larger than the one before", number(*rate);
         CoefficientAt { node: u32, rate: f64, value: f64 } =
-            "friction at node {node}: the law gives the coefficient {value} at slip rate {rate}; it must be \
-            finite and not negative";
+            "friction at node {node}: the law gives the coefficient {} at slip rate {}; it must be \
+            finite and not negative", number(*value), number(*rate);
         SlipBound { node: u32, value: f64 } =
-            "friction at node {node}: the slip bound {value} must be finite and not negative";
+            "friction at node {node}: the slip bound {} must be finite and not negative", number(*value);
         Formula { alpha: f64, beta: f64, gamma: f64, rule: &'static str } =
             "difference formula {alpha}, {beta}, {gamma}: {rule}; use PAPER or BACKWARD_EULER";
         NoSteps = "the analysis has no step or more than a hundred million; ask for at least one step";
@@ -94,8 +95,8 @@ signorini_fem_mesh::errors! {
             "{what} {index}: no facet has the tag {tag}; the mesh has {known}";
         Spring { spring: usize, reason: &'static str } = "spring {spring}: {reason}";
         SpringStiffness { spring: usize, value: f64 } =
-            "spring {spring}: its stiffness is {value}; it must be finite and not negative, and some component \
-            positive";
+            "spring {spring}: its stiffness is {}; it must be finite and not negative, and some component \
+            positive", number(*value);
         Coupling { coupling: usize, node: Option<u32>, reason: &'static str } =
             "coupling {coupling}{}: {reason}", node.map_or(String::new(), |n| format!(", node {n}"));
         UnknownCoupling { load: usize, coupling: usize, couplings: usize } =
@@ -105,16 +106,17 @@ signorini_fem_mesh::errors! {
         ValueCount { support: usize, values: usize, nodes: usize } =
             "support {support}: {values} displacements for {nodes} nodes; give one for all, or one a node";
         SupportAxis { support: usize, point: [f64; 3], axis: [f64; 3] } =
-            "support {support}: its axis through {point:?} along {axis:?} must be finite, and the direction not zero";
+            "support {support}: its axis through {} along {axis:?} must be finite, and the direction not zero",
+            place(point);
         OnAxis { support: usize, node: u32 } =
             "support {support}: node {node} lies on its axis, where no direction is radial or tangential; leave it out, \
             or hold it along x, y, z by a support of its own";
         MotionNotHeld { support: usize, node: u32, value: f64, along: &'static str } =
-            "support {support}: it is to move node {node} by {value} {along}, a direction that it does not hold; hold this \
-            direction, too (Support::components), or make this part of the motion zero";
+            "support {support}: it is to move node {node} by {} {along}, a direction that it does not hold; hold this \
+            direction, too (Support::components), or make this part of the motion zero", number(*value);
         Gap { contact: usize, node: u32, position: [f64; 3], value: f64 } =
-            "contact {contact}: the gap at node {node}, at {position:?}, is {value}; it must be finite at every \
-            node of the surface";
+            "contact {contact}: the gap at node {node}, {}, is {value}; it must be finite at every node of the surface",
+            place(position);
         SupportInObstacle { node: u32, depth: f64, time: f64, displacement: f64, gap: f64 } =
             "support at node {node}: at time {time} s it holds this contact node {depth} inside the obstacle \
             (normal displacement {displacement}, gap {gap}); shorten the motion of the support, correct the gap \
@@ -148,9 +150,13 @@ signorini_fem_mesh::errors! {
             {turn:.1} degrees on that way at node {node}; along the body's normals the gap is known for ways of less \
             than {most:.1} degrees; give one direction (with_normal), for which any way is exact, or a shorter way";
         ObstacleGradient { contact: usize, node: u32, position: [f64; 3], gradient: [f64; 3] } =
-            "contact {contact}: at node {node}, at {position:?}, the gradient of the distance to the obstacle is \
+            "contact {contact}: at node {node}, {}, the gradient of the distance to the obstacle is \
             {gradient:?}, which is no unit vector; give a signed distance in m, positive outside, with its gradient, \
-            or leave facets far from the obstacle out of the contact";
+            or leave facets far from the obstacle out of the contact", place(position);
+        ObstacleDistance { contact: usize, node: u32, position: [f64; 3], slope: f64 } =
+            "contact {contact}: at node {node}, {}, what is given as distance to the obstacle changes by {slope:.2e} m \
+            per m along its gradient, a distance by 1; give the distance in m, of another function its value over the \
+            length of its gradient", place(position);
         FrictionAxis { contact: usize, node: u32, axis: [f64; 3] } =
             "contact {contact}: the axis of friction {axis:?} gives no direction along the surface at node {node}; it \
             must be finite, not zero and not normal to the surface: give curved sides in several contacts";
@@ -167,10 +173,19 @@ signorini_fem_mesh::errors! {
             differently, give way differently or bring other gaps, so that either may become the nearer one; leave the \
             facets around it out of one of the surfaces, or give both the same motion, compliance and gap";
         HistoryValue { what: &'static str, index: usize, time: f64, value: f64 } =
-            "{what} {index}: its history gives {value} at time {time} s";
+            "{what} {index}: its history gives {} at time {time} s", number(*value);
         Span { what: &'static str, index: usize, start: f64, end: f64 } =
             "{what} {index}: it is to act from {start} s to {end} s; give finite times, not negative, the end later than \
             the start";
+        Idle { what: &'static str, index: usize, setting: &'static str, needs: &'static str } =
+            "{what} {index}: {setting} says nothing without {needs}; give both, or leave it out";
+        TwoGaps { contact: usize } =
+            "contact {contact}: with_gap and with_gap_field each give its gap, and only one can count; leave one out, \
+            or let the field contain the constant";
+        TaggedSides { bodies: usize } =
+            "pairs are looked for where the boundary has no tags, and that of {bodies} bodies has some everywhere but \
+            on one body at most; take the tags off the sides that may touch (TetMesh::tag_boundary), or name them \
+            (Contact::between)";
         TooLarge { part: crate::part::Part, place: String, value: f64, unit: &'static str, most: f64 } =
             "{part}{place}: {value:e} {unit} are too much, squares of what follows from it would overflow (at most {most:e}); check \
             its units and its history";
@@ -189,7 +204,7 @@ signorini_fem_mesh::errors! {
             held neither by supports nor by contact ({motions}); add supports that stop them{}",
             freed_remedy(coupling.as_deref());
         Setting { name: &'static str, value: f64, range: &'static str } =
-            "setting {name} = {value} is outside its range {range}";
+            "setting {name} = {} is outside its range {range}", number(*value);
         Doubling { reason: &'static str } = "step doubling: {reason}";
         Finished { steps: usize } = "the scene has {steps} steps and all are solved";
         Observer { step: usize, source: Box<dyn std::error::Error + Send + Sync> } =

@@ -67,11 +67,13 @@ impl ContactError {
             | Self::ObstacleNormal { contact, .. }
             | Self::ObstacleSide { contact, .. }
             | Self::NoPartner { contact, .. }
+            | Self::TwoGaps { contact }
             | Self::Tied { contact }
             | Self::MovedPartner { contact } => vec![Part::Contact(*contact)],
             Self::Gap { contact, node, .. }
             | Self::MovedField { contact, node, .. }
             | Self::ObstacleGradient { contact, node, .. }
+            | Self::ObstacleDistance { contact, node, .. }
             | Self::FrictionAxis { contact, node, .. }
             | Self::TurnedNormal { contact, node, .. } => vec![Part::Contact(*contact), Part::Node(*node)],
             Self::Overlap {
@@ -107,6 +109,7 @@ impl ContactError {
             }
             Self::UnknownTag { what, index, .. }
             | Self::HistoryValue { what, index, .. }
+            | Self::Idle { what, index, .. }
             | Self::Span { what, index, .. } => Part::of_scene(what, *index).into_iter().collect(),
             Self::Coupling { coupling, node, .. } => {
                 let coupling = [Part::Coupling(*coupling)].into_iter();

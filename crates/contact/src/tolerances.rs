@@ -70,6 +70,14 @@ pub(crate) const STEEP: f64 = 0.05;
 /// little, that of another function is not near.
 pub(crate) const GRADIENT: f64 = 1e-3;
 
+/// How far the change of what is given as a distance may be from the way along its gradient, over that: of one that is
+/// interpolated, or nearly one, it is a little; squares, multiples and other units are not near.
+pub(crate) const DISTANCE: f64 = 0.1;
+
+/// That way, over the root of the area of the contact: less than a facet, and much more than the rounding of
+/// coordinates.
+pub(crate) const DISTANCE_WAY: f64 = 1e-5;
+
 /// Part of an axis of friction that must lie along the surface to give a direction there.
 pub(crate) const AXIS: f64 = 1e-3;
 

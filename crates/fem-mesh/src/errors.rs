@@ -1,5 +1,17 @@
 //! How errors are written down: once.
 
+/// A number in words, with an exponent where it would have many digits.
+pub fn number(value: f64) -> String {
+    let text = format!("{value:?}");
+    text.strip_suffix(".0").map(str::to_owned).unwrap_or(text)
+}
+
+/// A place in words, with five digits.
+pub fn place(place: &[f64; 3]) -> String {
+    let [x, y, z] = place.map(|c| number(format!("{c:.4e}").parse().unwrap_or(c)));
+    format!("({x}, {y}, {z})")
+}
+
 /// Defines an error. A variant is `Name { fields } = "message";`: the message says what is wrong, where, and the
 /// remedy; it is the documentation of the variant, too, and what a `main` that returns the error prints. Behind `from`
 /// stand errors of other crates that are passed on as they are.
@@ -50,4 +62,17 @@ macro_rules! errors {
             }
         }
     };
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_and_places_are_short() {
+        let told = [0.0, -1.0, 0.3, 1e300, -2.5e-9, f64::NAN].map(number);
+        assert_eq!(told, ["0", "-1", "0.3", "1e300", "-2.5e-9", "NaN"]);
+        assert_eq!(place(&[1.0 / 3.0, -2.0, 1e-30]), "(0.33333, -2, 1e-30)");
+        assert_eq!(place(&[f64::NAN, f64::INFINITY, 123_456.0]), "(NaN, inf, 123460)");
+    }
 }

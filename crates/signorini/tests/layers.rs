@@ -65,7 +65,7 @@ const CRATES: [(&str, &[&str]); 6] = [
             "decomposition",
             "element",
             "material mesh",
-            "tables tolerances vec3 quadrature",
+            "tables tolerances vec3 quadrature errors",
         ],
     ),
 ];

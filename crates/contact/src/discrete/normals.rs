@@ -1,8 +1,8 @@
 //! Directions of contact that the scene gives: one for all nodes, or those of an obstacle.
 
 use crate::error::ContactError;
-use crate::scene::{Contact, ContactNormal};
-use crate::tolerances::{ALONG, AXIS, FACING, GRADIENT, SAME_NORMAL};
+use crate::scene::{Contact, ContactNormal, Gap};
+use crate::tolerances::{ALONG, AXIS, DISTANCE_WAY, FACING, GRADIENT, SAME_NORMAL};
 use signorini_fem_mesh::vec3::{cross, dot, norm, scale, sub, unit};
 use signorini_fem_mesh::{Surface, SurfaceFrame};
 
@@ -68,6 +68,53 @@ fn check_side(
     })
 }
 
+fn is_unit(gradient: [f64; 3]) -> bool {
+    (norm(gradient) - 1.0).abs() <= GRADIENT
+}
+
+/// Refuses what is measured as a distance and is none, by how it changes over a way.
+fn check_distance(
+    (index, contact): (usize, &Contact),
+    (node, position): (u32, [f64; 3]),
+    found: (f64, [f64; 3]),
+    way: f64,
+) -> Result<(), ContactError> {
+    let shape = contact.shape.as_ref().filter(|_| matches!(contact.gap, Gap::Obstacle));
+    match shape.and_then(|shape| shape.steep(position, found, way)) {
+        Some(slope) => Err(ContactError::ObstacleDistance {
+            contact: index,
+            node,
+            position,
+            slope,
+        }),
+        None => Ok(()),
+    }
+}
+
+/// The same of all nodes that face an obstacle whose distance is measured along other directions than its own.
+fn check_along(
+    (index, contact): (usize, &Contact),
+    surface: &Surface,
+    place: impl Fn(usize) -> [f64; 3],
+    way: f64,
+) -> Result<(), ContactError> {
+    let Some(shape) = contact.shape.as_ref().filter(|shape| shape.is_own()) else {
+        return Ok(());
+    };
+    for (local, (&node, own)) in surface.nodes().iter().zip(surface.frames()).enumerate() {
+        let position = place(local);
+        let found = shape.distance(position);
+        let along = match contact.normal {
+            ContactNormal::Fixed(normal) => unit(normal),
+            _ => own.normal,
+        };
+        if dot(found.1, along) < -FACING && is_unit(found.1) {
+            check_distance((index, contact), (node, position), found, way)?;
+        }
+    }
+    Ok(())
+}
+
 /// The frame at each node of a contact with the normals of its obstacle, none where the body does not face it; empty for
 /// all others. `place` is where the force of a node acts.
 pub(super) fn shape_frames(
@@ -76,9 +123,14 @@ pub(super) fn shape_frames(
     surface: &Surface,
     place: impl Fn(usize) -> [f64; 3],
 ) -> Result<Vec<Option<SurfaceFrame>>, ContactError> {
-    let (Some(shape), ContactNormal::Obstacle) = (&contact.shape, contact.normal) else {
+    let Some(shape) = &contact.shape else {
         return Ok(Vec::new());
     };
+    let way = DISTANCE_WAY * surface.total_area().sqrt();
+    if contact.normal != ContactNormal::Obstacle {
+        check_along((index, contact), surface, place, way)?;
+        return Ok(Vec::new());
+    }
     let frame = |(local, (&node, own)): (usize, (&u32, &SurfaceFrame))| {
         let position = place(local);
         let (distance, gradient) = shape.distance_against(position, own.normal);
@@ -91,15 +143,18 @@ pub(super) fn shape_frames(
                 value,
             });
         }
-        let is_unit = (norm(gradient) - 1.0).abs() <= GRADIENT;
-        let frame = SurfaceFrame::from_normal(gradient.map(|c| -c)).filter(|_| is_unit);
+        let frame = SurfaceFrame::from_normal(gradient.map(|c| -c)).filter(|_| is_unit(gradient));
         let frame = frame.ok_or(ContactError::ObstacleGradient {
             contact: index,
             node,
             position,
             gradient,
         })?;
-        Ok((frame.normal_part(own.normal) > FACING).then_some(frame))
+        if frame.normal_part(own.normal) <= FACING {
+            return Ok(None);
+        }
+        check_distance((index, contact), (node, position), (distance, gradient), way)?;
+        Ok(Some(frame))
     };
     let nodes = surface.nodes().iter().zip(surface.frames());
     let frames: Vec<Option<SurfaceFrame>> = nodes.enumerate().map(frame).collect::<Result<_, _>>()?;

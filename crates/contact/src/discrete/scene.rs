@@ -123,6 +123,12 @@ impl DiscreteScene {
             let friction = scene.contacts[p.surface].friction();
             (friction, p.node(), p.position)
         }))?;
+        // those that no point asks, now or at all
+        let mut bounds = (scene.contacts.iter().enumerate()).filter_map(|(k, c)| Some((k, c.friction().bad_bound()?)));
+        if let Some((contact, value)) = bounds.next() {
+            let what = "slip bound";
+            return Err(ContactError::Coefficient { contact, what, value });
+        }
         Ok(Self {
             decomposition,
             supports,

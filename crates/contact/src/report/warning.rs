@@ -2,6 +2,7 @@
 
 use crate::names::Names;
 use crate::part::Part;
+use signorini_fem_mesh::internal::{number, place as told};
 use std::path::PathBuf;
 
 signorini_fem_mesh::errors! {
@@ -30,44 +31,45 @@ signorini_fem_mesh::errors! {
         LargeDisplacement { step: usize, node: u32, place: [f64; 3], displacement: f64, extent: f64 } =
             "step {step}: the displacement of node {node} at {} is {displacement:.3e}, the body is {extent:.3e} long; \
             displacements count as small here, so from a tenth of the body on shapes and forces are wrong: look at the \
-            units of loads, material and gaps, and at the supports", at(place);
+            units of loads, material and gaps, and at the supports", told(place);
         LargeRotation { step: usize, node: u32, place: [f64; 3], turn: f64 } =
             "step {step}: the body of node {node} at {} turns by {turn:.1} degrees; rotations count as small here, so that \
             normals, places of contact and lengths are those of the start: support the body against it, or reduce the \
-            loads or motions that turn it", at(place);
+            loads or motions that turn it", told(place);
         LargeStrain { step: usize, tet: usize, place: [f64; 3], strain: f64 } =
             "step {step}: the strain of tetrahedron {tet} at {} is {:.1} %; strains count as small here, up to 5 %: \
             look at the units of loads and material; where it is a corner or a clamped edge alone, its neighbourhood is \
-            not to be trusted", at(place), 100.0 * strain;
+            not to be trusted", told(place), 100.0 * strain;
         LongSlip { step: usize, contact: usize, node: u32, place: [f64; 3], slip: f64, edge: f64 } =
             "step {step}: node {node} of contact {contact} at {} slides by {slip:.3e}, its facets are {edge:.3e} long; \
             it keeps the normal and the partner that it began with: take smaller steps, and where the other side is not \
-            plane a shorter way", at(place);
+            plane a shorter way", told(place);
         EdgeOverlap { step: usize, contact: usize, node: u32, place: [f64; 3], overlap: f64, largest: f64 } =
             "step {step}: the sides of contact {contact} are {overlap:.3e} inside each other at node {node}, {}, where \
             another contact has a condition and this one, between meshes that do not match, has none (displacements are up \
-            to {largest:.3e}): take smaller facets there, or meshes that match", at(place);
+            to {largest:.3e}): take smaller facets there, or meshes that match", told(place);
         TurnedNormal { step: usize, contact: usize, node: u32, place: [f64; 3], turn: f64 } =
             "step {step}: node {node} of contact {contact} at {} is displaced to where the normal of its obstacle is \
             another one by {turn:.1} degrees; it keeps the one that it began with, so forces are missing or \
-            point aside there: make the way along the obstacle small against its radius of curvature", at(place);
+            point aside there: make the way along the obstacle small against its radius of curvature", told(place);
         LargeGap { contact: usize, node: u32, place: [f64; 3], gap: f64, extent: f64 } =
             "contact {contact} begins {:.3e} {} its obstacle even at the nearest node, {node} at {}, and the body is \
             {extent:.3e} long; look at the unit of the gap and at the places of the bodies",
-            gap.abs(), if *gap < 0.0 { "inside" } else { "from" }, at(place);
+            gap.abs(), if *gap < 0.0 { "inside" } else { "from" }, told(place);
         FacetedOverlap { contact: usize, node: u32, place: [f64; 3], overlap: f64, sagitta: f64 } =
             "contact {contact} begins {overlap:.3e} inside its partner at node {node}, {}, between facets that are \
             {sagitta:.3e} beside the curve that they stand for, which is measured with it and presses all the same: tell \
             the gap (with_gap, 0 for sides that touch), or take smaller facets, or mid-nodes on the curve",
-            at(place);
+            told(place);
         ClosedOverlaps { contact: usize, node: u32, place: [f64; 3], overlap: f64, points: usize, contacts: usize } =
             "{points} point(s) of {contacts} contact(s) begin inside their partner, most by {overlap:.3e} at node {node} of \
             contact {contact}, {}, because straight facets stand for a hollow side; in the mean the sides touch, and so \
             do these points: to press, tell the gap (with_gap, negative), or take Contact::with_measured_overlaps",
-            at(place);
+            told(place);
         LargeCoefficient { contact: usize, node: u32, place: [f64; 3], coefficient: f64 } =
-            "friction of contact {contact}: the coefficient at node {node}, {}, is {coefficient}; hardly any pair of \
-            materials has so much: {coefficient} in per cent is {}", at(place), 0.01 * coefficient;
+            "friction of contact {contact}: the coefficient at node {node}, {0}, is {1}; hardly any pair of \
+            materials has so much: {1} in per cent is {2}",
+            told(place), number(*coefficient), number(coefficient / 100.0);
         NothingActs { held: bool } =
             "no load acts, no support or obstacle moves and no sides overlap, so that all results are zero{}: look for \
             loads, or supports that move, that are missing",
@@ -83,7 +85,7 @@ signorini_fem_mesh::errors! {
             "{nodes} node(s) of the body of node {node} coincide with nodes of the body of node {partner}, these two at \
             {}, and nothing acts between the bodies, so that they pass through each other: merge the nodes \
             (mesh::merge_nodes) if the bodies are one, tie their sides (Contact::tied), or let them touch \
-            (Contact::between)", at(place);
+            (Contact::between)", told(place);
         UnusedMaterials { regions: Vec<u32>, present: Vec<u32> } =
             "materials are given for the regions {regions:?}, which the mesh does not have; it has {present:?}: look at \
             the numbers, or leave them out";
@@ -93,7 +95,7 @@ signorini_fem_mesh::errors! {
         CoarseMesh { step: usize, error: f64, tet: usize, place: [f64; 3] } =
             "step {step}: the mesh leaves an estimated error of {:.0} % in the energy norm, most of it at tetrahedron \
             {tet}, {}; elements are too stiff there, in bending above all linear ones: refine there, and compare",
-            100.0 * error, at(place);
+            100.0 * error, told(place);
         DamagedCheckpoint { path: PathBuf, reason: String, taken: PathBuf } =
             "the newest checkpoint is damaged ({reason}); the run goes on from the one before, {}, and the damaged one \
             is kept as {}: look at the disk", taken.display(), path.display();
@@ -136,6 +138,19 @@ impl Warning {
         }
     }
 
+    /// What a result shows of it, in a few words; nothing of what a scene shows.
+    pub(crate) fn brief(&self) -> Option<String> {
+        Some(match self.plain() {
+            Self::LargeDisplacement { displacement, .. } => format!("displacement of {displacement:.1e}"),
+            Self::LargeRotation { turn, .. } => format!("rotation by {turn:.1} degrees"),
+            Self::LargeStrain { strain, .. } => format!("strain of {:.1} %", 100.0 * strain),
+            Self::LongSlip { slip, .. } => format!("slip of {slip:.1e}"),
+            Self::EdgeOverlap { overlap, .. } => format!("overlap of {overlap:.1e}"),
+            Self::TurnedNormal { turn, .. } => format!("normal turned by {turn:.1} degrees"),
+            _ => return None,
+        })
+    }
+
     /// It behind the names of what it speaks of.
     pub(crate) fn told(self, names: &Names) -> Self {
         match names.of(self.parts()) {
@@ -154,9 +169,4 @@ impl Warning {
             _ => self,
         }
     }
-}
-
-/// A place in words.
-fn at([x, y, z]: &[f64; 3]) -> String {
-    format!("({x:.4e}, {y:.4e}, {z:.4e})")
 }

@@ -42,8 +42,12 @@ pub struct Contact {
     /// Facets of the other body; none for a rigid obstacle.
     pub(crate) partner: Vec<FacetTag>,
     pub(crate) gap: Gap,
+    /// Whether a constant gap and a gap field were given.
+    pub(super) given: [bool; 2],
     pub(crate) normal: ContactNormal,
     pub(crate) friction: Friction,
+    /// Whether a law of friction was given, be it none.
+    pub(super) law_given: bool,
     /// Axis along which the law of friction holds, and how many times as much there is at right angles to it.
     pub(crate) friction_axis: Option<([f64; 3], f64)>,
     /// Angle of a crease, degrees.
@@ -73,8 +77,10 @@ impl Contact {
             tags: vec![tag],
             partner: Vec::new(),
             gap: Gap::None,
+            given: [false; 2],
             normal: ContactNormal::Body,
             friction: Friction::None,
+            law_given: false,
             friction_axis: None,
             crease: CREASE,
             motion: None,
@@ -165,7 +171,10 @@ impl Contact {
         // what has no direction stays as it is, and is refused with the scene
         let unit = outward.map(|c| if length > 0.0 { c / length } else { c });
         let gap = move |x: [f64; 3]| (0..3).map(|c| (x[c] - point[c]) * unit[c]).sum();
-        Self::rigid(tag).with_normal(unit.map(|c| -c)).with_gap_field(gap)
+        Self {
+            gap: Gap::Field(Function(Arc::new(gap))),
+            ..Self::rigid(tag).with_normal(unit.map(|c| -c))
+        }
     }
 
     /// Adds facets to this contact. For another gap, normal or friction law add another contact to the scene
@@ -175,9 +184,11 @@ impl Contact {
         self
     }
 
-    /// A constant gap in m; 0 for surfaces that touch, whatever their coordinates.
+    /// A constant gap in m; 0 for surfaces that touch, whatever their coordinates. It takes the place of the distance
+    /// to an obstacle or another body; beside a [field](Self::with_gap_field) it is refused.
     pub fn with_gap(mut self, gap: f64) -> Self {
         self.gap = Gap::Constant(gap);
+        self.given[0] = true;
         self
     }
 
@@ -185,6 +196,7 @@ impl Contact {
     /// obstacle [moves](Self::with_motion) along the surface, it is also evaluated beside the surface.
     pub fn with_gap_field(mut self, gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
         self.gap = Gap::Field(Function(Arc::new(gap)));
+        self.given[1] = true;
         self
     }
 
@@ -318,13 +330,14 @@ impl Contact {
     /// Sets the friction law. A bound or coefficient that is a constant zero means no friction.
     pub fn with_friction(mut self, friction: Friction) -> Self {
         self.friction = if friction.is_zero() { Friction::None } else { friction };
+        self.law_given = true;
         self
     }
 
     /// Orthotropic friction: the law holds along `axis`, projected to the surface; at right angles to it friction is
     /// `ratio` times as large. Friction forces are bounded by an ellipse, and points slide along its normal (associated
     /// rule), not against the force. [`PointState::slip_bound`](crate::PointState::slip_bound)
-    /// is the bound along the axis.
+    /// is the bound along the axis. It needs a [law](Self::with_friction), be it zero.
     pub fn with_friction_axis(mut self, axis: [f64; 3], ratio: f64) -> Self {
         self.friction_axis = Some((axis, ratio));
         self

@@ -51,6 +51,14 @@ impl Friction {
         }
     }
 
+    /// A constant slip bound that cannot be meant.
+    pub(crate) fn bad_bound(&self) -> Option<f64> {
+        match self {
+            Self::Tresca(SlipBound::Stress(value)) => Some(*value).filter(|value| !is_good(*value)),
+            _ => None,
+        }
+    }
+
     /// Whether the coefficient depends on the slip rate.
     pub(crate) fn depends_on_rate(&self) -> bool {
         matches!(self, Self::Coulomb(c) if c.depends_on_rate())

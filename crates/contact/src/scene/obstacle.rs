@@ -2,7 +2,7 @@
 
 use super::facets::Facets;
 use crate::error::ContactError;
-use crate::tolerances::{NEWTON, RAY, RAY_END, STEEP};
+use crate::tolerances::{DISTANCE, NEWTON, RAY, RAY_END, STEEP};
 use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
 use std::sync::Arc;
@@ -34,18 +34,25 @@ type Field = dyn Fn([f64; 3], f64, Option<[f64; 3]>) -> (f64, [f64; 3]) + Send +
 pub struct Obstacle {
     field: Function<Field>,
     side: f64,
+    /// Whether the distance is a function of the user.
+    own: bool,
     /// What has to be finite and positive, with its name.
     sizes: Vec<(&'static str, f64)>,
 }
 
 impl Obstacle {
     /// Any shape: its signed distance (m, positive outside) and the gradient of that. Both are evaluated at nodes of
-    /// the body, with quadratic elements also beside them, where the gradient must have length 1 to within a thousandth.
+    /// the body, with quadratic elements also beside them. There the gradient must have length 1 to within a
+    /// thousandth, and along it the distance must change by the way to within a tenth. Another function that is zero on
+    /// the obstacle is none; near the obstacle its value over the length of its gradient is nearly one.
     pub fn from_distance(
         distance: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static,
         gradient: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static,
     ) -> Self {
-        Self::new(Vec::new(), move |x| (distance(x), gradient(x)))
+        Self {
+            own: true,
+            ..Self::new(Vec::new(), move |x| (distance(x), gradient(x)))
+        }
     }
 
     /// The half-space below a plane: `point` lies on the plane, `outward` points out of the obstacle.
@@ -91,6 +98,7 @@ impl Obstacle {
         Ok(Self {
             field: Function(Arc::new(move |x, side, against| facets.distance(x, side, against))),
             side: 1.0,
+            own: false,
             sizes: Vec::new(),
         })
     }
@@ -114,6 +122,7 @@ impl Obstacle {
         Self {
             field: Function(Arc::new(turned) as Arc<Field>),
             side: 1.0,
+            own: false,
             sizes,
         }
     }
@@ -126,6 +135,21 @@ impl Obstacle {
     /// The same; on edges and corners of surfaces with the gradient that is most opposite to a direction.
     pub(crate) fn distance_against(&self, place: [f64; 3], against: [f64; 3]) -> (f64, [f64; 3]) {
         (self.field)(place, self.side, Some(against))
+    }
+
+    /// Whether its distance is a function of the user.
+    pub(crate) fn is_own(&self) -> bool {
+        self.own
+    }
+
+    /// How much a distance given by a function changes along its gradient, over a way; one side of the place is enough.
+    /// `None` where that is next to 1 or nothing is known, and of other shapes.
+    pub(crate) fn steep(&self, place: [f64; 3], (distance, gradient): (f64, [f64; 3]), way: f64) -> Option<f64> {
+        let slope = |way: f64| (self.distance(add(place, scale(way, gradient))).0 - distance) / way;
+        let is_good = |slope: &f64| (slope - 1.0).abs() <= DISTANCE;
+        let asked = self.own && distance.is_finite();
+        let slopes = if asked { [way, -way].map(slope) } else { [1.0; 2] };
+        (!slopes.iter().any(is_good)).then_some(slopes[0])
     }
 
     /// The way along a direction from a place to the obstacle, m, negative inside; the shortest distance where that

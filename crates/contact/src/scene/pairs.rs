@@ -59,10 +59,17 @@ impl ContactPair {
     /// ```
     ///
     /// # Errors
-    /// [`ContactError::Setting`] unless `reach` is positive and finite.
+    /// [`ContactError::Setting`] unless `reach` is positive and finite; [`ContactError::TaggedSides`] if no two of
+    /// several bodies have facets without a tag, as those of [`Brick`](signorini_fem_mesh::Brick), which all have one.
     pub fn find(mesh: TetMesh, reach: f64) -> Result<(TetMesh, Vec<Self>), ContactError> {
         ContactError::check(reach.is_finite() && reach > 0.0, "reach", reach, "(0, inf)")?;
         let boundary = Boundary::new(&mesh);
+        let bodies = boundary.bodies.iter().copied().collect::<BTreeSet<u32>>().len();
+        let open = boundary.bodies.iter().zip(&boundary.tags);
+        let open: BTreeSet<u32> = open.filter_map(|(body, tag)| tag.is_none().then_some(*body)).collect();
+        if bodies > 1 && open.len() < 2 {
+            return Err(ContactError::TaggedSides { bodies });
+        }
         let seen: Vec<Vec<(u32, f64)>> = (0..boundary.corners.len())
             .into_par_iter()
             .map(|facet| boundary.seen_from(facet, reach))

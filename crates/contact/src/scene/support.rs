@@ -215,9 +215,9 @@ impl Support {
         self
     }
 
-    /// The displacements at which it [starts](Self::with_start), if it does, count `history(t)` times: as this falls from
+    /// The displacements at which it [starts](Self::with_start) count `history(t)` times: as this falls from
     /// one to zero, the nodes come back to where they were at rest, or, with a [motion](Self::with_motion) that grows
-    /// meanwhile, to a place that is known beforehand.
+    /// meanwhile, to a place that is known beforehand. Of a support without a start it is refused.
     pub fn with_fading(mut self, history: History) -> Self {
         self.fading = Some(history);
         self

@@ -70,6 +70,15 @@ impl Scene {
                 end,
             });
         }
+        let mut supports = self.supports.iter();
+        if let Some(index) = supports.position(|s| s.fading.is_some() && s.span.start.is_none()) {
+            return Err(ContactError::Idle {
+                what: "support",
+                index,
+                setting: "with_fading",
+                needs: "with_start",
+            });
+        }
         for (index, spring) in self.springs.iter().enumerate() {
             spring.validate(index, self.mesh.points().len())?;
             if let Place::Tag(tag) = spring.place
@@ -187,6 +196,17 @@ impl Scene {
         }
         let crease = contact.crease;
         check(crease > 0.0 && crease <= 180.0, "crease", crease, "(0, 180]")?;
+        if contact.given == [true; 2] {
+            return Err(ContactError::TwoGaps { contact: index });
+        }
+        if contact.friction_axis.is_some() && !contact.law_given {
+            return Err(ContactError::Idle {
+                what: "contact",
+                index,
+                setting: "with_friction_axis",
+                needs: "with_friction",
+            });
+        }
         if let Some((_, ratio)) = contact.friction_axis {
             let name = "ratio of friction across its axis";
             let good = ratio.is_finite() && ratio > 0.0;

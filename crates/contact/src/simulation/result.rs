@@ -275,8 +275,8 @@ impl StepResult {
     }
 }
 
-/// A line: the time, how many contact points touch and slide, and the certificate; of a step that did not converge its
-/// status, too.
+/// A line: the time, how many contact points touch and slide, its [warnings](StepResult::warnings) in a few words, and
+/// the certificate; of a step that did not converge its status, too.
 impl fmt::Display for StepResult {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         // seven digits
@@ -287,6 +287,12 @@ impl fmt::Display for StepResult {
             if self.model.plan.effects.friction != FrictionKind::None {
                 write!(f, "{slip} slide, ")?;
             }
+        }
+        let warnings: Vec<String> = self.warnings().iter().filter_map(Warning::brief).collect();
+        match warnings.len() {
+            0 => {}
+            1 => write!(f, "warning ({}), ", warnings[0])?,
+            count => write!(f, "{count} warnings ({}), ", warnings.join(", "))?,
         }
         write!(f, "certificate {:.0e}", self.certificate().largest())?;
         match self.failure() {

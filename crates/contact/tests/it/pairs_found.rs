@@ -165,3 +165,35 @@ fn an_overlap_is_no_deeper_than_its_facets() {
     let inside = |w: &Warning| matches!(w, Warning::FacetedOverlap { .. });
     assert!(!plan.warnings().iter().any(inside), "{:?}", plan.warnings());
 }
+
+/// Bricks have tags everywhere: nothing is left that could be in a pair.
+#[test]
+fn bodies_with_tags_everywhere_are_refused() {
+    let brick = |z: f64| {
+        let brick = Brick::new([1.0; 3], [2; 3]).with_origin([0.0, 0.0, z]);
+        brick.build().expect("brick")
+    };
+    let bare = |mesh: TetMesh| tagged(mesh, |_| None);
+    for mesh in [
+        joined(&[brick(0.0), brick(1.0)]),
+        joined(&[brick(0.0), bare(brick(1.0)), brick(2.0)]),
+    ] {
+        let bodies = mesh.components().iter().max().map_or(0, |last| *last as usize + 1);
+        let error = ContactPair::find(mesh, 1e-2).expect_err("tags");
+        assert!(
+            matches!(error, ContactError::TaggedSides { bodies: found } if found == bodies),
+            "{error}"
+        );
+        let text = error.to_string();
+        assert!(
+            text.contains("tag_boundary") && text.contains("Contact::between"),
+            "{text}"
+        );
+    }
+    // others may be told, and one body has none
+    let mesh = joined(&[bare(brick(0.0)), brick(1.0), bare(brick(2.0))]);
+    assert_eq!(ContactPair::find(mesh, 1e-2).expect("reach").1, []);
+    assert_eq!(ContactPair::find(brick(0.0), 1e-2).expect("reach").1, []);
+    let mesh = joined(&[bare(brick(0.0)), bare(brick(1.0))]);
+    assert_eq!(ContactPair::find(mesh, 1e-2).expect("reach").1.len(), 1);
+}

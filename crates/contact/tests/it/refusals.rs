@@ -351,7 +351,7 @@ fn motions_that_a_support_does_not_hold_are_refused() {
     let about = |on| Support::components(brick::X_MAX, on).with_axis([0.0, -5.0, 0.0], [1.0, 0.0, 0.0]);
     for (support, at, says) in [
         (up().with_motion(way, ramp()), nodes[0], "by 0.01 along x"),
-        (up().with_motions(each, ramp()), nodes[4], "by 0.00001 along y"),
+        (up().with_motions(each, ramp()), nodes[4], "by 1e-5 along y"),
         (
             vectors(&[[0.0, 0.0, 2.0]]).with_motion(way, ramp()),
             nodes[0],

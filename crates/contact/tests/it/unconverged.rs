@@ -324,9 +324,20 @@ fn a_step_prints_as_a_line() {
     assert!(plain.starts_with("t = 0.1 s: certificate "), "{plain}");
     let smooth = line(cube.clone().with_contact(floor()));
     assert!(smooth.contains(" of 9 points touch, certificate "), "{smooth}");
-    let rough = line(cube.with_contact(floor().with_friction(Friction::coulomb(0.3))));
+    let rough = line(cube.clone().with_contact(floor().with_friction(Friction::coulomb(0.3))));
     assert!(
         rough.contains(" of 9 points touch, ") && rough.contains(" slide, certificate "),
         "{rough}"
+    );
+    // E = 1000
+    let pressed = |pressure| line(cube.clone().with_load(Load::pressure(brick::X_MIN, pressure)));
+    assert!(!pressed(1.0).contains("warning"));
+    let strained = pressed(25.0);
+    assert!(strained.contains(" s: warning (strain of 6."), "{strained}");
+    assert!(strained.contains(" %), certificate "), "{strained}");
+    let moved = pressed(200.0);
+    assert!(
+        moved.contains(" s: 3 warnings (displacement of ") && moved.contains(", strain of "),
+        "{moved}"
     );
 }

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use crate::errors::place as told;
 use crate::material::MaterialError;
 use crate::mesh::{FacetTag, tag_list};
 
@@ -93,7 +94,8 @@ errors! {
             "a load is given on {tag}, but no facet has it; the mesh has {}", tag_list(known);
         UnknownNode { node: u32, nodes: usize } =
             "a force is given at node {node}, but there are only {nodes} nodes, numbered from 0";
-        NotFinite { place: [f64; 3], value: [f64; 3] } = "the load at {place:?} is {value:?}; it must be finite";
+        NotFinite { place: [f64; 3], value: [f64; 3] } =
+            "the load at {} is {value:?}; it must be finite", told(place);
         Eigenstrain { strain: [f64; 6] } = "an eigenstrain is {strain:?}; it must be finite";
         StrainRegion { region: u32, known: Vec<u32> } =
             "an eigenstrain is given in region {region}, but no tetrahedron is in it; the mesh has the regions {known:?}";

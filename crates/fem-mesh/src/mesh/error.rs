@@ -1,6 +1,7 @@
 //! What can be wrong with a mesh. Every message names the place and a remedy.
 
 use super::cells::CellShape;
+use crate::errors::place;
 
 errors! {
     /// A mesh that cannot be used, the place of the fault and its remedy.
@@ -10,7 +11,7 @@ errors! {
         TooLarge { what: &'static str, count: usize, limit: usize } =
             "{count} {what} are more than the {limit} that the tables can number; use a coarser mesh";
         NotFinite { node: usize, point: [f64; 3] } =
-            "node {node} has the coordinates {point:?}, which are not finite; check what computed or wrote them";
+            "node {node} has the coordinates {}, which are not finite; check what computed or wrote them", place(point);
         NodeOutOfRange { tet: usize, node: u32, nodes: usize } =
             "tetrahedron {tet} names node {node}, but there are only {nodes} nodes, numbered from 0; look for a \
             table numbered from 1";

@@ -1,0 +1,54 @@
+//! Functions that are given as distances to an obstacle, and are others.
+
+use crate::common::*;
+
+fn pressed(contact: Contact) -> Scene {
+    Scene::new(block([1.0; 3], [4, 4, 2]), uniform(1e6, 0.3))
+        .with_contact(contact)
+        .with_support(Support::fixed(brick::Z_MIN))
+}
+
+/// Multiples and squares of a distance, distances in mm and of the wrong sign have other gaps.
+#[test]
+fn functions_that_are_no_distances_are_refused_with_their_place() {
+    let arm = |x: [f64; 3]| norm(&[x[0] - 0.5, x[1] - 0.5, x[2] - 3.0]);
+    let outward = move |x: [f64; 3]| [x[0] - 0.5, x[1] - 0.5, x[2] - 3.0].map(|c| c / arm(x));
+    let ball = move |x: [f64; 3]| arm(x) - 1.0;
+    let contact = |f: fn(f64) -> f64| {
+        let shape = Obstacle::from_distance(move |x| f(ball(x)), outward);
+        Contact::obstacle(brick::Z_MAX, shape)
+    };
+    let faces: [fn(Contact) -> Contact; 3] = [|c| c, |c| c.with_normal([0.0, 0.0, 1.0]), |c| c.with_body_normals()];
+    for (f, is) in [
+        ((|d| 2.0 * d) as fn(f64) -> f64, 2.0),
+        (|d| 1e3 * d, 1e3),
+        (|d| -d, -1.0),
+        (|d| d.powi(2), 2.0),
+    ] {
+        for face in faces {
+            let error = refused(&pressed(face(contact(f))));
+            let ContactError::ObstacleDistance {
+                contact: 0,
+                node,
+                position,
+                slope,
+            } = error
+            else {
+                panic!("{error}");
+            };
+            // of the square it is twice the distance, which is 1 at least
+            assert!((slope / is - 1.0).abs() < 0.2, "{slope}");
+            assert_eq!(error.parts(), [Part::Contact(0), Part::Node(node)]);
+            let text = error.to_string();
+            assert!(position[2] == 1.0 && text.contains("changes by") && text.contains("give the distance in m"));
+        }
+        // the gap is another one
+        let given = pressed(contact(f).with_gap(0.1));
+        assert!(Plan::new(&given, &Settings::default()).is_ok());
+    }
+    // nearly one
+    for face in faces {
+        let near = pressed(face(contact(|d| d * (1.0 + 0.03 * d))));
+        assert!(Plan::new(&near, &Settings::default()).is_ok());
+    }
+}

@@ -1,0 +1,101 @@
+//! Settings that would say nothing are refused, with their place and the remedy.
+
+use crate::common::*;
+
+fn floor() -> Contact {
+    Contact::rigid(brick::Z_MIN)
+}
+
+#[test]
+fn a_support_that_does_not_start_has_nothing_that_fades() {
+    let held = || Support::fixed(brick::X_MAX).with_fading(ramp());
+    let error = refused(&clamped().with_support(held()));
+    assert!(
+        matches!(
+            error,
+            ContactError::Idle {
+                what: "support",
+                index: 1,
+                ..
+            }
+        ),
+        "{error}"
+    );
+    assert_eq!(error.parts(), [Part::Support(1)]);
+    let text = error.to_string();
+    assert!(text.contains("with_fading") && text.contains("with_start"), "{text}");
+    let started = clamped()
+        .with_support(held().with_start(0.5))
+        .with_analysis(Analysis::quasistatic(1.0, 2));
+    assert!(Plan::new(&started, &Settings::default()).is_ok());
+}
+
+#[test]
+fn an_axis_of_friction_needs_a_law() {
+    let along = |contact: Contact| contact.with_friction_axis([1.0, 0.0, 0.0], 2.0);
+    let error = refused(&clamped().with_contact(along(floor())));
+    assert!(
+        matches!(
+            error,
+            ContactError::Idle {
+                what: "contact",
+                index: 0,
+                ..
+            }
+        ),
+        "{error}"
+    );
+    assert_eq!(error.parts(), [Part::Contact(0)]);
+    let text = error.to_string();
+    assert!(
+        text.contains("with_friction_axis") && text.contains("without with_friction;"),
+        "{text}"
+    );
+    // a study may begin without friction, and the order is free
+    for law in [Friction::None, Friction::coulomb(0.0), Friction::coulomb(0.3)] {
+        for contact in [
+            along(floor()).with_friction(law.clone()),
+            along(floor().with_friction(law)),
+        ] {
+            assert!(Plan::new(&clamped().with_contact(contact), &Settings::default()).is_ok());
+        }
+    }
+}
+
+#[test]
+fn gaps_do_not_add_up() {
+    let field = |contact: Contact| contact.with_gap_field(|x| 1e-3 * x[0]);
+    for contact in [field(floor().with_gap(1e-3)), field(floor()).with_gap(1e-3)] {
+        let error = refused(&clamped().with_contact(contact));
+        assert!(matches!(error, ContactError::TwoGaps { contact: 0 }), "{error}");
+        assert_eq!(error.parts(), [Part::Contact(0)]);
+        let text = error.to_string();
+        assert!(
+            text.contains("with_gap and with_gap_field") && text.contains("leave one out"),
+            "{text}"
+        );
+    }
+    // what takes the place of a distance, or of the same setting, is meant
+    for contact in [
+        Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0, 0.0, 1.0]).with_gap(1e-3),
+        field(Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0, 0.0, 1.0])),
+        floor().with_gap(1e-3).with_gap(2e-3),
+    ] {
+        assert!(Plan::new(&clamped().with_contact(contact), &Settings::default()).is_ok());
+    }
+}
+
+/// Also where no point asks for it: those of a contact that starts later, and of nodes that are held.
+#[test]
+fn slip_bounds_are_checked_before_any_step() {
+    let law = || Friction::tresca(-1.0);
+    let later = clamped()
+        .with_contact(floor().with_friction(law()).with_start(0.5))
+        .with_analysis(Analysis::quasistatic(1.0, 2));
+    let held = clamped().with_contact(Contact::rigid(brick::X_MIN).with_friction(law()));
+    for scene in [later, held] {
+        let error = refused(&scene);
+        assert!(matches!(error, ContactError::Coefficient { contact: 0, .. }), "{error}");
+        assert!(error.to_string().contains("the slip bound is -1; it must"), "{error}");
+    }
+}
