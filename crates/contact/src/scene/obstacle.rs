@@ -2,7 +2,7 @@
 
 use super::facets::Facets;
 use crate::error::ContactError;
-use crate::tolerances::{DISTANCE, NEWTON, RAY, RAY_END, STEEP};
+use crate::tolerances::{DISTANCE, FASTER, FEW_STEPS, NEWTON, RAY, RAY_END, STEEP};
 use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
 use std::sync::Arc;
@@ -143,13 +143,23 @@ impl Obstacle {
     }
 
     /// How much a distance given by a function changes along its gradient, over a way; one side of the place is enough.
-    /// `None` where that is next to 1 or nothing is known, and of other shapes.
+    /// `None` where that is next to 1 or nothing is known, where steps along it end on the obstacle ever faster, as those
+    /// of a function over the length of its gradient do (Newton's method), and of other shapes.
     pub(crate) fn steep(&self, place: [f64; 3], (distance, gradient): (f64, [f64; 3]), way: f64) -> Option<f64> {
         let slope = |way: f64| (self.distance(add(place, scale(way, gradient))).0 - distance) / way;
         let is_good = |slope: &f64| (slope - 1.0).abs() <= DISTANCE;
         let asked = self.own && distance.is_finite();
         let slopes = if asked { [way, -way].map(slope) } else { [1.0; 2] };
-        (!slopes.iter().any(is_good)).then_some(slopes[0])
+        let step = |&(place, (d, g)): &([f64; 3], (f64, [f64; 3]))| {
+            let foot = add(place, scale(-d, g));
+            Some((foot, self.distance(foot)))
+        };
+        let ends = || {
+            let steps = std::iter::successors(Some((place, (distance, gradient))), step);
+            let left: Vec<f64> = steps.take(FEW_STEPS).map(|(_, (d, _))| d.abs()).collect();
+            left.windows(3).any(|d| d[2] * d[0] < FASTER * d[1] * d[1])
+        };
+        (!slopes.iter().any(is_good) && !ends()).then_some(slopes[0])
     }
 
     /// The way along a direction from a place to the obstacle, m, negative inside; the shortest distance where that

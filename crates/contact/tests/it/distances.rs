@@ -22,6 +22,7 @@ fn functions_that_are_no_distances_are_refused_with_their_place() {
     for (f, is) in [
         ((|d| 2.0 * d) as fn(f64) -> f64, 2.0),
         (|d| 1e3 * d, 1e3),
+        (|d| 0.5 * d, 0.5),
         (|d| -d, -1.0),
         (|d| d.powi(2), 2.0),
     ] {
@@ -46,8 +47,19 @@ fn functions_that_are_no_distances_are_refused_with_their_place() {
         let given = pressed(contact(f).with_gap(0.1));
         assert!(Plan::new(&given, &Settings::default()).is_ok());
     }
-    // nearly one
+    // nearly one; of a function over the length of its gradient, far from the ball; with errors of an iteration
+    let newton = move |x: [f64; 3]| (arm(x).powi(2) - 1.0) / (2.0 * arm(x));
+    let noise = move |x: [f64; 3]| ball(x) + 1e-6 * (1e7 * (x[0] + 2.0 * x[1] + 3.0 * x[2])).sin();
+    let small = move |x: [f64; 3]| (arm(x) - 0.1) * (arm(x) + 0.1) / (2.0 * arm(x));
     for face in faces {
+        for shape in [
+            Obstacle::from_distance(newton, outward),
+            Obstacle::from_distance(noise, outward),
+            Obstacle::from_distance(small, outward),
+        ] {
+            let given = pressed(face(Contact::obstacle(brick::Z_MAX, shape)));
+            assert!(Plan::new(&given, &Settings::default()).is_ok());
+        }
         let near = pressed(face(contact(|d| d * (1.0 + 0.03 * d))));
         assert!(Plan::new(&near, &Settings::default()).is_ok());
     }

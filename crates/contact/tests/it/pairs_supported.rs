@@ -164,3 +164,36 @@ fn the_algebraic_error_is_estimated() {
         assert!((0.9..30.0).contains(&ratio), "{sides:?}: {ratio}, {truth:e}");
     }
 }
+
+/// Two leaves of a spring, clamped together at one end, of meshes that match nowhere else: where supports hold both sides
+/// no force belongs to contact.
+#[test]
+fn leaves_clamped_together_press_on_each_other_only_where_they_move() {
+    let leaf = |long: f64, cells| block([long, 10.0, 1.0], [cells, 3, 1]);
+    for (cells, order) in [([20, 20], 1), ([20, 23], 1), ([20, 20], 2)] {
+        let both = with_second(&leaf(100.0, cells[0]), &lifted(&leaf(85.0, cells[1]), 1.0));
+        let both = match order {
+            2 => both.raise_order().expect("order 2"),
+            _ => both,
+        };
+        let tip = Load::force(brick::X_MAX, [0.0, 0.0, 3.0]);
+        let touching = Contact::between(brick::Z_MAX, second(brick::Z_MIN));
+        let scene = Scene::new(both, uniform(2.1e5, 0.3))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_support(Support::fixed(second(brick::X_MIN)))
+            .with_contact(touching.with_friction(Friction::coulomb(0.1)))
+            .with_load(tip);
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        let result = simulation.step().expect("step");
+        let clamps: Vec<f64> = result
+            .reactions()
+            .supports
+            .iter()
+            .map(|r| r.resultant.force[2])
+            .collect();
+        println!("{cells:?} order {order}: {clamps:?}, {}", result.summary().normal_force);
+        assert!((clamps.iter().sum::<f64>() + 3.0).abs() < 1e-6, "{clamps:?}");
+        // as the part of the upper leaf in the load
+        assert!(clamps.iter().all(|force| (-2.0..-1.0).contains(force)), "{clamps:?}");
+    }
+}

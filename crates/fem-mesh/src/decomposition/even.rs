@@ -6,7 +6,9 @@ use super::parts::{expect_parts, volumes_and_surfaces};
 use super::subdomains::DecompositionError;
 use crate::mesh::{TetMesh, connected_sets, extent};
 use crate::tables::Lists;
-use crate::tolerances::{BOX, EDGE_STEPS, FILLED, GRADED, LARGER, PLANE, ROD, ROD_BEND, SNAP, STRONGLY};
+use crate::tolerances::{
+    BOX, EDGE_STEPS, FILLED, GRADED, LARGER, PLANE, ROD, ROD_BEND, ROD_QUADRATIC, ROD_TETS, SNAP, STRONGLY,
+};
 use crate::vec3::{self, Vec3};
 
 /// How many parts [`even_parts`] makes.
@@ -16,7 +18,8 @@ pub enum PartCount {
     Exactly(usize),
     /// A number near by for which the parts of a body that fills its box are nearest to cubes; a sixth of it where
     /// quadratic cells are graded so strongly along all axes that many parts would be flat. Rods, more than eight times as
-    /// long as thick, have a part for each two thicknesses at least: in long parts, bending costs iterations. Of one part,
+    /// long as thick, have a part for each two thicknesses if their tetrahedra suffice: in long parts, bending costs
+    /// iterations. Of one part,
     /// other bodies stay whole.
     About(usize),
 }
@@ -71,10 +74,11 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
         let cutter = layered.unwrap_or(&plain);
         let pieces = match count {
             PartCount::Exactly(_) => cutter.pieces(own, share),
-            PartCount::About(_) => match share.max(cutter.lengths(own, bulk[group])) {
-                1 if number == 1 => cutter.pieces(own, 1),
-                share if flat => cutter.nearest_to_cubes(own, share.div_ceil(LARGER)),
-                share => cutter.nearest_to_cubes(own, share),
+            PartCount::About(_) => match cutter.lengths(own, bulk[group]) {
+                lengths if lengths > share => cutter.pieces(own, lengths),
+                _ if number == 1 => cutter.pieces(own, 1),
+                _ if flat => cutter.nearest_to_cubes(own, share.div_ceil(LARGER)),
+                _ => cutter.nearest_to_cubes(own, share),
             },
         };
         whole[group] = layered.is_some() && pieces.iter().all(|piece| cutter.is_box(piece));
@@ -170,8 +174,13 @@ impl Cutter<'_> {
         let thickness = 4.0 * volume / surface;
         let is_rod = volume < ROD_BEND * longest * thickness.powi(2);
         let times = volume / thickness.powi(3);
+        let least = if self.mesh.order() == 2 {
+            ROD_QUADRATIC
+        } else {
+            ROD_TETS
+        };
         if is_rod && times > ROD {
-            (times / 2.0) as usize
+            ((times / 2.0) as usize).min(tets.len() / least).max(1)
         } else {
             1
         }

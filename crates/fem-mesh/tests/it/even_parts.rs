@@ -92,6 +92,17 @@ fn rods_fall_into_lengths_of_about_twice_their_thickness() {
     for whole in [nearly_a_ring, rod(6.0, 1.0, [12, 2, 2]), rod(30.0, 30.0, [12, 12, 1])] {
         assert_eq!(count(&whole), 1);
     }
+    // not more than their tetrahedra allow
+    for (cells, most) in [(8, 1), (20, 3), (100, 16)] {
+        let wire = rod(300.0, 1.0, [cells, 1, 1]);
+        let quadratic = wire.raise_order().expect("order 2");
+        let found = [&wire, &quadratic].map(count);
+        assert!(
+            found[0] <= most && found[1] <= cells / 2,
+            "{found:?} of {} tetrahedra",
+            5 * cells
+        );
+    }
     // a rod beside a block
     let beside = straight.map_points(|[x, y, z]| [x, y + 5.0, z]).expect("moved");
     assert_eq!(

@@ -185,9 +185,9 @@ impl Space {
         self.row(direction, square.sqrt().recip(), false)
     }
 
-    /// Directions that supports fix at all nodes, and those at right angles to `normal` in which they hold both sides,
-    /// a node or a good part of a mean. There, at a plane of symmetry that cuts both, a row would see no slip, but how
-    /// displacements bend beside the plane.
+    /// Directions that supports fix at all nodes, and those in which they hold both sides, a node or a good part of a
+    /// mean: `normal`, and those at right angles to it. There, at a clamp or a plane of symmetry that cuts both, a row
+    /// would see no slip and no gap, but how displacements bend beside the plane.
     fn fixed(&self, point: &ContactConstraint, normal: Vector3<f64>) -> Vec<Vector3<f64>> {
         let eigen = SymmetricEigen::new(self.gram);
         let zero = FIXED * self.nodes.iter().map(|(c, _)| c * c).sum::<f64>();
@@ -216,6 +216,9 @@ impl Space {
             let left = fixed
                 .iter()
                 .fold(Matrix3::identity() - along(&across), |p, d| p - along(d));
+            if across.dot(&(own * other * own * across)) >= least {
+                fixed.push(across);
+            }
             let held = SymmetricEigen::new(left * own * other * own * left);
             let found = (0..3).filter(|&k| held.eigenvalues[k] >= least);
             fixed.extend(found.map(|k| Vector3::from(held.eigenvectors.column(k))));
