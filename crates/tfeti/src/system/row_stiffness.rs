@@ -156,16 +156,18 @@ impl Tfeti {
             return Some(soft.chain(std::iter::repeat_n(1.0, rest)).collect());
         }
         let mut weights: Vec<f64> = (0..self.dual_dim()).map(weight).collect();
-        // equations of little but places would hide all others, and so would rows of little but rigid sides;
-        // half rigid, a row is twice as stiff
+        // equations of little but places would hide all others, and so would rows of little but rigid sides; half rigid,
+        // a row is twice as stiff
         let gives = |&(subdomain, dof, _): &Entry| self.dual.subdomains.of(subdomain).diagonal[dof] > 0.0;
-        let hides = |row| ranges.equations.contains(&row) || !self.gluing().row(row).iter().all(gives);
-        let (hiding, others): (Vec<usize>, Vec<usize>) = (0..weights.len()).partition(|&row| hides(row));
+        let hides = |row: &usize| ranges.equations.contains(row) || !self.gluing().row(*row).iter().all(gives);
+        let (hiding, others): (Vec<usize>, Vec<usize>) = (0..weights.len()).partition(hides);
         let most = others.iter().fold(0.0_f64, |most, &row| most.max(weights[row]));
-        if most > 0.0 {
-            hiding
-                .iter()
-                .for_each(|&row| weights[row] = weights[row].min(2.0 * most));
+        for row in hiding {
+            match ranges.equations.contains(&row) {
+                true => weights[row] = weights[row].min(most),
+                false if most > 0.0 => weights[row] = weights[row].min(2.0 * most),
+                false => {}
+            }
         }
         for (row, compliance) in self.gluing().compliance() {
             weights[row] /= 1.0 + compliance * weights[row];
