@@ -3,10 +3,10 @@
 use crate::common::{self, dot, noise};
 use signorini_fem_mesh::decomposition::Rigid;
 use signorini_fem_mesh::vec3::{add, cross, sub};
-use signorini_fem_mesh::{Hooke, Materials, brick};
+use signorini_fem_mesh::{Hooke, Materials, SurfaceFrame, brick};
 use signorini_qp::SymmetricOperator;
 use signorini_tfeti::internal::RIGID;
-use signorini_tfeti::{NodeSupport, RigidSupport, Tfeti, TfetiBuilder, TfetiError};
+use signorini_tfeti::{ContactConstraint, NodeSupport, RigidSupport, Side, Tfeti, TfetiBuilder, TfetiError};
 
 const POINT: [f64; 3] = [4.0, -0.3, 0.7];
 
@@ -127,5 +127,41 @@ fn what_is_refused() {
     let values = vec![(0, f64::NAN)];
     for bad in [held(6), nowhere, RigidSupport { values, ..held(0) }] {
         assert_eq!(refused(bad), TfetiError::RigidSupport { subdomain });
+    }
+}
+
+/// However little of a contact row is elastic, the weights of all others stay what they are.
+#[test]
+fn rows_of_little_but_rigid_sides_hide_no_others() {
+    let b = common::Brick::new(1, 2);
+    let cut = b.decomposition.clone();
+    let cut = cut
+        .with_rigid(vec![Rigid::Nodes(b.mesh.nodes_on(brick::X_MAX))])
+        .expect("nodes of the mesh");
+    let materials = Materials::uniform(Hooke::isotropic(2e11, 0.3).expect("steel"));
+    let supports = [NodeSupport::fixed(b.mesh.nodes_on(brick::X_MIN))];
+    let [held, ends] = [brick::X_MIN, brick::X_MAX].map(|tag| b.mesh.nodes_on(tag));
+    let floor = b.mesh.nodes_on(brick::Z_MIN);
+    let free = floor.iter().find(|node| !held.contains(node) && !ends.contains(node));
+    let rigid = ends.iter().find(|node| floor.contains(node));
+    let (free, rigid) = (*free.expect("a node"), *rigid.expect("a node"));
+    let frame = SurfaceFrame::from_normal([0.0, 0.0, -1.0]).expect("a normal");
+    let weights = |elastic: f64| {
+        let side = Side::new(vec![(rigid, 1.0 - elastic), (free, elastic)]);
+        let contact = [ContactConstraint::new(side, frame)];
+        let builder = TfetiBuilder::new(&b.mesh, &cut, &materials).with_supports(&supports);
+        let tfeti = builder.with_contact(&contact).build().expect("a system");
+        let contact = tfeti.gluing().ranges().contact();
+        let mut weights = tfeti.row_weights().expect("copies differ");
+        let own: f64 = weights.drain(contact).sum();
+        (own, weights)
+    };
+    let (_, half) = weights(0.5);
+    for elastic in [1e-2, 1e-4, 1e-6] {
+        let (own, others) = weights(elastic);
+        let most = others.iter().fold(0.0_f64, |most, w| most.max(*w));
+        assert!(own <= 2.0 * (1.0 + 1e-9) * most, "{elastic:e}: {own:e} beside {most:e}");
+        let near = |(a, b): (&f64, &f64)| (0.4..2.5).contains(&(a / b));
+        assert!(others.iter().zip(&half).all(near), "{elastic:e}");
     }
 }
