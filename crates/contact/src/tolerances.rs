@@ -74,14 +74,14 @@ pub(crate) const GRADIENT: f64 = 1e-3;
 /// interpolated, or nearly one, it is a little; squares, multiples and other units are not near.
 pub(crate) const DISTANCE: f64 = 0.1;
 
+/// That way, over the root of the area of the contact: less than a facet, and much more than the errors of distances that
+/// are found by iteration.
+pub(crate) const DISTANCE_WAY: f64 = 1e-3;
+
 /// What a step along a distance leaves of the part that the one before left, at most, if they are Newton's: a half at
 /// twice the radius from a sphere, of a multiple all; and how many steps are looked at: each halves a large distance.
 pub(crate) const FASTER: f64 = 0.7;
 pub(crate) const FEW_STEPS: usize = 10;
-
-/// That way, over the root of the area of the contact: less than a facet, and much more than the errors of distances that
-/// are found by iteration.
-pub(crate) const DISTANCE_WAY: f64 = 1e-3;
 
 /// Part of an axis of friction that must lie along the surface to give a direction there.
 pub(crate) const AXIS: f64 = 1e-3;

@@ -1,7 +1,7 @@
 //! Directions of contact that the scene gives: one for all nodes, or those of an obstacle.
 
 use crate::error::ContactError;
-use crate::scene::{Contact, ContactNormal, Gap};
+use crate::scene::{Contact, ContactNormal, Gap, Obstacle};
 use crate::tolerances::{ALONG, AXIS, DISTANCE_WAY, FACING, GRADIENT, SAME_NORMAL};
 use signorini_fem_mesh::vec3::{cross, dot, norm, scale, sub, unit};
 use signorini_fem_mesh::{Surface, SurfaceFrame};
@@ -72,6 +72,12 @@ fn is_unit(gradient: [f64; 3]) -> bool {
     (norm(gradient) - 1.0).abs() <= GRADIENT
 }
 
+/// The obstacle of a contact whose gap is measured by a function of the user.
+fn user_distance(contact: &Contact) -> Option<&Obstacle> {
+    let measured = |shape: &&Obstacle| shape.is_own() && matches!(contact.gap, Gap::Obstacle);
+    contact.shape.as_ref().filter(measured)
+}
+
 /// Refuses what is measured as a distance and is none, by how it changes over a way.
 fn check_distance(
     (index, contact): (usize, &Contact),
@@ -79,8 +85,7 @@ fn check_distance(
     found: (f64, [f64; 3]),
     way: f64,
 ) -> Result<(), ContactError> {
-    let shape = contact.shape.as_ref().filter(|_| matches!(contact.gap, Gap::Obstacle));
-    match shape.and_then(|shape| shape.steep(position, found, way)) {
+    match user_distance(contact).and_then(|shape| shape.steep(position, found, way)) {
         Some(slope) => Err(ContactError::ObstacleDistance {
             contact: index,
             node,
@@ -98,7 +103,7 @@ fn check_along(
     place: impl Fn(usize) -> [f64; 3],
     way: f64,
 ) -> Result<(), ContactError> {
-    let Some(shape) = contact.shape.as_ref().filter(|shape| shape.is_own()) else {
+    let Some(shape) = user_distance(contact) else {
         return Ok(());
     };
     for (local, (&node, own)) in surface.nodes().iter().zip(surface.frames()).enumerate() {

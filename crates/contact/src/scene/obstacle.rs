@@ -143,13 +143,15 @@ impl Obstacle {
     }
 
     /// How much a distance given by a function changes along its gradient, over a way; one side of the place is enough.
-    /// `None` where that is next to 1 or nothing is known, where steps along it end on the obstacle ever faster, as those
-    /// of a function over the length of its gradient do (Newton's method), and of other shapes.
+    /// `None` where that is next to 1 or nothing is known, and where steps along it end on the obstacle ever faster, as
+    /// those of a function over the length of its gradient do (Newton's method).
     pub(crate) fn steep(&self, place: [f64; 3], (distance, gradient): (f64, [f64; 3]), way: f64) -> Option<f64> {
+        if !distance.is_finite() {
+            return None;
+        }
         let slope = |way: f64| (self.distance(add(place, scale(way, gradient))).0 - distance) / way;
         let is_good = |slope: &f64| (slope - 1.0).abs() <= DISTANCE;
-        let asked = self.own && distance.is_finite();
-        let slopes = if asked { [way, -way].map(slope) } else { [1.0; 2] };
+        let slopes = [way, -way].map(slope);
         let step = |&(place, (d, g)): &([f64; 3], (f64, [f64; 3]))| {
             let foot = add(place, scale(-d, g));
             Some((foot, self.distance(foot)))

@@ -141,7 +141,7 @@ impl Support {
     ///
     /// ```
     /// use signorini_contact::Support;
-    /// use signorini_fem_mesh::{FacetTag, History, TetMesh};
+    /// use signorini_fem_mesh::{FacetTag, History};
     ///
     /// # let (bore, rim) = (FacetTag(1), FacetTag(2));
     /// let (point, axis) = ([0.0; 3], [0.0, 0.0, 1.0]);

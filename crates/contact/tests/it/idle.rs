@@ -6,24 +6,26 @@ fn floor() -> Contact {
     Contact::rigid(brick::Z_MIN)
 }
 
+/// What is refused of a part: a setting without another one.
+fn assert_idle(scene: &Scene, part: Part, words: [&str; 2]) {
+    let error = refused(scene);
+    let (of, number) = match part {
+        Part::Support(index) => ("support", index),
+        Part::Contact(index) => ("contact", index),
+        _ => panic!("{part:?}"),
+    };
+    let is_such = matches!(error, ContactError::Idle { what, index, .. } if what == of && index == number);
+    assert!(is_such, "{error}");
+    assert_eq!(error.parts(), [part]);
+    let text = error.to_string();
+    assert!(words.iter().all(|word| text.contains(word)), "{text}");
+}
+
 #[test]
 fn a_support_that_does_not_start_has_nothing_that_fades() {
     let held = || Support::fixed(brick::X_MAX).with_fading(ramp());
-    let error = refused(&clamped().with_support(held()));
-    assert!(
-        matches!(
-            error,
-            ContactError::Idle {
-                what: "support",
-                index: 1,
-                ..
-            }
-        ),
-        "{error}"
-    );
-    assert_eq!(error.parts(), [Part::Support(1)]);
-    let text = error.to_string();
-    assert!(text.contains("with_fading") && text.contains("with_start"), "{text}");
+    let scene = clamped().with_support(held());
+    assert_idle(&scene, Part::Support(1), ["with_fading", "with_start"]);
     let started = clamped()
         .with_support(held().with_start(0.5))
         .with_analysis(Analysis::quasistatic(1.0, 2));
@@ -33,23 +35,11 @@ fn a_support_that_does_not_start_has_nothing_that_fades() {
 #[test]
 fn an_axis_of_friction_needs_a_law() {
     let along = |contact: Contact| contact.with_friction_axis([1.0, 0.0, 0.0], 2.0);
-    let error = refused(&clamped().with_contact(along(floor())));
-    assert!(
-        matches!(
-            error,
-            ContactError::Idle {
-                what: "contact",
-                index: 0,
-                ..
-            }
-        ),
-        "{error}"
-    );
-    assert_eq!(error.parts(), [Part::Contact(0)]);
-    let text = error.to_string();
-    assert!(
-        text.contains("with_friction_axis") && text.contains("without with_friction;"),
-        "{text}"
+    let scene = clamped().with_contact(along(floor()));
+    assert_idle(
+        &scene,
+        Part::Contact(0),
+        ["with_friction_axis", "without with_friction;"],
     );
     // a study may begin without friction, and the order is free
     for law in [Friction::None, Friction::coulomb(0.0), Friction::coulomb(0.3)] {

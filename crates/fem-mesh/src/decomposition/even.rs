@@ -61,7 +61,10 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
         false => ([1.0; 3], [const { None }; 3]),
     };
     let graded = Some(cutter(shares)).filter(|cutter| cutter.shares.iter().any(Option::is_some));
-    let bulk = volumes_and_surfaces(mesh, &groups);
+    let bulk = match count {
+        PartCount::Exactly(_) => Vec::new(),
+        PartCount::About(_) => volumes_and_surfaces(mesh, &groups),
+    };
     let (mut slabs, mut next) = (vec![0; tets], 0);
     let mut whole = vec![false; members.count()];
     for group in 0..members.count() {

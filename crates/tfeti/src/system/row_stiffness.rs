@@ -142,24 +142,25 @@ impl Tfeti {
         if plain && given.is_empty() {
             return None;
         }
-        let compliance = |(subdomain, dof, value): (usize, usize, f64)| {
+        let compliance = |&(subdomain, dof, value): &Entry| {
             let diagonal = self.dual.subdomains.of(subdomain).diagonal[dof];
-            if diagonal > 0.0 { value * value / diagonal } else { 0.0 }
+            (diagonal > 0.0).then(|| value * value / diagonal)
         };
+        // and whether all sides give way
         let weight = |row: usize| {
-            let sum: f64 = self.gluing().row(row).into_iter().map(compliance).sum();
-            if sum > 0.0 { 1.0 / sum } else { 0.0 }
+            let terms: Vec<Option<f64>> = self.gluing().row(row).iter().map(compliance).collect();
+            let sum: f64 = terms.iter().map(|term| term.unwrap_or(0.0)).sum();
+            (if sum > 0.0 { 1.0 / sum } else { 0.0 }, !terms.contains(&None))
         };
         if plain {
-            let soft = given.iter().enumerate().map(|(row, c)| 1.0 / (1.0 + c * weight(row)));
+            let soft = given.iter().enumerate().map(|(row, c)| 1.0 / (1.0 + c * weight(row).0));
             let rest = self.dual_dim() - given.len();
             return Some(soft.chain(std::iter::repeat_n(1.0, rest)).collect());
         }
-        let mut weights: Vec<f64> = (0..self.dual_dim()).map(weight).collect();
+        let (mut weights, give): (Vec<f64>, Vec<bool>) = (0..self.dual_dim()).map(weight).unzip();
         // equations of little but places would hide all others, and so would rows of little but rigid sides; half rigid,
         // a row is twice as stiff
-        let gives = |&(subdomain, dof, _): &Entry| self.dual.subdomains.of(subdomain).diagonal[dof] > 0.0;
-        let hides = |row: &usize| ranges.equations.contains(row) || !self.gluing().row(*row).iter().all(gives);
+        let hides = |row: &usize| ranges.equations.contains(row) || !give[*row];
         let (hiding, others): (Vec<usize>, Vec<usize>) = (0..weights.len()).partition(hides);
         let most = others.iter().fold(0.0_f64, |most, &row| most.max(weights[row]));
         for row in hiding {

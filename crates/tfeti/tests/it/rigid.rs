@@ -12,6 +12,11 @@ const POINT: [f64; 3] = [4.0, -0.3, 0.7];
 
 /// A brick held at one end with a rigid subdomain at the other, of which all motions about a point are held.
 fn system(held: &[RigidSupport]) -> Result<Tfeti, TfetiError> {
+    touching(held, &[])
+}
+
+/// The same with contact.
+fn touching(held: &[RigidSupport], contact: &[ContactConstraint]) -> Result<Tfeti, TfetiError> {
     let b = common::Brick::new(1, 2);
     let cut = b.decomposition.clone();
     let cut = cut
@@ -20,7 +25,7 @@ fn system(held: &[RigidSupport]) -> Result<Tfeti, TfetiError> {
     let materials = Materials::uniform(Hooke::isotropic(2e11, 0.3).expect("steel"));
     let supports = [NodeSupport::fixed(b.mesh.nodes_on(brick::X_MIN))];
     let builder = TfetiBuilder::new(&b.mesh, &cut, &materials).with_supports(&supports);
-    builder.with_rigid_supports(held).build()
+    builder.with_rigid_supports(held).with_contact(contact).build()
 }
 
 fn held(component: usize) -> RigidSupport {
@@ -134,12 +139,6 @@ fn what_is_refused() {
 #[test]
 fn rows_of_little_but_rigid_sides_hide_no_others() {
     let b = common::Brick::new(1, 2);
-    let cut = b.decomposition.clone();
-    let cut = cut
-        .with_rigid(vec![Rigid::Nodes(b.mesh.nodes_on(brick::X_MAX))])
-        .expect("nodes of the mesh");
-    let materials = Materials::uniform(Hooke::isotropic(2e11, 0.3).expect("steel"));
-    let supports = [NodeSupport::fixed(b.mesh.nodes_on(brick::X_MIN))];
     let [held, ends] = [brick::X_MIN, brick::X_MAX].map(|tag| b.mesh.nodes_on(tag));
     let floor = b.mesh.nodes_on(brick::Z_MIN);
     let free = floor.iter().find(|node| !held.contains(node) && !ends.contains(node));
@@ -148,9 +147,7 @@ fn rows_of_little_but_rigid_sides_hide_no_others() {
     let frame = SurfaceFrame::from_normal([0.0, 0.0, -1.0]).expect("a normal");
     let weights = |elastic: f64| {
         let side = Side::new(vec![(rigid, 1.0 - elastic), (free, elastic)]);
-        let contact = [ContactConstraint::new(side, frame)];
-        let builder = TfetiBuilder::new(&b.mesh, &cut, &materials).with_supports(&supports);
-        let tfeti = builder.with_contact(&contact).build().expect("a system");
+        let tfeti = touching(&[], &[ContactConstraint::new(side, frame)]).expect("a system");
         let contact = tfeti.gluing().ranges().contact();
         let mut weights = tfeti.row_weights().expect("copies differ");
         let own: f64 = weights.drain(contact).sum();
