@@ -10,7 +10,7 @@ use signorini_fem_mesh::decomposition::Rigid;
 use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, is_finite, norm, scale, sub};
 use signorini_fem_mesh::{Decomposition, History, LoadError, SurfaceFrame};
-use signorini_tfeti::internal::{PrescribedDirection, forces_at_three, unsaid_directions};
+use signorini_tfeti::internal::{HELD, HELD_MEANS, PrescribedDirection, forces_at_three, unsaid_directions};
 use signorini_tfeti::{ContactConstraint, Directions, NodeSupport, RigidSupport, Side};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -234,7 +234,8 @@ impl Couplings {
         self.of_node.contains_key(&node)
     }
 
-    /// Refuses contact points between what is rigid on both sides: coupled, an obstacle, or held along the normal.
+    /// Refuses contact points between what is rigid on both sides, of a mean in a good part: coupled, an obstacle, or
+    /// held along the normal.
     pub(super) fn check_contact<'a>(
         &self,
         points: impl Iterator<Item = &'a ContactPoint>,
@@ -248,12 +249,21 @@ impl Couplings {
             held.map(|d| dot(d.direction, normal).powi(2)).sum::<f64>() >= 1.0 - ALONG
         };
         for point in points {
-            let nodes = || point.sides.nodes().map(|n| n.0);
-            let coupled = nodes().find(|node| self.has(*node));
-            if let Some(node) = coupled
-                && let Some(&coupling) = self.of_node.get(&node)
-                && nodes().all(|node| self.has(node) || is_held(node, point.frame.normal))
-            {
+            let sides = &point.sides;
+            let Some((node, coupling)) = sides.nodes().find_map(|(n, _)| Some((n, *self.of_node.get(&n)?))) else {
+                continue;
+            };
+            let stiff = |side: &Side| -> f64 {
+                let stiff = side.nodes().iter();
+                let stiff = stiff.filter(|(n, _)| self.has(*n) || is_held(*n, point.frame.normal));
+                stiff.map(|(_, weight)| weight).sum()
+            };
+            let least = match (&sides.partner, sides.own.nodes().len()) {
+                (None, _) => 1.0 - ALONG,
+                (Some(_), 1) => HELD,
+                (Some(_), _) => HELD_MEANS,
+            };
+            if stiff(&sides.own) >= least && sides.partner.as_ref().is_none_or(|partner| stiff(partner) >= least) {
                 let reason = "what it could touch is rigid or held, too, so that no contact force is determined; leave \
                     the nodes that may touch out of the coupling";
                 return Err(ContactError::coupling(coupling, Some(node), reason));

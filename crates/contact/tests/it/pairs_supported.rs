@@ -178,11 +178,18 @@ fn leaves_clamped_together_press_on_each_other_only_where_they_move() {
         };
         let tip = Load::force(brick::X_MAX, [0.0, 0.0, 3.0]);
         let touching = Contact::between(brick::Z_MAX, second(brick::Z_MIN));
-        let scene = Scene::new(both, uniform(2.1e5, 0.3))
-            .with_support(Support::fixed(brick::X_MIN))
-            .with_support(Support::fixed(second(brick::X_MIN)))
+        let loose = Scene::new(both, uniform(2.1e5, 0.3))
             .with_contact(touching.with_friction(Friction::coulomb(0.1)))
             .with_load(tip);
+        let ends = [brick::X_MIN, second(brick::X_MIN)];
+        // a coupling that is held clamps as well, but would tell no force where both sides are rigid
+        let rigid = ends.map(|end| Coupling::rigid(end, [0.0; 3]).with_held([true; 6]));
+        let rigid = rigid.into_iter().fold(loose.clone(), Scene::with_coupling);
+        let refused = Simulation::new(rigid, Settings::default()).map(|_| ());
+        let refused = refused.expect_err("rigid on both sides").to_string();
+        assert!(refused.contains("no contact force is determined"), "{refused}");
+        let fixed = ends.map(Support::fixed);
+        let scene = fixed.into_iter().fold(loose, Scene::with_support);
         let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
         let result = simulation.step().expect("step");
         let clamps: Vec<f64> = result
