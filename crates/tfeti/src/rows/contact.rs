@@ -185,21 +185,26 @@ impl Space {
         self.row(direction, square.sqrt().recip(), false)
     }
 
-    /// Directions that supports fix at all nodes, and those in which they hold both sides, a node or a good part of a
-    /// mean: `normal`, and those at right angles to it. There, at a clamp or a plane of symmetry that cuts both, a row
-    /// would see no slip and no gap, but how displacements bend beside the plane.
+    /// Directions that supports fix at all nodes, and those in which they hold both sides, or one beside an obstacle: a
+    /// node or a good part of a mean, along `normal` and at right angles to it. There, at a clamp or a plane of symmetry
+    /// that cuts both, a row would see no slip and no gap, but how displacements bend beside the plane.
     fn fixed(&self, point: &ContactConstraint, normal: Vector3<f64>) -> Vec<Vector3<f64>> {
         let eigen = SymmetricEigen::new(self.gram);
         let zero = FIXED * self.nodes.iter().map(|(c, _)| c * c).sum::<f64>();
         let fixed = (0..3).filter(|&k| eigen.eigenvalues[k] <= zero);
         let mut fixed: Vec<Vector3<f64>> = fixed.map(|k| eigen.eigenvectors.column(k).into()).collect();
         let (own, all) = (point.side.nodes().len(), self.nodes.len());
-        if all > own && all > 2 {
+        if all > 2 || own > 1 {
             let along = |d: &Vector3<f64>| d * d.transpose();
             let shares = point.nodes().zip(&self.nodes);
             let shares = shares.map(|((_, w), (_, free))| (Matrix3::identity() - free) * w);
             let shares: Vec<Matrix3<f64>> = shares.collect();
-            let other: Matrix3<f64> = shares[own..].iter().map(|share| -share).sum();
+            let is_pair = all > own;
+            let other: Matrix3<f64> = match is_pair {
+                true => shares[own..].iter().map(|share| -share).sum(),
+                // an obstacle
+                false => Matrix3::identity(),
+            };
             let (own, least) = match own {
                 1 => (Matrix3::identity() - self.nodes[0].1, HELD),
                 // the directions that supports hold at a good part of a mean
@@ -216,12 +221,18 @@ impl Space {
             let left = fixed
                 .iter()
                 .fold(Matrix3::identity() - along(&across), |p, d| p - along(d));
-            if across.dot(&(own * other * own * across)) >= least {
+            // by a good part, and not a direction between that and free ones
+            let holds = |side: &Matrix3<f64>, d: Vector3<f64>| {
+                let share = d.dot(&(side * d));
+                share >= least && (side * d - d * share).norm() <= ANGLE * share
+            };
+            if [own, other].iter().all(|side| holds(side, across)) {
                 fixed.push(across);
             }
             let held = SymmetricEigen::new(left * own * other * own * left);
             let found = (0..3).filter(|&k| held.eigenvalues[k] >= least);
-            fixed.extend(found.map(|k| Vector3::from(held.eigenvectors.column(k))));
+            let found = found.map(|k| Vector3::from(held.eigenvectors.column(k)));
+            fixed.extend(found.filter(|&d| is_pair || holds(&own, d)));
         }
         fixed
     }
