@@ -12,6 +12,7 @@ use crate::step::StepProblem;
 use crate::tolerances::{NO_SPRING, ROUNDING};
 use crate::vec3::dot;
 use nalgebra::{Matrix3, Vector3};
+use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, cross, scale, sub};
 use signorini_tfeti::internal::PrescribedDirection;
 use signorini_tfeti::{NodeSupport, TiedRows};
@@ -360,7 +361,8 @@ fn by_support(
 ) -> Vec<SupportReaction> {
     let reaction = |(index, support): (usize, &NodeSupport)| {
         let mut reaction = SupportReaction::default();
-        for node in &support.nodes {
+        // a node may be named more than once
+        for node in &distinct(support.nodes.iter().copied()) {
             let (Some(whole), Some(held)) = (forces.get(node), supports.directions.get(node)) else {
                 continue;
             };

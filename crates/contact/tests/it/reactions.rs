@@ -430,3 +430,18 @@ fn a_force_on_a_coarse_hole_arrives_whole() {
         }
     }
 }
+
+#[test]
+fn a_node_that_a_support_names_twice_reacts_once() {
+    let mesh = block([1.0; 3], [2, 2, 2]);
+    let facets = mesh.facets().iter().filter(|f| f.tag == brick::Z_MIN);
+    let named: Vec<u32> = facets.flat_map(|f| f.nodes).collect();
+    assert!(named.len() > mesh.nodes_on(brick::Z_MIN).len());
+    let scene = Scene::new(mesh, steel())
+        .with_load(Load::force(brick::Z_MAX, [1e3, 0.0, -1e4]))
+        .with_support(Support::fixed(named));
+    let mut simulation = Simulation::new(scene, tight()).expect("set-up");
+    let reactions = simulation.step().expect("step").reactions();
+    let force = reactions.supports[0].resultant.force;
+    assert!(norm(&[force[0] + 1e3, force[1], force[2] - 1e4]) < 1e-4, "{force:?}");
+}
