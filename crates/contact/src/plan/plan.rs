@@ -100,9 +100,13 @@ impl Plan {
         all().map_err(|error| scene.names.tell(error))
     }
 
-    /// Takes over warnings of other stages, each kind once.
+    /// Takes over warnings of other stages, each kind once; that nothing acts stands only where it does in none.
     pub(crate) fn warn(&mut self, others: &[Self]) {
-        for warning in others.iter().flat_map(|other| &other.warnings) {
+        let idle = |w: &Warning| matches!(w.plain(), Warning::NothingActs { .. });
+        if others.iter().any(|other| !other.warnings.iter().any(idle)) {
+            self.warnings.retain(|warning| !idle(warning));
+        }
+        for warning in others.iter().flat_map(|other| &other.warnings).filter(|w| !idle(w)) {
             let kind = |w: &Warning| std::mem::discriminant(w.plain());
             if !self.warnings.iter().any(|known| kind(known) == kind(warning)) {
                 self.warnings.push(warning.clone());
