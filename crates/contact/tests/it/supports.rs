@@ -339,3 +339,28 @@ fn rigid_motions_take_few_products() {
         }
     }
 }
+
+/// As many rows as rigid motions: equilibrium alone tells the reactions, here none, and nothing is left to be solved.
+#[test]
+fn statically_determinate_bodies_take_no_iterations() {
+    for (cells, order) in [([2, 2, 2], 1), ([3, 3, 3], 1), ([3, 3, 3], 2)] {
+        let brick = Brick::new([1.0, 1.0, 0.5], cells);
+        let corner = |at: [usize; 3]| [brick.node(at) as u32];
+        let mut mesh = brick.build().expect("brick");
+        if order == 2 {
+            mesh = mesh.raise_order().expect("quadratic");
+        }
+        for pull in [1e6, 3e6] {
+            let scene = Scene::new(mesh.clone(), steel())
+                .with_support(Support::fixed(corner([0, 0, 0])))
+                .with_support(Support::components(corner([cells[0], 0, 0]), [false, true, true]))
+                .with_support(Support::components(corner([0, cells[1], 0]), [false, false, true]))
+                .with_load(Load::traction(brick::X_MIN, [-pull, 0.0, 0.0]))
+                .with_load(Load::traction(brick::X_MAX, [pull, 0.0, 0.0]))
+                .without_subdomains();
+            let result = solve(scene, Settings::default());
+            let products = result.report.counters.products;
+            assert!(products <= 3, "{cells:?}, order {order}, {pull:e}: {products} products");
+        }
+    }
+}

@@ -218,10 +218,16 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
             0.0 => settings.tolerance,
             _ => ON_PATH,
         };
-        let limits = Lengths {
+        let mut limits = Lengths {
             all: (tolerance * all).max(rounding),
             constrained: (tolerance * part).max(rounding),
         };
+        // without a size: solved where rounding of the load is all that is left
+        if limits.all == 0.0 {
+            let (left, load) = (&at.work.residual, at.problem.linear);
+            let [left, load] = [&left[..], load].map(|v| at.problem.operator.norm(v));
+            limits.all = if left <= ROUNDED * load { errors.all } else { 0.0 };
+        }
         at.report.error = ratio(errors.all, limits.all / tolerance);
         at.report.constrained_error = ratio(errors.constrained, limits.constrained / tolerance);
         if !(errors.all.is_finite() && x_norm.is_finite()) {
