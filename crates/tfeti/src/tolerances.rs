@@ -84,8 +84,10 @@ pub(crate) const DEPENDENT: f64 = 0.3;
 /// inverse.
 pub(crate) const EXPLICIT_WEIGHT: f64 = 1e4;
 /// Most solves with it until `G x = e`, and what may be left of that beside `x`.
-pub(crate) const BALANCES: usize = 5;
+pub(crate) const BALANCES: usize = 12;
 pub(crate) const BALANCED: f64 = 1e-10;
+/// Solves in a row that leave no less, after which the best one is taken.
+pub(crate) const UNBALANCED: usize = 2;
 /// Pivot of a row in such an `F`, over its largest entry, up to which the row depends on others.
 pub(crate) const LEFT_OF_ROW: f64 = 1e-11;
 /// Added to the diagonal of a matrix until it can be factored, relative to its largest entry.
@@ -135,9 +137,9 @@ pub(crate) const BANDWIDTH: [f64; 2] = [6e10, 1.2e10];
 pub(crate) const PRODUCTS: usize = 2000;
 /// Bytes of dense matrices that still stay in the caches of one processor.
 pub(crate) const CACHE: u64 = 16 << 20;
-/// Most rows of an `F` that is formed (390 MB), and most contact rows of these; factors of interior points and active
+/// Most rows of an `F` that is formed (1.8 GB), and most contact rows of these; factors of interior points and active
 /// sets of a step with its inverse.
-pub(crate) const EXPLICIT_ROWS: usize = 7000;
+pub(crate) const EXPLICIT_ROWS: usize = 15_000;
 pub(crate) const EXPLICIT_CONTACT: usize = 2000;
 pub(crate) const INTERIOR_FACTORS: f64 = 100.0;
 pub(crate) const EXPLICIT_SETS: f64 = 20.0;

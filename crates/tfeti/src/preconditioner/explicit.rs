@@ -12,7 +12,7 @@ use crate::system::part::SystemPart;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{
     BALANCED, BALANCES, EXPLICIT_CONTACT, EXPLICIT_ROWS, EXPLICIT_SETS, EXPLICIT_WEIGHT, INTERIOR_FACTORS, LEFT_OF_ROW,
-    ROW_OPERATIONS, SHIFTS, STREAMED,
+    ROW_OPERATIONS, SHIFTS, STREAMED, UNBALANCED,
 };
 use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView, Freedom};
 use signorini_qp::{DenseOperator, QpError, Status, SymmetricOperator, vector};
@@ -159,7 +159,7 @@ impl ExplicitInverse {
     /// Solves `F x = linear` with `G x = e` where a `solve` finds the contact rows from those of `x`: it has their matrix and
     /// load, all other rows eliminated. It is asked again, with another load, until `G x = e` holds, which the weight leaves
     /// to do (method of multipliers), a few times at most, from where the last time ended whether that was a solution or
-    /// not. For whole vectors. Whether the last one was.
+    /// not. For whole vectors. `x` is that which lacks the least, and whether it was a solution is told.
     ///
     /// # Errors
     /// Those of `solve`, and [`QpError`] for a matrix that has overflowed.
@@ -177,7 +177,7 @@ impl ExplicitInverse {
         let matrix = DenseOperator::new(self.contact, matrix)?;
         let (mut aim, mut lacks) = (e.to_vec(), vec![0.0; e.len()]);
         let (mut ordered, mut scratch) = (vec![0.0; self.rows], coarse.scratch());
-        let mut solved = false;
+        let (mut solved, mut best, mut least, mut waited) = (false, Vec::new(), f64::INFINITY, 0);
         for _ in 0..BALANCES {
             coarse.transpose_times(&aim, &mut ordered);
             for (load, linear) in ordered.iter_mut().zip(linear) {
@@ -186,9 +186,9 @@ impl ExplicitInverse {
             ordered.rotate_left(self.contact);
             dense::forward(&self.columns, self.rows, others, &mut ordered);
             let own = &mut x[..self.contact];
-            solved = solve(&matrix, &ordered[others..], own)? == Status::Converged;
+            let found = solve(&matrix, &ordered[others..], own)? == Status::Converged;
             if !vector::norm(own).is_finite() {
-                return Ok(false);
+                break;
             }
             ordered[others..].copy_from_slice(own);
             dense::backward(&self.columns, self.rows, others, &mut ordered);
@@ -196,10 +196,19 @@ impl ExplicitInverse {
             x.copy_from_slice(&ordered);
             coarse.apply(x, &mut lacks, &mut scratch);
             lacks.iter_mut().zip(e).for_each(|(lacks, e)| *lacks = e - *lacks);
-            if vector::norm(&lacks) <= BALANCED * vector::norm(x) {
+            let lack = vector::norm(&lacks) / vector::norm(x).max(f64::MIN_POSITIVE);
+            waited += 1;
+            if lack < least || found && !solved {
+                (solved, least, waited) = (found, lack, 0);
+                best.clone_from(&ordered);
+            }
+            if lack <= BALANCED || waited == UNBALANCED {
                 break;
             }
             vector::axpy(1.0, &lacks, &mut aim);
+        }
+        if !best.is_empty() {
+            x.copy_from_slice(&best);
         }
         Ok(solved)
     }

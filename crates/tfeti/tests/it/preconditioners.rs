@@ -1,8 +1,9 @@
 //! The lumped and the Dirichlet preconditioner, and the inverse of a formed F.
 
 use crate::common::{Brick, build, dot, noise, norm, steel};
+use nalgebra::{DMatrix, DVector};
 use signorini_fem_mesh::{Decomposition, Hooke, Materials, brick};
-use signorini_qp::SymmetricOperator;
+use signorini_qp::{DenseOperator, Status, SymmetricOperator};
 use signorini_tfeti::internal::InverseKind;
 use signorini_tfeti::{Directions, NodeSupport, Tfeti, TfetiBuilder};
 
@@ -59,6 +60,32 @@ fn a_formed_f_is_inverted_on_the_kernel_of_g() {
         let iterations = preconditioned_iterations(&system, Some(&inverse));
         assert!(iterations <= 3, "{iterations}");
     }
+}
+
+/// Here a solve of the contact rows is one with their matrix, off by more or less.
+#[test]
+fn what_lacks_least_stays_where_later_solves_go_astray() {
+    let system = Brick::new(2, 3).system();
+    let inverse = system.explicit_inverse().unwrap();
+    let (linear, e) = (noise(system.dual_dim(), 3), noise(system.coarse().rows(), 4));
+    let (mut x, mut errors) = (vec![0.0; linear.len()], [1e-3, 1e-6, 0.5, 0.5, 0.5, 0.5].into_iter());
+    let solve = |matrix: &DenseOperator, load: &[f64], x: &mut [f64]| {
+        let n = matrix.dim();
+        let matrix = DMatrix::from_column_slice(n, n, matrix.entries());
+        let found = matrix.cholesky().unwrap().solve(&DVector::from_column_slice(load));
+        let error = errors.next().unwrap();
+        x.iter_mut()
+            .zip(&found)
+            .for_each(|(x, found)| *x = (1.0 + error) * found);
+        Ok(Status::Converged)
+    };
+    let solved = inverse.through_contact(system.coarse(), (&linear, &e), &mut x, solve);
+    let mut lacks = vec![0.0; e.len()];
+    system.coarse().apply(&x, &mut lacks, &mut system.coarse().scratch());
+    lacks.iter_mut().zip(&e).for_each(|(lacks, e)| *lacks -= e);
+    assert!(solved.unwrap());
+    assert!(norm(&lacks) < 1e-4 * norm(&x), "{:e}", norm(&lacks) / norm(&x));
+    assert_eq!(errors.count(), 2);
 }
 
 #[test]
