@@ -93,7 +93,7 @@
 //! | `*MODEL CHANGE` | `TYPE=CONTACT PAIR`, `ADD`, `REMOVE` | a pair comes or goes with the step: it [starts](signorini_contact::Contact::with_start) and [ends](signorini_contact::Contact::with_end) |
 //! | `*CLOAD` | `OP`, `AMPLITUDE` | forces at nodes; moments, 4 to 6, at the node of a `*DISTRIBUTING` |
 //! | `*DLOAD` | `OP`, `AMPLITUDE` | `P1` to `P6` on faces; `GRAV`, `CENTRIF` (with the square of the angular velocity; integrated exactly, in linear elements CalculiX takes the value at the centroid: 0.9 % on a coarse disc), `BX`, `BY`, `BZ` in elements, without a set in all |
-//! | `*DSLOAD` | `OP`, `AMPLITUDE` | `P` on a surface; `TRVEC`, a traction in a direction, on flat facets |
+//! | `*DSLOAD` | `OP`, `AMPLITUDE` | `P` on a surface; `TRVEC`, a traction in a direction |
 //! | `*TEMPERATURE` | `OP`, `AMPLITUDE` | at nodes; linear between the corners of a tetrahedron; an amplitude multiplies the temperature, and its rise above the initial one counts |
 //! | `*END STEP`, `*INCLUDE` | `INPUT` | paths are relative to the file that includes; loops are refused |
 //!

@@ -7,6 +7,9 @@ pub(crate) const ROUNDING: f64 = 1e-9;
 /// Difference of unit vectors, and of places over their distance from the origin, that is rounding of what a deck writes.
 pub(crate) const TURNED: f64 = 1e-5;
 
+/// Part of the area of a face that is none.
+pub(crate) const NO_AREA: f64 = 1e-12;
+
 /// The tolerance of a tie where a deck has none, over the mean radius of the circles in the faces of the second surface:
 /// what CalculiX takes for its 2.5 % of a typical element size, to within 15 %.
 pub(crate) const TIE: f64 = 0.025;

@@ -115,7 +115,7 @@ pub mod internal {
     pub use crate::errors::{number, place};
     pub use crate::files::replace_file;
     pub use crate::loads::interpolate;
-    pub use crate::mesh::{EDGES, TET_FACES, cylindrical, facet_normals, facet_shape, tag_list};
+    pub use crate::mesh::{EDGES, TET_FACES, cylindrical, facet_normals, facet_shape, facet_shares, tag_list};
     pub use crate::quadrature::triangle;
     pub use crate::tables::{DisjointSets, Lists, ascending, distinct};
 }

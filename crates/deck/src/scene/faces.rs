@@ -327,6 +327,11 @@ impl Face {
         raw.loaded(self.tet, self.nodes)
     }
 
+    /// The nodes that carry a constant traction, each with its area.
+    pub(super) fn areas(&self, raw: &Raw) -> Vec<(u32, f64)> {
+        raw.areas(self.tet, self.nodes)
+    }
+
     /// Its area along the outward normal.
     pub(super) fn area_vector(&self, raw: &Raw) -> [f64; 3] {
         raw.area_vector(self.tet, self.nodes)

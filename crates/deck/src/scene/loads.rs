@@ -5,7 +5,7 @@ use std::collections::btree_map::Entry;
 
 use signorini_contact::Load;
 use signorini_fem_mesh::internal::distinct;
-use signorini_fem_mesh::vec3::{Vec3, norm, unit};
+use signorini_fem_mesh::vec3::{Vec3, unit};
 use signorini_fem_mesh::{FacetTag, LoadDensity};
 
 use super::faces::{FaceTable, Known};
@@ -104,10 +104,9 @@ impl Loads {
             let Some((value, history)) = loads.histories.add(known.timeline, track)? else {
                 continue;
             };
-            let face = &faces.list[face as usize];
-            let mut force = [0.0; 3];
-            force[component] = value * norm(face.area_vector(known.raw)) / 3.0;
-            for node in face.loaded(known.raw) {
+            for (node, area) in faces.list[face as usize].areas(known.raw) {
+                let mut force = [0.0; 3];
+                force[component] = value * area;
                 loads.force(history, track.order, node, force);
             }
         }

@@ -5,15 +5,16 @@ use std::ops::Range;
 use std::path::Path;
 
 use signorini_contact::{ContactError, Part};
-use signorini_fem_mesh::internal::{EDGES, Lists, TET_FACES, distinct};
+use signorini_fem_mesh::internal::{EDGES, Lists, TET_FACES, distinct, facet_shares};
 use signorini_fem_mesh::mesh::{Cell, CellShape, Division};
-use signorini_fem_mesh::vec3::{add, area_vector, scale, sub, tet_volume};
+use signorini_fem_mesh::vec3::{add, area_vector, norm, scale, sub, tet_volume};
 use signorini_fem_mesh::{Facet, MeshError, TetMesh};
 
 use super::numbers::{Numbers, Sets};
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Fault, Word};
 use crate::model::{Ignored, Kind, Model};
+use crate::tolerances::NO_AREA;
 
 /// The mesh before its facets are known: elastic tetrahedra, without nodes that none of them uses.
 #[derive(Debug)]
@@ -326,6 +327,21 @@ impl Raw {
     /// Nodes that share the force on a face of a tetrahedron evenly: its corners, or the nodes on its edges.
     pub(super) fn loaded(&self, tet: u32, face: [u32; 3]) -> [u32; 3] {
         self.mids_of(tet, face).unwrap_or(face)
+    }
+
+    /// The nodes of a face that carry a constant traction on it, each with its area.
+    pub(super) fn areas(&self, tet: u32, face: [u32; 3]) -> Vec<(u32, f64)> {
+        let Some(mids) = self.mids_of(tet, face) else {
+            let third = norm(self.area_vector(tet, face)) / 3.0;
+            return face.map(|node| (node, third)).into();
+        };
+        let [a, b, c] = face;
+        let nodes = [a, b, c, mids[0], mids[1], mids[2]];
+        let areas = facet_shares(&nodes.map(|n| self.points[n as usize]));
+        // corners of straight ones have none but rounding
+        let least = NO_AREA * areas.iter().sum::<f64>();
+        let carries = |(_, area): &(u32, f64)| area.abs() > least;
+        nodes.into_iter().zip(areas).filter(carries).collect()
     }
 
     /// A face of a tetrahedron as triangles between neighbouring nodes.

@@ -193,6 +193,25 @@ fn tractions() {
     }
 }
 
+/// A plane surface whose edges are curved has the same area in a traction as in a pressure.
+#[test]
+fn tractions_on_curved_facets() {
+    let bent = |[x, y, z]: [f64; 3]| [x, y * (1.0 + x * (1.0 - x)), z];
+    let mesh = signorini_fem_mesh::Brick::new([1.0; 3], [2, 2, 2])
+        .build()
+        .expect("brick");
+    let mesh = mesh.raise_order().expect("order 2").map_points(bent).expect("bent");
+    let deck = crate::write::mesh(&mesh)
+        + crate::write::STEEL
+        + "*BOUNDARY\nN5, 1, 3\n"
+        + &step("*DSLOAD\nS6, TRVEC, 10., 1., 0., 0.\nS6, P, 10.\n");
+    let scene = read(&deck).expect("deck").scene().expect("scene");
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+    simulation.step().expect("half");
+    let force = simulation.step().expect("a step").reactions().loads.force;
+    assert!(force[0] > 11.5 && (force[0] + force[2]).abs() < 1e-12, "{force:?}");
+}
+
 /// Many different pressures become forces at nodes with the same resultant.
 #[test]
 fn many_pressures() {

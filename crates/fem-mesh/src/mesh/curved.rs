@@ -67,6 +67,18 @@ pub(crate) fn curved_facet(points: &[Vec3; 6], l: &[f64; 3]) -> (Vec3, Vec3) {
     (quadrature::at(points, &facet_shape(l)), scale(0.5, cross(u, v)))
 }
 
+/// The areas that nodes of a facet have in a constant traction: integrals of their shape functions.
+pub fn facet_shares(points: &[Vec3; 6]) -> [f64; 6] {
+    let mut out = [0.0; 6];
+    for (l, weight) in quadrature::triangle() {
+        let measure = weight * norm(curved_facet(points, &l).1);
+        for (share, shape) in out.iter_mut().zip(facet_shape(&l)) {
+            *share += measure * shape;
+        }
+    }
+    out
+}
+
 /// Unit normals of a facet at its corners and mid-nodes; `None` if it is plane.
 pub fn facet_normals(points: &[Vec3; 6]) -> Option<[Vec3; 6]> {
     let middle = |a: usize, b: usize| std::array::from_fn(|i| if i == a || i == b { 0.5 } else { 0.0 });
