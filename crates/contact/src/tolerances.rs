@@ -265,6 +265,8 @@ pub(crate) const ORDERS: [f64; 2] = [0.5, 2.5];
 /// no condition but continuity is left to them, and what copies differ by, over the largest displacement, is a
 /// thirtieth of that error and less in compact bodies. The certificate tells where it is not, as in thin ones.
 pub(crate) const LINEAR_SLACK: f64 = 15.0;
+/// The most that it may be: beyond, nothing is solved.
+pub(crate) const LINEAR_AT_MOST: f64 = 0.5;
 
 /// Products of a step that never count as effort: with the inverse of a formed F a step with hard contact takes as many.
 pub(crate) const EASY: usize = 200;
@@ -373,6 +375,9 @@ pub(crate) const LONG_SLIP: f64 = 1.0;
 /// Distance of the nearest point of a contact, over the longest side of the box around the body, above which it is
 /// rather a mistake in units.
 pub(crate) const LARGE_GAP: f64 = 1.0;
+
+/// Overlaps over [`ROUNDING`] that coordinates written with eleven digits make; they are closed without a word.
+pub(crate) const DIGITS: f64 = 30.0;
 
 /// Distance of facets from the curve that they stand for, over an overlap measured between them, above which that is not
 /// known: with a tenth a ring of 40 on a shaft of 60 cells around has 4 % too much pressure, and up to 70 % at points.

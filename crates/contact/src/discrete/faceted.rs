@@ -10,7 +10,7 @@ use super::partners::Paired;
 use super::points::{ContactPoint, of_contact};
 use crate::error::ContactError;
 use crate::scene::{Closing, Gap, Scene};
-use crate::tolerances::{DEEP, FACETED, KINK, TOUCHING};
+use crate::tolerances::{DEEP, DIGITS, FACETED, KINK, TOUCHING};
 use signorini_fem_mesh::internal::DisjointSets;
 use signorini_fem_mesh::vec3::{add, cross, dot, norm, scale, sub};
 use signorini_fem_mesh::{Surface, TetMesh};
@@ -111,7 +111,7 @@ pub(super) fn close_faceted(
                 counts = [counts[0] + points, counts[1] + usize::from(points > 0)];
             }
             let deepest = if deepest.depth > known.depth { deepest } else { known };
-            out.closed = Some((deepest, counts));
+            out.closed = Some((deepest, counts)).filter(|(deepest, _)| deepest.depth > DIGITS * rounding);
             continue;
         }
         let presses = |(f, o): &(&Faceted, Overlap)| o.sagitta > FACETED * o.depth && !f.is_over(&scene.mesh, o);

@@ -17,8 +17,8 @@ use crate::scene::Friction;
 use crate::settings::{Preconditioner, Settings};
 use crate::status::StepStatus;
 use crate::tolerances::{
-    AT_ONCE, BEFORE_INSIDE, CONTRADICTION, EASY, EXPLICIT_PRODUCTS, INSIDE, LINEAR_SLACK, LITTLE, SHARED_ROWS,
-    STIFF_GRADED, STIFF_MEANS, STIFF_ROWS,
+    AT_ONCE, BEFORE_INSIDE, CONTRADICTION, EASY, EXPLICIT_PRODUCTS, INSIDE, LINEAR_AT_MOST, LINEAR_SLACK, LITTLE,
+    SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS,
 };
 use signorini_fem_mesh::decomposition::is_strongly_graded;
 use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
@@ -341,7 +341,10 @@ impl ActiveSetSolver {
         let [least, least_contact] = problem.least(task.settings.tolerance);
         let least = least.max(vector::norm(&problem.handed_on));
         let contact = !model.points.is_empty();
-        let tolerance = task.settings.tolerance * if contact { 1.0 } else { LINEAR_SLACK };
+        let tolerance = match contact {
+            true => task.settings.tolerance,
+            false => (task.settings.tolerance * LINEAR_SLACK).min(LINEAR_AT_MOST),
+        };
         let settings = self
             .settings
             .clone()

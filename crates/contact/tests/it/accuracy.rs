@@ -216,3 +216,17 @@ fn the_likely_error_is_above_the_true_one() {
         }
     }
 }
+
+/// Multipliers are solved less well where there is no contact, but solved.
+#[test]
+fn the_largest_tolerance_does_without_contact() {
+    let scene = Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), steel())
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_load(Load::pressure(brick::X_MAX, 1e6))
+        .with_boxes([2, 1, 1]);
+    for method in methods() {
+        let mut simulation = Simulation::new(scene.clone(), at(0.1).with_method(method)).expect("set-up");
+        let result = simulation.step().expect("step");
+        assert!(result.require_converged().is_ok());
+    }
+}
