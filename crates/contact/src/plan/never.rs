@@ -3,22 +3,25 @@
 use crate::discrete::DiscreteScene;
 use crate::part::Part;
 use crate::report::Warning;
-use crate::scene::Scene;
+use crate::scene::{Scene, Span};
 use crate::tolerances::NO_LOAD;
 use signorini_fem_mesh::History;
 
 /// Parts of a step at which functions of time are looked at between its ends.
 const BETWEEN: [f64; 2] = [0.31, 0.5];
 
-/// The first support or contact in whose span no step ends. What starts when the last step ends waits on purpose.
+/// The first support or contact in whose span no step ends, or coupling that locks behind all of them. What starts when
+/// the last step ends waits on purpose.
 pub(super) fn between_steps(scene: &Scene) -> Option<Warning> {
     let times = scene.analysis.times();
     let last = *times.last()?;
     let supports = scene.supports.iter().map(|s| s.span).enumerate();
     let contacts = scene.contacts.iter().map(|c| c.span).enumerate();
+    let locks = scene.couplings.iter().map(|c| c.lockable()).enumerate();
+    let locks = locks.filter_map(|(k, lock)| Some((Part::Coupling(k), Span::from(lock?.1))));
     let all =
         (supports.map(|(k, span)| (Part::Support(k), span))).chain(contacts.map(|(k, span)| (Part::Contact(k), span)));
-    let mut all = all.filter(|(_, span)| span.start != Some(last));
+    let mut all = all.chain(locks).filter(|(_, span)| span.start != Some(last));
     let (part, span) = all.find(|(_, span)| !times.iter().any(|&end| span.has(end)))?;
     Some(Warning::BetweenSteps {
         part,
@@ -28,15 +31,27 @@ pub(super) fn between_steps(scene: &Scene) -> Option<Warning> {
     })
 }
 
-/// The first load, or motion of a support, whose history is zero at the end of each step but not at all times.
+/// The first load, or motion of a support, an obstacle or a coupling, whose history is zero at the end of each step but
+/// not at all times.
 pub(super) fn zero_at_steps(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
     let loads = scene.loads.iter().zip(&discrete.loads).enumerate();
     let loads = loads.filter(|(_, (_, forces))| forces.iter().flatten().any(|f| *f != 0.0));
     let supports = scene.supports.iter().enumerate();
     let motions = supports.filter_map(|(k, s)| Some((k, s.motion.as_ref()?)));
     let motions = motions.filter(|(_, (ways, _))| ways.iter().flatten().any(|w| *w != 0.0));
+    let contacts = scene.contacts.iter().enumerate();
+    let obstacles = contacts.filter_map(|(k, contact)| {
+        let (_, history) = contact.motion.as_ref().filter(|(way, _)| *way != [0.0; 3])?;
+        Some((Part::Contact(k), history))
+    });
+    let couplings = scene.couplings.iter().enumerate().flat_map(|(k, coupling)| {
+        let motions = coupling.motions().iter().filter(|(way, _)| *way != [0.0; 6]);
+        motions.map(move |(_, history)| (Part::Coupling(k), history))
+    });
     let mut all = (loads.map(|(k, (load, _))| (Part::Load(k), &load.history)))
-        .chain(motions.map(|(k, (_, history))| (Part::Support(k), history)));
+        .chain(motions.map(|(k, (_, history))| (Part::Support(k), history)))
+        .chain(obstacles)
+        .chain(couplings);
     let times = scene.analysis.times();
     all.find_map(|(part, history)| {
         let (time, factor) = largest(history, times)?;

@@ -43,7 +43,7 @@ pub use pairs::ContactPair;
 pub use partition::Partition;
 pub(crate) use pose::Pose;
 pub use scene::Scene;
-pub(crate) use span::is_past;
+pub(crate) use span::{Span, is_past};
 pub use spring::Spring;
 pub(crate) use stage::Stage;
 pub use support::{Place, Support};

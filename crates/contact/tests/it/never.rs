@@ -20,6 +20,10 @@ fn never(scene: &Scene) -> Vec<Warning> {
     plan.warnings().iter().filter(such).cloned().collect()
 }
 
+fn plate() -> Coupling {
+    Coupling::rigid(brick::X_MAX, [1.0, 0.5, 0.5])
+}
+
 /// One warning is told, such a one, of this part, with the remedy.
 fn assert_told(scene: &Scene, is_such: impl Fn(&Warning) -> bool, part: Part, says: &str) {
     let found = never(scene);
@@ -52,6 +56,11 @@ fn spans_between_the_ends_of_steps_are_told() {
             Part::Support(1),
             "from 0 s to 0.3 s",
         ),
+        (
+            scene().with_coupling(plate().with_lock([true; 6], 10.0)),
+            Part::Coupling(0),
+            "from 10 s on",
+        ),
     ] {
         let is_such = |w: &Warning| matches!(w, Warning::BetweenSteps { part: own, last: 1.0, .. } if *own == part);
         assert_told(&scene, is_such, part, says);
@@ -65,6 +74,7 @@ fn spans_between_the_ends_of_steps_are_told() {
             .with_contact(floor().with_start(0.5)),
         // when all is over
         scene().with_contact(floor().with_start(1.0)),
+        scene().with_coupling(plate().with_lock([true; 6], 0.5)),
     ] {
         assert_eq!(never(&scene), []);
     }
@@ -84,7 +94,25 @@ fn histories_that_are_zero_at_all_steps_are_told() {
             Part::Load(2),
             "it is 3 at 2 s",
         ),
-        (scene().with_support(moved(hat)), Part::Support(1), "it is 1 at 0.2 s"),
+        (
+            scene().with_support(moved(hat.clone())),
+            Part::Support(1),
+            "it is 1 at 0.2 s",
+        ),
+        (
+            scene().with_contact(Contact::rigid(brick::Z_MIN).with_motion([0.0, 0.0, 1e-4], hat.clone())),
+            Part::Contact(0),
+            "it is 1 at 0.2 s",
+        ),
+        (
+            scene().with_coupling(
+                plate()
+                    .with_held([true; 6])
+                    .with_motion([1e-4, 0.0, 0.0, 0.0, 0.0, 0.0], hat),
+            ),
+            Part::Coupling(0),
+            "it is 1 at 0.2 s",
+        ),
     ] {
         let is_such = |w: &Warning| matches!(w, Warning::ZeroAtSteps { part: own, .. } if *own == part);
         assert_told(&scene, is_such, part, says);
