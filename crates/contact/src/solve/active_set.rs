@@ -22,6 +22,7 @@ use crate::tolerances::{
 };
 use signorini_fem_mesh::decomposition::is_strongly_graded;
 use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
+use signorini_qp::internal::enter_active_set;
 use signorini_qp::{
     ActiveSetSettings, EqualityProjector, MovingSet, ProductSet, QpError, Status, SymmetricOperator, active_set,
     interior_point, vector,
@@ -137,6 +138,15 @@ impl ActiveSetSolver {
         report.counters.inequality_solves = usize::from(contact);
         self.start.resize(iterate.lambda.len(), 0.0);
         vector::copy(&iterate.lambda, &mut self.start);
+        if iterate.attempt == Attempt::Rest {
+            // of no products, the active set alone, for the amplitudes
+            let stood = [iterate.lambda.clone(), iterate.f_lambda.clone()];
+            let known = iterate.known;
+            self.active_sets(task, iterate, (0, false), &mut report)?;
+            ([iterate.lambda, iterate.f_lambda], iterate.known) = (stood, known);
+            report.status = StepStatus::Stagnated;
+            return self.stay(task, iterate, report);
+        }
         report.status = match iterate.attempt {
             Attempt::Fallback => StepStatus::Stagnated,
             _ => step_status(self.active_sets_or_explicit(task, iterate, &mut report)?),
@@ -164,10 +174,11 @@ impl ActiveSetSolver {
         iterate: &mut Iterate,
         mut report: StepReport,
     ) -> Result<StepReport, ContactError> {
-        let dual = task.model.tfeti.dual();
-        dual.apply(&iterate.lambda, &mut iterate.f_lambda, &mut dual.scratch());
-        report.counters.products += 1;
-        iterate.known = true;
+        if !std::mem::replace(&mut iterate.known, true) {
+            let dual = task.model.tfeti.dual();
+            dual.apply(&iterate.lambda, &mut iterate.f_lambda, &mut dual.scratch());
+            report.counters.products += 1;
+        }
         self.amplitudes(task, iterate);
         Ok(report)
     }
@@ -349,7 +360,7 @@ impl ActiveSetSolver {
             .settings
             .clone()
             .with_tolerance(tolerance)
-            .limited_to(most)
+            .limited_to(most.max(1))
             .with_brief(brief);
         let settings = settings.with_error_floor(least).with_contact_error_floor(least_contact);
         let coulomb = is_coulomb(model);
@@ -376,7 +387,10 @@ impl ActiveSetSolver {
             };
             let (set, known) = (MovingSet::new(&mut self.set, &mut hook), iterate.known);
             let point = ActiveSetPoint { x, ax, known };
-            let outcome = active_set(&dual, &mut self.space, set, point, &settings, &mut self.work);
+            let outcome = match most {
+                0 => enter_active_set(&dual, &mut self.space, set, point, &settings, &mut self.work),
+                _ => active_set(&dual, &mut self.space, set, point, &settings, &mut self.work),
+            };
             if let (Some(part), Some([x, ax])) = (part, &own) {
                 part.complete(x, &mut iterate.lambda);
                 part.complete(ax, &mut iterate.f_lambda);

@@ -41,6 +41,8 @@ pub(crate) struct Iterate {
 /// Attempts at a step, one after another as long as it is lost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Attempt {
+    /// What stands, where nothing has changed: nothing is solved, and the certificate tells.
+    Rest,
     /// By active sets alone: there is another start.
     First,
     /// From that start, or the only one, by active sets and then by the paper's method.

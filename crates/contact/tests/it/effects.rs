@@ -184,3 +184,15 @@ fn translates_share_their_factors() {
     let system = simulation.tfeti();
     assert_eq!((system.subdomains(), system.report().classes.len()), (3, 2));
 }
+
+/// Loads that stay: with backward Euler what stands is the solution, and one product tells.
+#[test]
+fn steps_at_which_nothing_changes_cost_one_product() {
+    let scene = pressed(4, Friction::coulomb(0.3)).with_analysis(Analysis::quasistatic(1.0, 4));
+    let (_, results) = run(scene, Settings::default());
+    let products: Vec<usize> = results.iter().map(|r| r.report.counters.products).collect();
+    assert!(products[0] > 1 && products[1..] == [1; 3], "{products:?}");
+    let last = &results[3];
+    assert_close(&last.displacement, &results[0].displacement, 1e-10, "displacement");
+    assert_eq!(last.report.counters.active_sets, 0);
+}

@@ -126,3 +126,20 @@ fn histories_that_are_zero_at_all_steps_are_told() {
         assert_eq!(never(&scene), []);
     }
 }
+
+/// What acts in one stage alone makes forces all the same.
+#[test]
+fn a_stage_in_which_nothing_acts_is_not_told() {
+    let pressed = || Contact::rigid(brick::Z_MIN).with_gap(-1e-5);
+    for contact in [pressed().with_end(0.5), pressed().with_start(0.5)] {
+        let scene = Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), steel())
+            .with_support(Support::fixed(brick::Z_MAX))
+            .with_contact(contact)
+            .with_analysis(Analysis::quasistatic(1.0, 4));
+        let idle = |w: &Warning| matches!(w, Warning::NothingActs { .. });
+        let plan = Plan::new(&scene, &Settings::default()).expect("plan");
+        assert!(!plan.warnings().iter().any(idle), "{:?}", plan.warnings());
+        let simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        assert!(!simulation.plan().warnings().iter().any(idle));
+    }
+}

@@ -364,3 +364,42 @@ fn statically_determinate_bodies_take_no_iterations() {
         }
     }
 }
+
+/// A plane of symmetry that cuts the contact surface, and a clamp: what supports hold no friction and no gap moves.
+#[test]
+fn quadratic_floors_meet_what_supports_hold() {
+    let mesh = block([1.0; 3], [2, 3, 2]).raise_order().expect("quadratic");
+    let floor = |gap: f64| foundation(Friction::coulomb(0.2)).with_gap(gap);
+    let scene = Scene::new(mesh, steel())
+        .with_load(Load::traction(brick::Z_MAX, [0.0, 1e7, -1e8]))
+        .with_support(Support::components(brick::Y_MIN, [false, true, false]));
+    let sided = Support::components(brick::X_MIN, [true, false, false]);
+    let result = solve(scene.clone().with_support(sided).with_contact(floor(0.0)), tight());
+    let at = |p: &&PointState| scene.mesh().points()[p.node as usize];
+    let points = result.points.iter().filter(|p| at(p)[0] == 0.0);
+    let forces: Vec<[f64; 3]> = points.map(|p| p.force()).collect();
+    let pressed: f64 = forces.iter().map(|f| f[2]).sum();
+    assert!(forces.len() > 3 && pressed.abs() > 1e6, "{forces:?}");
+    assert!(forces.iter().all(|f| f[0].abs() < 1e-6 * pressed.abs()), "{forces:?}");
+    assert!(result.points.iter().any(|p| p.force()[0].abs() > 1e-4 * pressed.abs()));
+    let clamped = scene.with_support(Support::fixed(brick::X_MAX));
+    assert_certified(&solve(clamped.clone().with_contact(floor(0.0)), tight()), "clamped");
+    let inside = refused(&clamped.with_contact(floor(-1e-4))).to_string();
+    assert!(inside.contains("inside the obstacle"), "{inside}");
+}
+
+/// A leaf clamped on a floor and lifted at its tip: a mean at the clamp saw how it bends, and pressed with 144 N.
+#[test]
+fn quadratic_leaves_that_are_lifted_off_a_floor_press_nowhere() {
+    for cells in [20, 23] {
+        let leaf = block([100.0, 10.0, 1.0], [cells, 3, 1])
+            .raise_order()
+            .expect("quadratic");
+        let scene = Scene::new(leaf, uniform(2.1e5, 0.3))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_contact(foundation(Friction::coulomb(0.1)))
+            .with_load(Load::force(brick::X_MAX, [0.0, 0.0, 3.0]));
+        let force = solve(scene, Settings::default()).summary.normal_force;
+        assert!(force < 1e-3, "{force}");
+    }
+}

@@ -34,5 +34,7 @@ pub use coupling::RadiusSlope;
 pub use problem::{ActiveSetPoint, ActiveSetProblem};
 pub use settings::{ActiveSetReport, ActiveSetSettings};
 pub use solver::active_set;
+#[doc(hidden)]
+pub use solver::enter_active_set;
 pub use view::{ActiveSetPreconditioner, ActiveSetView, Freedom};
 pub use workspace::ActiveSetWorkspace;

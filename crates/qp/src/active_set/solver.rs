@@ -56,6 +56,29 @@ pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrecon
     Ok(run.finish(status))
 }
 
+/// Enters the active set that a point tells, with projector and preconditioner, and solves nothing on it; the point is
+/// then not to be used.
+///
+/// # Errors
+/// As [`active_set`].
+#[doc(hidden)]
+pub fn enter_active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
+    problem: &ActiveSetProblem<'_, A, M>,
+    projector: &mut C,
+    set: MovingSet<'_, ProductSet>,
+    point: ActiveSetPoint<'_>,
+    settings: &ActiveSetSettings,
+    work: &mut ActiveSetWorkspace<A, M>,
+) -> Result<ActiveSetReport, QpError> {
+    settings.validate()?;
+    check(problem, projector, set.set, &point, work)?;
+    let mut run = Run::new(problem, projector, set, point, settings, work);
+    run.start()?;
+    run.enter()?;
+    run.at.report.status = Status::IterationLimit;
+    Ok(run.at.report)
+}
+
 /// From the start to a solution, or to where the run gives up.
 pub(super) fn solve<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
     run: &mut Run<'_, A, C, M>,
