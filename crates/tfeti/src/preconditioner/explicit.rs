@@ -159,7 +159,7 @@ impl ExplicitInverse {
     /// Solves `F x = linear` with `G x = e` where a `solve` finds the contact rows from those of `x`: it has their matrix and
     /// load, all other rows eliminated. It is asked again, with another load, until `G x = e` holds, which the weight leaves
     /// to do (method of multipliers), a few times at most, from where the last time ended whether that was a solution or
-    /// not. For whole vectors. `x` is that which lacks the least, and whether it was a solution is told.
+    /// not. For whole vectors. `x` is that which lacks the least, a solution if there was one, which is told.
     ///
     /// # Errors
     /// Those of `solve`, and [`QpError`] for a matrix that has overflowed.
@@ -198,7 +198,8 @@ impl ExplicitInverse {
             lacks.iter_mut().zip(e).for_each(|(lacks, e)| *lacks = e - *lacks);
             let lack = vector::norm(&lacks) / vector::norm(x).max(f64::MIN_POSITIVE);
             waited += 1;
-            if lack < least || found && !solved {
+            let better = if found == solved { lack < least } else { found };
+            if better {
                 (solved, least, waited) = (found, lack, 0);
                 best.clone_from(&ordered);
             }
