@@ -110,5 +110,5 @@ pub mod internal {
     pub use crate::subdomain::kernel::Kernel;
     pub use crate::subdomain::rate::Rate;
     pub use crate::system::part::SystemPart;
-    pub use crate::tolerances::{HELD, HELD_MEANS, RIGID};
+    pub use crate::tolerances::RIGID;
 }

@@ -13,10 +13,10 @@ pub(crate) const TRANSLATE: f64 = 1e-12;
 /// Directions: the share that is left of one that depends on others, or that supports fix.
 pub(crate) const FIXED: f64 = 1e-8;
 /// Share of the mean of a side of several nodes from which on supports hold that side.
-pub const HELD: f64 = 0.25;
+pub(crate) const HELD: f64 = 0.25;
 /// The same where both sides are means, in a mesh of order 2: of a corner on a plane that supports hold it is a quarter
 /// or a half, of one beside the plane a tenth at most.
-pub const HELD_MEANS: f64 = 0.2;
+pub(crate) const HELD_MEANS: f64 = 0.2;
 /// Prescribed displacements in one direction: relative difference that supports may have.
 pub(crate) const AGREEING: f64 = 1e-7;
 /// Nodes of a rigid subdomain: largest distance from a line, relative to its length, on which they lie. At 3e-6 loads about

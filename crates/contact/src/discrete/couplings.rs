@@ -10,7 +10,7 @@ use signorini_fem_mesh::decomposition::Rigid;
 use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, is_finite, norm, scale, sub};
 use signorini_fem_mesh::{Decomposition, History, LoadError, SurfaceFrame};
-use signorini_tfeti::internal::{HELD, HELD_MEANS, PrescribedDirection, forces_at_three, unsaid_directions};
+use signorini_tfeti::internal::{PrescribedDirection, forces_at_three, unsaid_directions};
 use signorini_tfeti::{ContactConstraint, Directions, NodeSupport, RigidSupport, Side};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -258,10 +258,9 @@ impl Couplings {
                 let stiff = stiff.filter(|(n, _)| self.has(*n) || is_held(*n, point.frame.normal));
                 stiff.map(|(_, weight)| weight).sum()
             };
-            let least = match (&sides.partner, sides.own.nodes().len()) {
-                (None, _) => 1.0 - ALONG,
-                (Some(_), 1) => HELD,
-                (Some(_), _) => HELD_MEANS,
+            let least = match sides.partner {
+                None => 1.0 - ALONG,
+                Some(_) => sides.own.held_from(),
             };
             if stiff(&sides.own) >= least && sides.partner.as_ref().is_none_or(|partner| stiff(partner) >= least) {
                 let reason = "what it could touch is rigid or held, too, so that no contact force is determined; leave \

@@ -17,8 +17,10 @@ pub(super) fn between_steps(scene: &Scene) -> Option<Warning> {
     let last = *times.last()?;
     let supports = scene.supports.iter().map(|s| s.span).enumerate();
     let contacts = scene.contacts.iter().map(|c| c.span).enumerate();
-    let locks = scene.couplings.iter().map(|c| c.lockable()).enumerate();
-    let locks = locks.filter_map(|(k, lock)| Some((Part::Coupling(k), Span::from(lock?.1))));
+    let locks = scene.couplings.iter().enumerate().filter_map(|(k, coupling)| {
+        let (start, end) = (Some(coupling.lockable()?.1), None);
+        Some((Part::Coupling(k), Span { start, end }))
+    });
     let all =
         (supports.map(|(k, span)| (Part::Support(k), span))).chain(contacts.map(|(k, span)| (Part::Contact(k), span)));
     let mut all = all.chain(locks).filter(|(_, span)| span.start != Some(last));

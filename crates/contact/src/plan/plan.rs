@@ -8,7 +8,7 @@ use crate::error::ContactError;
 use crate::report::Warning;
 use crate::scene::{Scene, Stage};
 use crate::settings::{MethodKind, Settings};
-use signorini_tfeti::internal::{Forecast, HELD, HELD_MEANS, Rate, forecast_levels};
+use signorini_tfeti::internal::{Forecast, Rate, forecast_levels};
 use std::collections::BTreeSet;
 
 /// Sizes of a scene and the method chosen for it.
@@ -237,15 +237,9 @@ impl Plan {
 /// set-up counts exactly.
 fn free_directions(point: &ContactPoint, supports: &Supports) -> usize {
     let held = |(node, _): (u32, f64)| supports.directions.get(&node).map_or(0, Vec::len);
-    let Some(partner) = &point.sides.partner else {
-        return 3 - point.sides.nodes().map(held).min().unwrap_or(3);
-    };
+    let sides = &point.sides;
     // a side of several nodes is held where a good part of it is
-    let enough = if point.sides.own.nodes().len() > 1 {
-        HELD_MEANS
-    } else {
-        HELD
-    };
+    let enough = sides.own.held_from();
     let of_side = |nodes: &[(u32, f64)]| {
         let part = |least: usize| {
             let nodes = nodes.iter().filter(|n| held(**n) >= least);
@@ -253,5 +247,6 @@ fn free_directions(point: &ContactPoint, supports: &Supports) -> usize {
         };
         (1..=3).rev().find(|&least| part(least) >= enough).unwrap_or(0)
     };
-    3 - of_side(point.sides.own.nodes()).min(of_side(partner.nodes()))
+    let partner = sides.partner.as_ref().map_or(3, |partner| of_side(partner.nodes()));
+    3 - of_side(sides.own.nodes()).min(partner)
 }

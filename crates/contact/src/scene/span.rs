@@ -11,14 +11,6 @@ pub(crate) struct Span {
     pub(crate) end: Option<f64>,
 }
 
-impl From<f64> for Span {
-    /// From a time on.
-    fn from(start: f64) -> Self {
-        let (start, end) = (Some(start), None);
-        Self { start, end }
-    }
-}
-
 impl Span {
     /// Whether a step that ends at this time belongs to it.
     pub(crate) fn has(&self, step: f64) -> bool {

@@ -374,7 +374,13 @@ fn quadratic_floors_meet_what_supports_hold() {
         .with_load(Load::traction(brick::Z_MAX, [0.0, 1e7, -1e8]))
         .with_support(Support::components(brick::Y_MIN, [false, true, false]));
     let sided = Support::components(brick::X_MIN, [true, false, false]);
-    let result = solve(scene.clone().with_support(sided).with_contact(floor(0.0)), tight());
+    let sided = scene.clone().with_support(sided).with_contact(floor(0.0));
+    let planned = Plan::new(&sided, &tight()).expect("plan").dual();
+    assert_eq!(
+        planned,
+        Simulation::new(sided.clone(), tight()).expect("set-up").plan().dual()
+    );
+    let result = solve(sided, tight());
     let at = |p: &&PointState| scene.mesh().points()[p.node as usize];
     let points = result.points.iter().filter(|p| at(p)[0] == 0.0);
     let forces: Vec<[f64; 3]> = points.map(|p| p.force()).collect();

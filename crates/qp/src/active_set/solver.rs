@@ -49,8 +49,7 @@ pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrecon
     settings: &ActiveSetSettings,
     work: &mut ActiveSetWorkspace<A, M>,
 ) -> Result<ActiveSetReport, QpError> {
-    settings.validate()?;
-    check(problem, projector, set.set, &point, work)?;
+    check(problem, projector, set.set, &point, (settings, work))?;
     let mut run = Run::new(problem, projector, set, point, settings, work);
     let status = solve(&mut run)?;
     Ok(run.finish(status))
@@ -70,8 +69,7 @@ pub fn enter_active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSet
     settings: &ActiveSetSettings,
     work: &mut ActiveSetWorkspace<A, M>,
 ) -> Result<ActiveSetReport, QpError> {
-    settings.validate()?;
-    check(problem, projector, set.set, &point, work)?;
+    check(problem, projector, set.set, &point, (settings, work))?;
     let mut run = Run::new(problem, projector, set, point, settings, work);
     run.start()?;
     run.enter()?;
@@ -147,8 +145,9 @@ fn check<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
     projector: &C,
     set: &ProductSet,
     ActiveSetPoint { x, ax, .. }: &ActiveSetPoint<'_>,
-    work: &ActiveSetWorkspace<A, M>,
+    (settings, work): (&ActiveSetSettings, &ActiveSetWorkspace<A, M>),
 ) -> Result<(), QpError> {
+    settings.validate()?;
     let n = problem.operator.dim();
     expect_lengths([
         ("x", x.len(), n),

@@ -4,7 +4,7 @@ use crate::error::TfetiError;
 use crate::linalg::entry;
 use crate::rows::side::{ContactConstraint, check_constraints};
 use crate::rows::supports::{FixedNode, MergedSupports, NodeSupport};
-use crate::tolerances::{ANGLE, FIXED, HELD, HELD_MEANS};
+use crate::tolerances::{ANGLE, FIXED};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use signorini_fem_mesh::vec3::dot;
 
@@ -205,14 +205,14 @@ impl Space {
                 // an obstacle
                 false => Matrix3::identity(),
             };
-            let (own, least) = match own {
-                1 => (Matrix3::identity() - self.nodes[0].1, HELD),
+            let least = point.side.held_from();
+            let own = match own {
+                1 => Matrix3::identity() - self.nodes[0].1,
                 // the directions that supports hold at a good part of a mean
                 _ => {
                     let held = SymmetricEigen::new(shares[..own].iter().sum::<Matrix3<f64>>());
-                    let found = (0..3).filter(|&k| held.eigenvalues[k] >= HELD_MEANS);
-                    let found = found.map(|k| along(&held.eigenvectors.column(k).into()));
-                    (found.sum(), HELD_MEANS)
+                    let found = (0..3).filter(|&k| held.eigenvalues[k] >= least);
+                    found.map(|k| along(&held.eigenvectors.column(k).into())).sum()
                 }
             };
             // supports may fix the normal, too

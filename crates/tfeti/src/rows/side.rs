@@ -2,7 +2,7 @@
 
 use crate::error::TfetiError;
 use crate::rows::supports::check_node;
-use crate::tolerances::{SAME, UNIT};
+use crate::tolerances::{HELD, HELD_MEANS, SAME, UNIT};
 use nalgebra::Matrix3;
 use signorini_fem_mesh::SurfaceFrame;
 use signorini_fem_mesh::vec3::{dot, skewed};
@@ -37,6 +37,13 @@ impl Side {
     pub fn with_turn(mut self, turn: Vec<[[f64; 3]; 3]>) -> Self {
         self.turn = turn;
         self
+    }
+
+    /// The part of its weights from which on what holds their nodes holds it.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn held_from(&self) -> f64 {
+        if self.nodes.len() > 1 { HELD_MEANS } else { HELD }
     }
 
     /// The nodes and their weights.
