@@ -277,8 +277,10 @@ pub(crate) const LITTLE: usize = 300;
 pub(crate) const INSIDE: f64 = 1e-18;
 /// What forming F and a step with its inverse may cost, in products, to be tried as soon as predictions run in circles.
 pub(crate) const AT_ONCE: usize = 3000;
-/// Products of a step with that inverse after which interior points look for another start.
-pub(crate) const BEFORE_INSIDE: usize = 12;
+/// Active sets without progress from which on predictions run in circles, and from which on, with that inverse, interior points
+/// look for another start.
+pub(crate) const CIRCLES: usize = 12;
+pub(crate) const BEFORE_INSIDE: usize = 3;
 /// Products of a step with that inverse after which it does not help: a set takes two or three.
 pub(crate) const EXPLICIT_PRODUCTS: usize = 1000;
 

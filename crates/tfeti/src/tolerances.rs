@@ -88,6 +88,8 @@ pub(crate) const BALANCES: usize = 12;
 pub(crate) const BALANCED: f64 = 1e-10;
 /// Solves in a row that leave no less, after which the best one is taken.
 pub(crate) const UNBALANCED: usize = 2;
+/// Part of a change that is not in those before, below which it tells nothing new.
+pub(crate) const SECANT: f64 = 1e-3;
 /// Pivot of a row in such an `F`, over its largest entry, up to which the row depends on others.
 pub(crate) const LEFT_OF_ROW: f64 = 1e-11;
 /// Added to the diagonal of a matrix until it can be factored, relative to its largest entry.

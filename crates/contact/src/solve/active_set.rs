@@ -17,8 +17,8 @@ use crate::scene::Friction;
 use crate::settings::{Preconditioner, Settings};
 use crate::status::StepStatus;
 use crate::tolerances::{
-    AT_ONCE, BEFORE_INSIDE, CONTRADICTION, EASY, EXPLICIT_PRODUCTS, INSIDE, LINEAR_AT_MOST, LINEAR_SLACK, LITTLE,
-    SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS,
+    AT_ONCE, BEFORE_INSIDE, CIRCLES, CONTRADICTION, EASY, EXPLICIT_PRODUCTS, INSIDE, LINEAR_AT_MOST, LINEAR_SLACK,
+    LITTLE, SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS,
 };
 use signorini_fem_mesh::decomposition::is_strongly_graded;
 use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
@@ -29,6 +29,12 @@ use signorini_qp::{
 };
 use signorini_tfeti::internal::{ExplicitCost, SystemPart};
 use signorini_tfeti::{ActiveSetProjector, DualOperator};
+
+/// A point that interior points have found, and its rigid amplitudes.
+struct Inside {
+    lambda: Vec<f64>,
+    alpha: Vec<f64>,
+}
 
 /// Solves of a step with contradicting points released.
 const TURNS: usize = 8;
@@ -136,13 +142,14 @@ impl ActiveSetSolver {
         let mut report = StepReport::new();
         let contact = !task.model.points.is_empty();
         report.counters.inequality_solves = usize::from(contact);
+        iterate.alpha.clear();
         self.start.resize(iterate.lambda.len(), 0.0);
         vector::copy(&iterate.lambda, &mut self.start);
         if iterate.attempt == Attempt::Rest {
             // of no products, the active set alone, for the amplitudes
             let stood = [iterate.lambda.clone(), iterate.f_lambda.clone()];
             let known = iterate.known;
-            self.active_sets(task, iterate, (0, false), &mut report)?;
+            self.active_sets(task, iterate, (0, usize::MAX), &mut report)?;
             ([iterate.lambda, iterate.f_lambda], iterate.known) = (stood, known);
             report.status = StepStatus::Stagnated;
             return self.stay(task, iterate, report);
@@ -162,8 +169,10 @@ impl ActiveSetSolver {
                 false => self.fall_back(task, iterate, report),
             };
         }
-        iterate.known = true;
-        self.amplitudes(task, iterate);
+        if iterate.alpha.is_empty() {
+            iterate.known = true;
+            self.amplitudes(task, iterate);
+        }
         Ok(report)
     }
 
@@ -201,7 +210,8 @@ impl ActiveSetSolver {
         if cost.is_none_or(|cost| iterate.effort < cost) {
             self.use_explicit(false, task, report);
             // bodies that supports hold find a path out of circles
-            let mut brief = !self.space.loose().is_empty() && at_once(&iterate.lambda);
+            let brief = !self.space.loose().is_empty() && at_once(&iterate.lambda);
+            let mut patience = if brief { CIRCLES } else { usize::MAX };
             loop {
                 let easy = step(&iterate.lambda).max(EASY);
                 let most = cost.map_or(usize::MAX, |cost| (cost - iterate.effort).saturating_add(easy));
@@ -209,14 +219,16 @@ impl ActiveSetSolver {
                 if left == 0 {
                     break;
                 }
-                status = self.active_sets(task, iterate, (left, brief), report)?;
+                status = self.active_sets(task, iterate, (left, patience), report)?;
                 let limited = status == Status::IterationLimit && report.counters.products >= most;
-                let circles = brief && status == Status::Stagnated && !at_once(&iterate.lambda);
+                let circles = patience == CIRCLES && status == Status::Stagnated && !at_once(&iterate.lambda);
                 // what carries now may make the inverse dearer
                 if !(limited || circles) {
                     break;
                 }
-                brief &= limited;
+                if !limited {
+                    patience = usize::MAX;
+                }
             }
             let easy = step(&iterate.lambda).max(EASY);
             let effort = report.counters.products.saturating_sub(easy);
@@ -230,10 +242,20 @@ impl ActiveSetSolver {
                 self.begin_again(iterate);
             }
             if self.use_explicit(true, task, report) {
-                status = self.active_sets(task, iterate, (BEFORE_INSIDE, true), report)?;
+                status = self.active_sets(task, iterate, (EXPLICIT_PRODUCTS, BEFORE_INSIDE), report)?;
                 if is_open(status) {
-                    self.begin_inside(task, iterate, report)?;
-                    status = self.active_sets(task, iterate, (EXPLICIT_PRODUCTS, false), report)?;
+                    let inside = self.begin_inside(task, iterate, report)?;
+                    let inside = inside.filter(|_| !std::mem::replace(&mut iterate.offered, true));
+                    let patience = if inside.is_some() { BEFORE_INSIDE } else { usize::MAX };
+                    status = self.active_sets(task, iterate, (EXPLICIT_PRODUCTS, patience), report)?;
+                    if is_open(status)
+                        && let Some(inside) = inside
+                    {
+                        // where all of a body's friction is spent active sets hardly hold it, and lead away: the certificate judges
+                        (iterate.lambda, iterate.alpha) = (inside.lambda, inside.alpha);
+                        iterate.known = false;
+                        return Ok(Status::Converged);
+                    }
                 }
             }
             if is_open(status) {
@@ -243,7 +265,7 @@ impl ActiveSetSolver {
                     // bodies that contact alone holds may need other sets than these
                     self.use_explicit(false, task, report);
                     self.begin_again(iterate);
-                    status = self.active_sets(task, iterate, (usize::MAX, false), report)?;
+                    status = self.active_sets(task, iterate, (usize::MAX, usize::MAX), report)?;
                 }
             }
         }
@@ -256,10 +278,10 @@ impl ActiveSetSolver {
         task: Task<'_>,
         iterate: &mut Iterate,
         report: &mut StepReport,
-    ) -> Result<(), ContactError> {
+    ) -> Result<Option<Inside>, ContactError> {
         let Task { model, problem, .. } = task;
         let SelectedPreconditioner::Explicit(explicit) = &self.preconditioner else {
-            return Ok(());
+            return Ok(None);
         };
         if !is_finite(&iterate.lambda) {
             self.begin_again(iterate);
@@ -285,12 +307,13 @@ impl ActiveSetSolver {
         });
         written?;
         report.counters.interior_steps += steps;
-        if found.unwrap_or(false) && is_finite(&x) {
-            iterate.lambda = x;
-            iterate.known = false;
-            self.work.trust_start();
-        }
-        Ok(())
+        let Some(alpha) = found.ok().flatten().filter(|_| is_finite(&x)) else {
+            return Ok(None);
+        };
+        iterate.lambda.clone_from(&x);
+        iterate.known = false;
+        self.work.trust_start();
+        Ok(Some(Inside { lambda: x, alpha }))
     }
 
     /// Back to the start of the step.
@@ -333,7 +356,7 @@ impl ActiveSetSolver {
         &mut self,
         task: Task<'_>,
         iterate: &mut Iterate,
-        (most, brief): (usize, bool),
+        (most, patience): (usize, usize),
         report: &mut StepReport,
     ) -> Result<Status, ContactError> {
         let Task { model, problem, .. } = task;
@@ -361,7 +384,7 @@ impl ActiveSetSolver {
             .clone()
             .with_tolerance(tolerance)
             .limited_to(most.max(1))
-            .with_brief(brief);
+            .with_patience(patience);
         let settings = settings.with_error_floor(least).with_contact_error_floor(least_contact);
         let coulomb = is_coulomb(model);
         if coulomb {

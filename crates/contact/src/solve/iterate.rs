@@ -28,12 +28,14 @@ pub(crate) struct Iterate {
     pub(crate) known_rows: Vec<f64>,
     /// Multiplier of the orthonormal coarse equality, for SMALSE.
     pub(crate) multiplier: Vec<f64>,
-    /// Rigid amplitudes `alpha` of (5.27), set by the solver.
+    /// Rigid amplitudes `alpha` of (5.27), set by the solver; empty until then.
     pub(crate) alpha: Vec<f64>,
     /// Products beyond those of easy solves, over all steps so far: where they are many, F is formed.
     pub(crate) effort: usize,
     /// Which attempt at the step its start is for.
     pub(crate) attempt: Attempt,
+    /// Whether a point that interior points have found has been given as a solution in this attempt.
+    pub(crate) offered: bool,
     /// The shortest step of conjugate gradients in the last solve with contact, in the end in this one; 0 if there was none.
     pub(crate) shortest_step: f64,
 }

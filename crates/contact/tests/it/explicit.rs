@@ -2,6 +2,8 @@
 //! a set. The same bits after a restart, and on several processes.
 
 use crate::common::*;
+use signorini_fem_mesh::mesh::drop_unused_nodes;
+use signorini_fem_mesh::vec3::centroid;
 use signorini_tfeti::internal::on_ranks;
 
 /// Products and interior steps of each step, and both to print.
@@ -182,4 +184,73 @@ fn a_washer_under_a_head_is_solved_from_inside() {
         "{what}"
     );
     assert!(inside[0] > 0 && products.iter().sum::<usize>() <= 350, "{what}");
+}
+
+/// The part of a block of cells of 2 mm about an axis that `is_inside` says, tagged across z, and at its ends along x.
+fn around(cells: [usize; 3], z: f64, first: u32, is_inside: impl Fn([f64; 3]) -> bool) -> TetMesh {
+    let lengths = cells.map(|n| 2.0 * n as f64);
+    let block = block(lengths, cells);
+    let (mut points, mut tets) = (block.points().to_vec(), block.tets().to_vec());
+    for x in &mut points {
+        *x = [x[0] - 0.5 * lengths[0], x[1] - 0.5 * lengths[1], x[2] + z];
+    }
+    tets.retain(|tet| is_inside(centroid(&tet.map(|n| points[n as usize]))));
+    drop_unused_nodes(&mut points, &mut tets, &mut []);
+    let end = |x: [f64; 3]| x[0].abs() > 0.5 * lengths[0] - 0.1;
+    let tag = |x: [f64; 3], n: [f64; 3]| match n[2].abs() > 0.5 {
+        true => Some(FacetTag(
+            first + 2 * u32::from(x[2].abs() < 5.0) + u32::from(n[2] > 0.0),
+        )),
+        false => end(x).then_some(FacetTag(first + 4 + u32::from(x[0] > 0.0))),
+    };
+    let mesh = TetMesh::new(points, tets, Vec::new()).expect("a part");
+    mesh.tag_boundary(tag)
+}
+
+/// Two plates that a bolt with clearance presses together, drawn apart along their seam until all of it slides, under head
+/// and nut, too: by the same friction, so that hardly anything tells how far the bolt goes along. Active sets took 10,000 products a step.
+#[test]
+fn a_bolted_seam_that_slides_is_solved_from_inside() {
+    let hole = |x: [f64; 3]| x[0].abs().max(x[1].abs()) > 4.0;
+    let shank = |x: [f64; 3]| x[2].abs() > 4.0 || x[0].abs().max(x[1].abs()) < 2.0;
+    let lower = around([10, 8, 2], -4.0, 10, hole);
+    let upper = around([12, 8, 2], 0.0, 20, hole);
+    let bolt = around([6, 6, 8], -8.0, 30, shank);
+    let [bottom, seam_below, seam_above, top, head, nut] = [12, 13, 22, 23, 32, 33].map(FacetTag);
+    let is_below = |tet: usize| Some(centroid(&bolt.tet_points(tet))[2] < 0.0);
+    let cut = [FacetTag(1), FacetTag(2)];
+    let (bolt, _) = bolt.cut(is_below, cut).expect("cut");
+    let mesh = lower
+        .append(&upper)
+        .and_then(|both| both.append(&bolt))
+        .expect("three bodies");
+    let mesh = mesh.raise_order().expect("quadratic");
+    let rough = |a, b| Contact::between(a, b).with_friction(Friction::coulomb(0.15));
+    let table = |values: Vec<(f64, f64)>| History::table(values).expect("history");
+    let drawn = Support::components(FacetTag(25), [true; 3]);
+    let along = Coupling::relative(0, [0.0; 3]).with_axis([0.0, 0.0, 1.0]);
+    let along = along.with_held([false, true, true, true, true, true]);
+    let scene = Scene::new(mesh, uniform(2.1e5, 0.3))
+        .with_support(Support::fixed(FacetTag(14)))
+        .with_support(drawn.with_motion([0.4, 0.0, 0.0], table(vec![(0.0, 0.0), (1.0, 0.0), (2.0, 1.0)])))
+        .with_contact(Contact::tied(cut[0], cut[1]))
+        .with_contact(rough(seam_above, seam_below))
+        .with_contact(rough(head, top))
+        .with_contact(rough(nut, bottom))
+        .with_coupling(along)
+        .with_load(Load::on_coupling(0, [0.0, 0.0, 8e3], [0.0; 3]).with_history(table(vec![
+            (0.0, 0.0),
+            (1.0, 1.0),
+            (2.0, 1.0),
+        ])))
+        .with_analysis(Analysis::quasistatic(2.0, 8));
+    let (_, results) = run(scene, Settings::default());
+    let ([products, inside], what) = costs(&results);
+    assert!(
+        results
+            .iter()
+            .all(|r| r.report.status.converged() && !r.report.fallback),
+        "{what}"
+    );
+    assert!(inside[6] > 0 && products.iter().all(|p| *p <= 300), "{what}");
 }

@@ -25,7 +25,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         self.path.away = if over > AWAY { self.path.away + 1 } else { 0 };
         let stays_away = self.repairs_suffice && self.path.away >= AWAY_SETS;
         let far = self.path.begun == 0 && (over > LED_AWAY || stays_away);
-        let lost = self.path.unknown && far || self.in_circles();
+        let lost = self.path.unknown && far || self.in_circles(PATIENCE);
         lost && self.path.begun < PATHS && self.safeguard.is_none()
     }
 

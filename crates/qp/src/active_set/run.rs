@@ -371,10 +371,10 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         }
     }
 
-    /// Whether predictions without a safeguard have made no progress for too long.
-    pub(crate) fn in_circles(&self) -> bool {
+    /// Whether predictions without a safeguard have made no progress for longer than that.
+    pub(crate) fn in_circles(&self, patience: usize) -> bool {
         let on_path = self.at.compliance.c > 0.0;
-        let waited = self.progress.waited >= PATIENCE || on_path && self.moved.unbalanced >= PATIENCE;
+        let waited = self.progress.waited >= patience || on_path && self.moved.unbalanced >= patience;
         waited && self.safeguard.is_none()
     }
 

@@ -26,6 +26,7 @@
 use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
 use crate::problem::{ConvexSet, EqualityProjector, MovingSet, ProductSet, SymmetricOperator};
 use crate::report::Status;
+use crate::tolerances::PATIENCE;
 
 use super::problem::{ActiveSetPoint, ActiveSetProblem};
 use super::run::Run;
@@ -116,14 +117,14 @@ pub(super) fn go_on<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrec
             continue;
         }
         run.note_progress(&place);
-        if run.settings.brief && run.in_circles() {
+        if run.in_circles(run.settings.patience) {
             return Ok(Status::Stagnated);
         }
         if run.wants_path(&place) {
             run.begin_path();
             continue;
         }
-        if run.in_circles() {
+        if run.in_circles(PATIENCE) {
             let anew = run.leave_path();
             run.start_safeguard();
             if anew {

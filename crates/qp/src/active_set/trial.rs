@@ -9,7 +9,7 @@
 use crate::error::QpError;
 use crate::problem::{EqualityProjector, MovingSet, Segment, SymmetricOperator};
 use crate::report::Status;
-use crate::tolerances::{TRIAL_AGAIN, TRIAL_PART};
+use crate::tolerances::{PATIENCE, TRIAL_AGAIN, TRIAL_PART};
 
 use super::problem::ActiveSetPoint;
 use super::run::Run;
@@ -37,7 +37,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         let products = at.report.products();
         self.next_trial = TRIAL_AGAIN * products;
         let part = (TRIAL_PART * products as f64) as usize;
-        let settings = self.settings.clone().limited_to(part.max(1)).with_brief(true);
+        let settings = self.settings.clone().limited_to(part.max(1)).with_patience(PATIENCE);
         let (mut set, mut x, mut ax) = (at.set.clone(), at.x.to_vec(), at.ax.to_vec());
         let mut work = ActiveSetWorkspace::new(at.problem.operator, at.problem.preconditioner);
         work.set_slopes(at.work.coupling.slopes());

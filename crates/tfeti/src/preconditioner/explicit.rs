@@ -12,7 +12,7 @@ use crate::system::part::SystemPart;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{
     BALANCED, BALANCES, EXPLICIT_CONTACT, EXPLICIT_ROWS, EXPLICIT_SETS, EXPLICIT_WEIGHT, INTERIOR_FACTORS, LEFT_OF_ROW,
-    ROW_OPERATIONS, SHIFTS, STREAMED, UNBALANCED,
+    ROW_OPERATIONS, SECANT, SHIFTS, STREAMED, UNBALANCED,
 };
 use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView, Freedom};
 use signorini_qp::{DenseOperator, QpError, Status, SymmetricOperator, vector};
@@ -133,6 +133,44 @@ impl Tfeti {
     }
 }
 
+/// What was aimed at last, and what was lacking; changes of both, those of what was lacking orthonormal.
+#[derive(Default)]
+struct Secants {
+    last: Option<[Vec<f64>; 2]>,
+    changes: Vec<[Vec<f64>; 2]>,
+}
+
+impl Secants {
+    /// Moves `aim` to where nothing is lacking as far as changes tell, and by the rest of what is.
+    fn advance(&mut self, aim: &mut [f64], mut lacks: Vec<f64>) {
+        let now = [aim.to_vec(), lacks.clone()];
+        if let Some([mut aims, mut change]) = self.last.take() {
+            vector::axpby(1.0, &now[0], -1.0, &mut aims);
+            vector::axpby(1.0, &now[1], -1.0, &mut change);
+            let whole = vector::norm(&change);
+            self.take(&mut aims, &mut change);
+            let length = vector::norm(&change);
+            if length > SECANT * whole {
+                vector::scale(length.recip(), &mut aims);
+                vector::scale(length.recip(), &mut change);
+                self.changes.push([aims, change]);
+            }
+        }
+        self.last = Some(now);
+        self.take(aim, &mut lacks);
+        vector::axpy(1.0, &lacks, aim);
+    }
+
+    /// Takes the part of the changes out of `lacks`, and what led to it from `aims`.
+    fn take(&self, aims: &mut [f64], lacks: &mut [f64]) {
+        for [aim, lack] in &self.changes {
+            let part = vector::dot(lack, lacks);
+            vector::axpy(-part, lack, lacks);
+            vector::axpy(-part, aim, aims);
+        }
+    }
+}
+
 fn alone(row: usize) -> Direction {
     [(row, 1.0), (row, 0.0)]
 }
@@ -158,8 +196,9 @@ impl ExplicitInverse {
 
     /// Solves `F x = linear` with `G x = e` where a `solve` finds the contact rows from those of `x`: it has their matrix and
     /// load, all other rows eliminated. It is asked again, with another load, until `G x = e` holds, which the weight leaves
-    /// to do (method of multipliers), a few times at most, from where the last time ended whether that was a solution or
-    /// not. For whole vectors. `x` is that which lacks the least, a solution if there was one, which is told.
+    /// to do (method of multipliers with secants: where all of a body's friction is spent, hardly anything but that load
+    /// holds the body), a few times at most, from where the last time ended whether that was a solution or not. For whole
+    /// vectors. `x` is that which lacks the least, a solution if there was one; its rigid amplitudes then.
     ///
     /// # Errors
     /// Those of `solve`, and [`QpError`] for a matrix that has overflowed.
@@ -170,14 +209,15 @@ impl ExplicitInverse {
         (linear, e): (&[f64], &[f64]),
         x: &mut [f64],
         mut solve: impl FnMut(&DenseOperator, &[f64], &mut [f64]) -> Result<Status, QpError>,
-    ) -> Result<bool, QpError> {
+    ) -> Result<Option<Vec<f64>>, QpError> {
         let others = self.rows - self.contact;
         let mut matrix = self.schur.clone();
         dense::mirror_lower(&mut matrix, self.contact);
         let matrix = DenseOperator::new(self.contact, matrix)?;
         let (mut aim, mut lacks) = (e.to_vec(), vec![0.0; e.len()]);
         let (mut ordered, mut scratch) = (vec![0.0; self.rows], coarse.scratch());
-        let (mut solved, mut best, mut least, mut waited) = (false, Vec::new(), f64::INFINITY, 0);
+        let mut secants = Secants::default();
+        let (mut solved, mut best, mut least, mut waited) = (false, [Vec::new(), Vec::new()], f64::INFINITY, 0);
         for _ in 0..BALANCES {
             coarse.transpose_times(&aim, &mut ordered);
             for (load, linear) in ordered.iter_mut().zip(linear) {
@@ -201,17 +241,21 @@ impl ExplicitInverse {
             let better = if found == solved { lack < least } else { found };
             if better {
                 (solved, least, waited) = (found, lack, 0);
-                best.clone_from(&ordered);
+                // of `F x - linear + Gᵀ alpha`
+                let alpha = lacks.iter().zip(e).zip(&aim);
+                let alpha = alpha.map(|((lack, e), aim)| self.weight * (e - lack - aim)).collect();
+                best = [ordered.clone(), alpha];
             }
             if lack <= BALANCED || waited == UNBALANCED {
                 break;
             }
-            vector::axpy(1.0, &lacks, &mut aim);
+            secants.advance(&mut aim, lacks.clone());
         }
+        let [best, alpha] = best;
         if !best.is_empty() {
             x.copy_from_slice(&best);
         }
-        Ok(solved)
+        Ok(solved.then_some(alpha))
     }
 
     /// The Schur complement in some directions, lower triangle, with a multiple of its largest entry on the diagonal.

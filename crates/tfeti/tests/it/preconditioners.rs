@@ -83,7 +83,15 @@ fn what_lacks_least_stays_where_later_solves_go_astray() {
     let mut lacks = vec![0.0; e.len()];
     system.coarse().apply(&x, &mut lacks, &mut system.coarse().scratch());
     lacks.iter_mut().zip(&e).for_each(|(lacks, e)| *lacks -= e);
-    assert!(solved.unwrap());
+    let alpha = solved.unwrap().expect("a solution");
+    // F x - linear + Gᵀ alpha = 0, but for that solve
+    let dual = system.dual();
+    let (mut left, mut turned) = (vec![0.0; x.len()], vec![0.0; x.len()]);
+    dual.apply(&x, &mut left, &mut dual.scratch());
+    system.coarse().transpose_times(&alpha, &mut turned);
+    let size = norm(&left) + norm(&turned);
+    (left.iter_mut().zip(&turned).zip(&linear)).for_each(|((left, turned), linear)| *left += turned - linear);
+    assert!(norm(&left) < 1e-4 * size, "{:e}", norm(&left) / size);
     assert!(norm(&lacks) < 1e-4 * norm(&x), "{:e}", norm(&lacks) / norm(&x));
     assert_eq!(errors.count(), 2);
 }
