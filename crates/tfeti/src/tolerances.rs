@@ -139,10 +139,10 @@ pub(crate) const BANDWIDTH: [f64; 2] = [6e10, 1.2e10];
 pub(crate) const PRODUCTS: usize = 2000;
 /// Bytes of dense matrices that still stay in the caches of one processor.
 pub(crate) const CACHE: u64 = 16 << 20;
-/// Most rows of an `F` that is formed (1.8 GB), and most contact rows of these; factors of interior points and active
+/// Most rows of an `F` that is formed (3.2 GB), and most contact rows of these; factors of interior points and active
 /// sets of a step with its inverse.
-pub(crate) const EXPLICIT_ROWS: usize = 15_000;
-pub(crate) const EXPLICIT_CONTACT: usize = 2000;
+pub(crate) const EXPLICIT_ROWS: usize = 20_000;
+pub(crate) const EXPLICIT_CONTACT: usize = 4000;
 pub(crate) const INTERIOR_FACTORS: f64 = 100.0;
 pub(crate) const EXPLICIT_SETS: f64 = 20.0;
 /// Time of an operation of a product with `F` over that of a dense factor, and operations of such a factor in the time

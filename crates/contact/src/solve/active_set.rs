@@ -207,7 +207,8 @@ impl ActiveSetSolver {
         let step = |x: &[f64]| costs.map_or(usize::MAX, |costs| costs.step(carrying(x)));
         let at_once = |x: &[f64]| costs.is_some_and(|costs| costs.forming.saturating_add(step(x)) <= AT_ONCE);
         let mut status = Status::IterationLimit;
-        if cost.is_none_or(|cost| iterate.effort < cost) {
+        // after a hard step the next one may be easy, which is looked at where its inverse would cost more
+        if cost.is_none_or(|cost| iterate.effort < cost || step(&iterate.lambda) > EASY) {
             self.use_explicit(false, task, report);
             // bodies that supports hold find a path out of circles
             let brief = !self.space.loose().is_empty() && at_once(&iterate.lambda);
