@@ -7,8 +7,8 @@ use crate::discrete::{ContactPoint, DiscreteScene, Supports};
 use crate::error::ContactError;
 use crate::report::Warning;
 use crate::scene::{Scene, Stage};
-use crate::settings::{MethodKind, Settings};
-use signorini_tfeti::internal::{Forecast, Rate, forecast_levels};
+use crate::settings::{MethodKind, Preconditioner, Settings};
+use signorini_tfeti::internal::{Forecast, Rate, forecast_levels, formed_bytes};
 use std::collections::BTreeSet;
 
 /// Sizes of a scene and the method chosen for it.
@@ -62,6 +62,8 @@ pub struct Plan {
     pub method: MethodKind,
     /// Bytes of the vectors that stay allocated (multipliers, displacements, loads).
     pub vector_bytes: u64,
+    /// Bytes that are needed beside those where a step is so hard that `F` is formed; 0 if it never is.
+    pub formed_bytes: u64,
     /// Expected relative error of the mesh in the energy norm, from the number of cells over the thickness of the
     /// bodies: accurate to a factor of two and a half on the studies' parts; too large if cells are finer at edges.
     /// After a run [`discretisation_error`](crate::StepResult::discretisation_error) estimates it. `None` if nothing is
@@ -212,6 +214,7 @@ impl Plan {
                 MethodKind::Linear
             },
             vector_bytes: 0,
+            formed_bytes: 0,
             mesh_error,
             estimate: Estimate::default(),
             warnings,
@@ -226,6 +229,10 @@ impl Plan {
             MethodKind::SuccessiveApproximations | MethodKind::OneLoop => 18,
         };
         plan.vector_bytes = 8 * (vectors * plan.dual() + (1 + scene.loads.len()) * primal) as u64;
+        if active_sets && settings.preconditioner != Preconditioner::None {
+            let contact = plan.normal_rows + plan.tangential_rows;
+            plan.formed_bytes = formed_bytes(plan.dual(), contact).unwrap_or(0);
+        }
         let sizes = [plan.dual(), primal, plan.steps];
         let tets = elements as f64 / subdomains.max(1) as f64;
         plan.estimate = Estimate::new(sizes, tets, plan.method, settings, &forecast, coarse);

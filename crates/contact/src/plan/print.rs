@@ -67,12 +67,16 @@ impl fmt::Display for Plan {
         }
         line("dual", format!("{} rows, coarse {}", self.dual(), self.coarse))?;
         line("method", self.method.to_string())?;
+        let hard = match self.formed_bytes {
+            0 => String::new(),
+            bytes => format!("; {:.1} MB more for a hard step", mb(bytes)),
+        };
         let [vectors, inverses] = [self.vector_bytes, cost.inverse_bytes].map(mb);
         let [coarse, tables] = [cost.coarse_bytes, cost.table_bytes].map(mb);
         line(
             "memory",
             format!(
-                "vectors {vectors:.1} MB, inverses {inverses:.1} MB ({} classes), coarse {coarse:.1} MB, tables {tables:.1} MB",
+                "vectors {vectors:.1} MB, inverses {inverses:.1} MB ({} classes), coarse {coarse:.1} MB, tables {tables:.1} MB{hard}",
                 cost.classes
             ),
         )?;

@@ -52,6 +52,24 @@ fn the_plan_predicts_the_rows() {
     }
 }
 
+#[test]
+fn the_plan_tells_what_a_formed_f_needs() {
+    let formed = |scene: Scene, settings: Settings| {
+        let plan = Plan::new(&scene, &settings).expect("plan");
+        println!("{plan}");
+        assert_eq!(plan.to_string().contains("for a hard step"), plan.formed_bytes > 0);
+        (plan.formed_bytes, plan.dual() as u64)
+    };
+    let scene = || small_benchmark(Friction::coulomb(0.3), 2);
+    let (bytes, rows) = formed(scene(), Settings::default());
+    assert_eq!(bytes, 8 * rows * rows);
+    assert_eq!(formed(scene(), by(Method::paper())).0, 0);
+    let torn = loaded_brick(block([3.0, 1.0, 1.0], [24, 8, 8]), up_down_up()).with_boxes([24, 8, 8]);
+    let torn = torn.with_contact(foundation(Friction::coulomb(0.3)));
+    let (bytes, rows) = formed(torn, Settings::default());
+    assert!(bytes == 0 && rows > 20_000, "{rows}");
+}
+
 /// Every tetrahedron a subdomain, by mistake: six unknowns each and thirty neighbours make a coarse problem that
 /// outweighs all else.
 #[test]

@@ -69,6 +69,13 @@ impl ExplicitCost {
     }
 }
 
+/// Bytes of an `F` of so many rows, so many of them of contact, that is formed; `None` where there are too many.
+#[doc(hidden)]
+#[must_use]
+pub fn formed_bytes(rows: usize, contact: usize) -> Option<u64> {
+    (rows <= EXPLICIT_ROWS && contact <= EXPLICIT_CONTACT).then(|| 8 * (rows as u64).pow(2))
+}
+
 impl Tfeti {
     /// `None` where there are too many rows, or unknowns on the boundary of a subdomain.
     #[doc(hidden)]
@@ -89,7 +96,7 @@ impl Tfeti {
         // of each class the whole boundary answers
         let boundaries = self.dual().map.classes.iter().map(|class| 3 * class.nodes.len());
         let largest = boundaries.max().unwrap_or(0).max(rows);
-        (largest <= EXPLICIT_ROWS && contact <= EXPLICIT_CONTACT).then_some(cost)
+        formed_bytes(largest, contact).map(|_| cost)
     }
 
     /// Forms `F` and eliminates the rows behind the contact rows. `None` if rounding leaves it indefinite.
