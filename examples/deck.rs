@@ -141,7 +141,10 @@ fn print_reactions(deck: &Deck, step: &StepResult) {
     }
     for (k, contact) in reactions.contacts.iter().enumerate() {
         let [x, y, z] = contact.force;
-        let name = step.scene().name(Part::Contact(k)).unwrap_or_default();
+        // sections of bolts are among the couplings
+        let Some(name) = step.scene().name(Part::Contact(k)) else {
+            continue;
+        };
         println!("force of contact {k} ({name}): {x:.5e} {y:.5e} {z:.5e}");
     }
     for (k, (name, motion)) in deck.coupling_names().iter().zip(step.couplings()).enumerate() {

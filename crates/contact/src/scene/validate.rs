@@ -184,8 +184,16 @@ impl Scene {
         if let Some(&value) = contact.compliance.iter().find(|c| !(c.is_finite() && **c >= 0.0)) {
             return Err(ContactError::Compliance { contact: index, value });
         }
+        let measured = matches!(contact.gap, Gap::Measured) && !contact.tied;
+        if contact.closing == Closing::Nothing && !measured {
+            return Err(ContactError::Idle {
+                what: "contact",
+                index,
+                setting: "with_measured_overlaps",
+                needs: "a gap that is measured between bodies",
+            });
+        }
         if let Closing::UpTo(reach) = contact.closing {
-            let measured = matches!(contact.gap, Gap::Measured) && !contact.tied;
             let good = measured && reach.is_finite() && reach >= 0.0;
             check(
                 good,

@@ -6,12 +6,14 @@ use signorini_fem_mesh::mesh::drop_unused_nodes;
 use signorini_fem_mesh::vec3::centroid;
 use signorini_tfeti::internal::on_ranks;
 
-/// Products and interior steps of each step, and both to print.
+/// Products and interior steps of each step, and both to print. All have converged, none by the paper's method.
 fn costs(results: &[Solved]) -> ([Vec<usize>; 2], String) {
     let of = |of: fn(&Counters) -> usize| -> Vec<usize> { results.iter().map(|r| of(&r.report.counters)).collect() };
     let [products, inside] = [of(|c| c.products), of(|c| c.interior_steps)];
     let what = format!("{products:?} products, {inside:?} interior steps");
     println!("{what}");
+    let solved = |r: &Solved| r.report.status.converged() && !r.report.fallback;
+    assert!(results.iter().all(solved), "{what}");
     ([products, inside], what)
 }
 
@@ -100,12 +102,6 @@ fn a_sheet_pressed_on_a_patch_is_solved_from_inside() {
         .with_analysis(Analysis::quasistatic(3.0, 6));
     let (_, results) = run(scene, Settings::default());
     let ([products, inside], what) = costs(&results);
-    assert!(
-        results
-            .iter()
-            .all(|r| r.report.status.converged() && !r.report.fallback),
-        "{what}"
-    );
     // of solves with the points that touch, one after the other until all balances
     assert!(inside.iter().all(|steps| *steps <= 100) && inside[0] > 0, "{what}");
     assert!(products.iter().sum::<usize>() <= 400, "{what}");
@@ -177,12 +173,6 @@ fn a_washer_under_a_head_is_solved_from_inside() {
         .with_analysis(Analysis::quasistatic(4.0, 8));
     let (_, results) = run(scene, Settings::default());
     let ([products, inside], what) = costs(&results);
-    assert!(
-        results
-            .iter()
-            .all(|r| r.report.status.converged() && !r.report.fallback),
-        "{what}"
-    );
     assert!(inside[0] > 0 && products.iter().sum::<usize>() <= 350, "{what}");
 }
 
@@ -246,11 +236,5 @@ fn a_bolted_seam_that_slides_is_solved_from_inside() {
         .with_analysis(Analysis::quasistatic(2.0, 8));
     let (_, results) = run(scene, Settings::default());
     let ([products, inside], what) = costs(&results);
-    assert!(
-        results
-            .iter()
-            .all(|r| r.report.status.converged() && !r.report.fallback),
-        "{what}"
-    );
     assert!(inside[6] > 0 && products.iter().all(|p| *p <= 300), "{what}");
 }

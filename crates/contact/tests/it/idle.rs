@@ -53,6 +53,28 @@ fn an_axis_of_friction_needs_a_law() {
 }
 
 #[test]
+fn overlaps_are_measured_between_bodies_only() {
+    let cube = block([1.0; 3], [2; 3]);
+    let two = with_second(&cube, &lifted(&cube, 1.0));
+    let sides = || (second(brick::Z_MIN), brick::Z_MAX);
+    let between = Contact::between(sides().0, sides().1);
+    let scene = |contact: Contact| {
+        let held = Scene::new(two.clone(), uniform(2e11, 0.3)).with_support(Support::fixed(brick::Z_MIN));
+        held.with_support(Support::fixed(second(brick::Z_MAX)))
+            .with_contact(contact.with_measured_overlaps())
+    };
+    for contact in [
+        Contact::tied(sides().0, sides().1),
+        between.clone().with_gap(1e-3),
+        Contact::rigid(brick::X_MAX),
+    ] {
+        let words = ["with_measured_overlaps", "a gap that is measured between bodies"];
+        assert_idle(&scene(contact), Part::Contact(0), words);
+    }
+    assert!(Plan::new(&scene(between), &Settings::default()).is_ok());
+}
+
+#[test]
 fn gaps_do_not_add_up() {
     let field = |contact: Contact| contact.with_gap_field(|x| 1e-3 * x[0]);
     for contact in [field(floor().with_gap(1e-3)), field(floor()).with_gap(1e-3)] {

@@ -159,6 +159,7 @@ fn with_gap(
             ignored.push(Ignored::new(word, why));
             Ok(contact.with_closed_gaps(*reach))
         }
+        (None, None) if is_rigid => Ok(contact),
         (None, None) => Ok(contact.with_measured_overlaps()),
     }
 }
