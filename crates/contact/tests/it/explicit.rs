@@ -130,12 +130,12 @@ fn what_is_hard_continues_bit_for_bit() {
 
 #[test]
 fn what_is_hard_has_the_same_bits_on_several_processes() {
-    let solved = |settings: Settings| -> Vec<_> {
-        let (_, results) = run(plate(2), settings);
-        results.iter().map(|r| (bits(r), r.report.counters)).collect()
-    };
-    let plain = solved(Settings::default());
-    for ranks in [2, 3] {
+    for (scene, ranks) in [(plate(2), 2), (plate(2), 3), (bolted_seam(), 2)] {
+        let solved = |settings: Settings| -> Vec<_> {
+            let (_, results) = run(scene.clone(), settings);
+            results.iter().map(|r| (bits(r), r.report.counters)).collect()
+        };
+        let plain = solved(Settings::default());
         let all = on_ranks(ranks, |c| solved(Settings::default().with_communicator(c)));
         assert!(
             all.into_iter().all(|own| own.expect("no panic") == plain),
@@ -199,8 +199,7 @@ fn around(cells: [usize; 3], z: f64, first: u32, is_inside: impl Fn([f64; 3]) ->
 
 /// Two plates that a bolt with clearance presses together, drawn apart along their seam until all of it slides, under head
 /// and nut, too: by the same friction, so that hardly anything tells how far the bolt goes along. Active sets took 10,000 products a step.
-#[test]
-fn a_bolted_seam_that_slides_is_solved_from_inside() {
+fn bolted_seam() -> Scene {
     let hole = |x: [f64; 3]| x[0].abs().max(x[1].abs()) > 4.0;
     let shank = |x: [f64; 3]| x[2].abs() > 4.0 || x[0].abs().max(x[1].abs()) < 2.0;
     let lower = around([10, 8, 2], -4.0, 10, hole);
@@ -220,7 +219,7 @@ fn a_bolted_seam_that_slides_is_solved_from_inside() {
     let drawn = Support::components(FacetTag(25), [true; 3]);
     let along = Coupling::relative(0, [0.0; 3]).with_axis([0.0, 0.0, 1.0]);
     let along = along.with_held([false, true, true, true, true, true]);
-    let scene = Scene::new(mesh, uniform(2.1e5, 0.3))
+    Scene::new(mesh, uniform(2.1e5, 0.3))
         .with_support(Support::fixed(FacetTag(14)))
         .with_support(drawn.with_motion([0.4, 0.0, 0.0], table(vec![(0.0, 0.0), (1.0, 0.0), (2.0, 1.0)])))
         .with_contact(Contact::tied(cut[0], cut[1]))
@@ -233,8 +232,12 @@ fn a_bolted_seam_that_slides_is_solved_from_inside() {
             (1.0, 1.0),
             (2.0, 1.0),
         ])))
-        .with_analysis(Analysis::quasistatic(2.0, 8));
-    let (_, results) = run(scene, Settings::default());
+        .with_analysis(Analysis::quasistatic(2.0, 8))
+}
+
+#[test]
+fn a_bolted_seam_that_slides_is_solved_from_inside() {
+    let (_, results) = run(bolted_seam(), Settings::default());
     let ([products, inside], what) = costs(&results);
     assert!(inside[6] > 0 && products.iter().all(|p| *p <= 300), "{what}");
 }
