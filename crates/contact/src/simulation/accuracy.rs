@@ -30,12 +30,13 @@ impl ByCertificate {
         }
     }
 
-    /// How the step ended with this round; `None` if another one is to come.
-    fn judge(&mut self, round: usize, status: StepStatus, largest: f64) -> Option<StepStatus> {
+    /// How the step ended with this round; `None` if another one is to come. Where interior points had to be `taken` for
+    /// the solution, another one would end there again.
+    fn judge(&mut self, (round, taken): (usize, bool), status: StepStatus, largest: f64) -> Option<StepStatus> {
         let certified = largest <= self.limit;
         // what is wanted is there, whatever the solver says; or an earlier round converged, and what this one could not
         // improve is certified
-        let enough = largest <= self.aim || certified && round > 2;
+        let enough = largest <= self.aim || certified && (round > 2 || taken);
         let status = if enough { StepStatus::Converged } else { status };
         if enough || !status.converged() || self.tolerance <= LEAST_TOLERANCE {
             let refused = status.converged() && !certified;
@@ -69,7 +70,8 @@ impl Simulation {
             let ended = if by_estimates {
                 self.judge(round, &mut report, &recovered)?
             } else {
-                certificate.judge(round, report.status, recovered.certificate.largest())
+                let largest = recovered.certificate.largest();
+                certificate.judge((round, self.iterate.offered), report.status, largest)
             };
             if let Some(before) = before.take() {
                 report = before.resumed(report);
