@@ -30,13 +30,13 @@ impl ByCertificate {
         }
     }
 
-    /// How the step ended with this round; `None` if another one is to come. Where interior points had to be `taken` for
-    /// the solution, another one would end there again.
+    /// How the step ended with this round; `None` if another one is to come. Where a point of interior points was `taken`
+    /// as the solution of an earlier one, this one may end near by without converging.
     fn judge(&mut self, (round, taken): (usize, bool), status: StepStatus, largest: f64) -> Option<StepStatus> {
         let certified = largest <= self.limit;
         // what is wanted is there, whatever the solver says; or an earlier round converged, and what this one could not
         // improve is certified
-        let enough = largest <= self.aim || certified && (round > 2 || taken);
+        let enough = largest <= self.aim || certified && (round > 2 || taken && !status.converged());
         let status = if enough { StepStatus::Converged } else { status };
         if enough || !status.converged() || self.tolerance <= LEAST_TOLERANCE {
             let refused = status.converged() && !certified;
