@@ -30,8 +30,8 @@ impl ByCertificate {
         }
     }
 
-    /// How the step ended with this round; `None` if another one is to come. Where a point of interior points was `taken`
-    /// as the solution of an earlier one, this one may end near by without converging.
+    /// How the step ended with this round; `None` if another one is to come. After interior points were `taken`
+    /// for a start, it may end near by without converging.
     fn judge(&mut self, (round, taken): (usize, bool), status: StepStatus, largest: f64) -> Option<StepStatus> {
         let certified = largest <= self.limit;
         // what is wanted is there, whatever the solver says; or an earlier round converged, and what this one could not

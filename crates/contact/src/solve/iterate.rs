@@ -34,7 +34,7 @@ pub(crate) struct Iterate {
     pub(crate) effort: usize,
     /// Which attempt at the step its start is for.
     pub(crate) attempt: Attempt,
-    /// Whether a point that interior points have found has been given as a solution in this attempt.
+    /// Whether interior points have found a point in this attempt: once it may be given as the solution.
     pub(crate) offered: bool,
     /// The shortest step of conjugate gradients in the last solve with contact, in the end in this one; 0 if there was none.
     pub(crate) shortest_step: f64,

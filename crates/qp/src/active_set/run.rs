@@ -371,7 +371,7 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         }
     }
 
-    /// Whether predictions without a safeguard have made no progress for longer than that.
+    /// Whether predictions without a safeguard have made no progress on so many sets.
     pub(crate) fn in_circles(&self, patience: usize) -> bool {
         let on_path = self.at.compliance.c > 0.0;
         let waited = self.progress.waited >= patience || on_path && self.moved.unbalanced >= patience;
