@@ -215,7 +215,9 @@ impl ActiveSetSolver {
             let mut patience = if brief { CIRCLES } else { usize::MAX };
             loop {
                 let easy = step(&iterate.lambda).max(EASY);
-                let most = cost.map_or(usize::MAX, |cost| (cost - iterate.effort).saturating_add(easy));
+                let most = cost.map_or(usize::MAX, |cost| {
+                    cost.saturating_sub(iterate.effort).saturating_add(easy)
+                });
                 let left = most.saturating_sub(report.counters.products);
                 if left == 0 {
                     break;
@@ -227,7 +229,7 @@ impl ActiveSetSolver {
                 if !(limited || circles) {
                     break;
                 }
-                if !limited {
+                if circles {
                     patience = usize::MAX;
                 }
             }

@@ -69,11 +69,16 @@ impl ExplicitCost {
     }
 }
 
+/// Whether so many rows, so many of them of contact, are few enough.
+fn are_few(rows: usize, contact: usize) -> bool {
+    rows <= EXPLICIT_ROWS && contact <= EXPLICIT_CONTACT
+}
+
 /// Bytes of an `F` of so many rows, so many of them of contact, that is formed; `None` where there are too many.
 #[doc(hidden)]
 #[must_use]
 pub fn formed_bytes(rows: usize, contact: usize) -> Option<u64> {
-    (rows <= EXPLICIT_ROWS && contact <= EXPLICIT_CONTACT).then(|| 8 * (rows as u64).pow(2))
+    are_few(rows, contact).then(|| 8 * (rows as u64).pow(2))
 }
 
 impl Tfeti {
@@ -96,7 +101,7 @@ impl Tfeti {
         // of each class the whole boundary answers
         let boundaries = self.dual().map.classes.iter().map(|class| 3 * class.nodes.len());
         let largest = boundaries.max().unwrap_or(0).max(rows);
-        formed_bytes(largest, contact).map(|_| cost)
+        are_few(largest, contact).then_some(cost)
     }
 
     /// Forms `F` and eliminates the rows behind the contact rows. `None` if rounding leaves it indefinite.
@@ -149,8 +154,8 @@ struct Secants {
 
 impl Secants {
     /// Moves `aim` to where nothing is lacking as far as changes tell, and by the rest of what is.
-    fn advance(&mut self, aim: &mut [f64], mut lacks: Vec<f64>) {
-        let now = [aim.to_vec(), lacks.clone()];
+    fn advance(&mut self, aim: &mut [f64], lacks: &[f64]) {
+        let now = [aim.to_vec(), lacks.to_vec()];
         if let Some([mut aims, mut change]) = self.last.take() {
             vector::axpby(1.0, &now[0], -1.0, &mut aims);
             vector::axpby(1.0, &now[1], -1.0, &mut change);
@@ -164,8 +169,9 @@ impl Secants {
             }
         }
         self.last = Some(now);
-        self.take(aim, &mut lacks);
-        vector::axpy(1.0, &lacks, aim);
+        let mut rest = lacks.to_vec();
+        self.take(aim, &mut rest);
+        vector::axpy(1.0, &rest, aim);
     }
 
     /// Takes the part of the changes out of `lacks`, and what led to it from `aims`.
@@ -256,7 +262,7 @@ impl ExplicitInverse {
             if lack <= BALANCED || waited == UNBALANCED {
                 break;
             }
-            secants.advance(&mut aim, lacks.clone());
+            secants.advance(&mut aim, &lacks);
         }
         let [best, alpha] = best;
         if !best.is_empty() {
