@@ -256,7 +256,7 @@ impl Contact {
     /// motions that are long against the radius of curvature are refused ([`MovedField`](ContactError::MovedField)).
     /// Friction laws that depend on position stay with the nodes of the body.
     ///
-    /// Of [tied](Self::tied) sides the first one moves relative to the other.
+    /// Of [tied](Self::tied) sides the first one moves relative to the other. It replaces a motion that was told before.
     pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
         self.motion = Some((displacement, history));
         self

@@ -123,6 +123,9 @@ impl Support {
     /// A support that prescribes the normal displacement of a contact node must keep it outside the obstacle at all
     /// times, since no contact force could; otherwise the scene is refused.
     ///
+    /// It replaces a motion that was told before. Another course along x than along z is that of two supports of the same
+    /// nodes, of [components](Self::components) of their own.
+    ///
     /// Supports that share nodes must prescribe the same motion: equal displacements with equal histories, that is
     /// equal tables or clones of one function.
     pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
@@ -130,7 +133,8 @@ impl Support {
         self
     }
 
-    /// The same with one displacement per node, in the order of the nodes (ascending for a tag).
+    /// The same with one displacement per node, in the order of the nodes (ascending for a tag). It replaces a motion that was
+    /// told before, too.
     pub fn with_motions(mut self, displacements: Vec<[f64; 3]>, history: History) -> Self {
         self.motion = Some((displacements, history));
         self

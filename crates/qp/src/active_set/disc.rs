@@ -72,13 +72,17 @@ pub(crate) fn disc_state(x: [f64; 2], g: [f64; 2], radius: f64, scale: f64) -> D
     }
 }
 
-/// Whether a point on its circle goes so far inwards that it comes to the other side, as far as its own scale tells. A
-/// solve with the disc free would take it there and spoil what else it finds; so it is held, and the move takes it
-/// across. Not twice in a row: with others that go with it a point gives way further than it does alone.
-pub(crate) fn crosses(x: [f64; 2], g: [f64; 2], radius: f64, a: f64) -> bool {
+/// Whether a point on its circle goes so far inwards that it comes to the other side, or one in the centre so far out of a
+/// circle that has just grown, as far as its own scale tells. A solve with the disc free would take it there and spoil what
+/// else it finds; so it is held, and the move takes it across. On the circle not twice in a row: with others that go with
+/// it a point gives way further than it does alone.
+pub(crate) fn crosses(x: [f64; 2], g: [f64; 2], radius: f64, a: f64, is_held: bool) -> bool {
     let length = x[0].hypot(x[1]);
+    if length <= 0.0 {
+        return a * g[0].hypot(g[1]) > ACROSS * radius;
+    }
     let inward = a * (g[0] * x[0] + g[1] * x[1]) / length;
-    length >= radius * (1.0 - MAY_SLIDE) && inward > ACROSS * radius
+    !is_held && length >= radius * (1.0 - MAY_SLIDE) && inward > ACROSS * radius
 }
 
 pub(crate) fn settle_disc(x: [f64; 2], g: [f64; 2], radius: f64, a: f64, sliding: bool) -> [f64; 2] {

@@ -66,7 +66,7 @@ impl ActiveSet {
             let at = [x[i], x[i + 1]];
             let g = map.on_disc(i);
             let mut state = disc_state(at, g, radius, map.scale[i]);
-            if state == Disc::Free && discs[k] != Disc::Fixed && crosses(at, g, radius, map.step * map.scale[i]) {
+            if state == Disc::Free && crosses(at, g, radius, map.step * map.scale[i], discs[k] == Disc::Fixed) {
                 state = Disc::Fixed;
                 crossing = crossing.max(radius);
             }
