@@ -59,6 +59,15 @@ pub(crate) const RAY: f64 = 1e-13;
 /// have nine digits.
 pub(crate) const RIM: f64 = 1e-9;
 
+/// Cosine between two facets of an obstacle below which their edge is sharp: beyond it their sides end.
+pub(crate) const SHARP: f64 = 0.9;
+
+/// Cosine between a direction and the way to an obstacle of a function below which the place is taken to be beside it.
+pub(crate) const SIDEWAYS: f64 = 0.9;
+
+/// Distance to the continuation of a side over that to the obstacle, up to which nothing of the obstacle is met there.
+pub(crate) const ENDED: f64 = 0.9;
+
 /// Distance that is left of the way to an obstacle, over the shortest one, up to which the way that led there is better
 /// than the shortest distance: rounding of coordinates may leave more than [`RAY`] of a small gap.
 pub(crate) const RAY_END: f64 = 0.01;

@@ -11,7 +11,7 @@ use super::side::{Sides, mean_place};
 use crate::error::ContactError;
 use crate::scene::Contact;
 use signorini_fem_mesh::internal::Lists;
-use signorini_fem_mesh::vec3::{norm, sub};
+use signorini_fem_mesh::vec3::{add, norm, scale, sub};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
 use signorini_tfeti::Side;
@@ -128,7 +128,8 @@ pub(super) struct MatchingMid {
     pub(super) ends: [u32; 2],
 }
 
-/// The gap of a side along a normal, m: the mean over its nodes, at which `measured` says what coordinates do.
+/// The gap of a side along a normal, m: the mean over its nodes, at which `measured` says what coordinates do. Beyond the
+/// end of an obstacle that of its centre, where nothing is met.
 pub(super) fn mean_gap(
     mesh: &TetMesh,
     (index, contact): (usize, &Contact),
@@ -136,6 +137,14 @@ pub(super) fn mean_gap(
     normal: &[f64; 3],
     measured: impl Fn(u32) -> f64,
 ) -> Result<f64, ContactError> {
+    let centre = || {
+        side.iter().fold([0.0; 3], |sum, (node, weight)| {
+            add(sum, scale(*weight, mesh.points()[*node as usize]))
+        })
+    };
+    if let Some(distance) = contact.beyond(centre(), normal) {
+        return Ok(distance);
+    }
     let gap = |&(node, weight): &(u32, f64)| {
         let place = mesh.points()[node as usize];
         Ok(weight * contact.gap_at(index, node, place, normal, measured(node))?)

@@ -1,7 +1,7 @@
 //! Directions of contact that the scene gives: one for all nodes, or those of an obstacle.
 
 use crate::error::ContactError;
-use crate::scene::{Contact, ContactNormal, Gap, Obstacle};
+use crate::scene::{Contact, ContactNormal, Gap, Obstacle, Pose, Seen};
 use crate::tolerances::{ALONG, AXIS, DISTANCE_WAY, FACING, GRADIENT, SAME_NORMAL};
 use signorini_fem_mesh::vec3::{cross, dot, norm, scale, sub, unit};
 use signorini_fem_mesh::{Surface, SurfaceFrame};
@@ -120,13 +120,13 @@ fn check_along(
     Ok(())
 }
 
-/// The frame at each node of a contact with the normals of its obstacle, none where the body does not face it; empty for
-/// all others. `place` is where the force of a node acts.
+/// The frame at each node of a contact with the normals of its obstacle, none where the body does not face it or the side
+/// of the obstacle that it faces has ended, at all times; empty for all others. `place` is where the force of a node acts.
 pub(super) fn shape_frames(
-    index: usize,
-    contact: &Contact,
+    (index, contact): (usize, &Contact),
     surface: &Surface,
     place: impl Fn(usize) -> [f64; 3],
+    times: &[f64],
 ) -> Result<Vec<Option<SurfaceFrame>>, ContactError> {
     let Some(shape) = &contact.shape else {
         return Ok(Vec::new());
@@ -136,9 +136,11 @@ pub(super) fn shape_frames(
         check_along((index, contact), surface, place, way)?;
         return Ok(Vec::new());
     }
+    let poses = contact.poses(times);
     let frame = |(local, (&node, own)): (usize, (&u32, &SurfaceFrame))| {
         let position = place(local);
-        let (distance, gradient) = shape.distance_against(position, own.normal);
+        let seen = shape.see(position, own.normal);
+        let Seen { distance, gradient, .. } = seen;
         if !distance.is_finite() {
             let (contact, value) = (index, distance);
             return Err(ContactError::Gap {
@@ -155,7 +157,9 @@ pub(super) fn shape_frames(
             position,
             gradient,
         })?;
-        if frame.normal_part(own.normal) <= FACING {
+        let after = |pose: &Pose| shape.see(pose.origin(&position), pose.back(&own.normal)).has_ended();
+        let is_never_met = seen.has_ended() && poses.iter().all(after);
+        if frame.normal_part(own.normal) <= FACING || is_never_met {
             return Ok(None);
         }
         check_distance((index, contact), (node, position), (distance, gradient), way)?;

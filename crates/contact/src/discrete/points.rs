@@ -58,6 +58,9 @@ impl ContactPoint {
     pub(crate) fn gap_brought(&self, scene: &Scene, pose: &Pose) -> Result<f64, ContactError> {
         let contact = &scene.contacts[self.surface];
         let normal = &self.frame.normal;
+        if let Some(distance) = contact.beyond(pose.origin(&self.centre), &pose.back(normal)) {
+            return Ok(pose.brings(distance, &self.centre, normal));
+        }
         let at = |&(node, weight): &(u32, f64)| {
             let place = scene.mesh.points()[node as usize];
             Ok(weight * contact.gap_brought(self.surface, node, place, normal, (self.gap, pose))?)
@@ -100,7 +103,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
             Some(means) => means.place(local),
             None => scene.mesh.points()[surface.nodes()[local] as usize],
         };
-        let shaped = shape_frames(index, contact, surface, place)?;
+        let shaped = shape_frames((index, contact), surface, place, scene.analysis.times())?;
         let sides = match (partners, fixed) {
             (Partners::Obstacle, None) if shaped.is_empty() => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),

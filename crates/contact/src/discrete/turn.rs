@@ -3,7 +3,7 @@
 use super::creases::area_vector;
 use super::points::ContactPoint;
 use crate::error::ContactError;
-use crate::scene::{ContactNormal, Pose, Scene};
+use crate::scene::{ContactNormal, Pose, Scene, Seen};
 use crate::tolerances::{FACING, TURN};
 use signorini_fem_mesh::{Surface, vec3};
 use signorini_qp::vector;
@@ -123,7 +123,8 @@ pub(crate) fn beside(surface: &Surface, own: &[ContactPoint]) -> impl Iterator<I
 /// The angle between the normal of a point and that of its obstacle at a place, radians; zero without a shape.
 pub(crate) fn turned(scene: &Scene, point: &ContactPoint, pose: &Pose, place: &[f64; 3]) -> f64 {
     let normal = point.frame.normal;
-    gradient(scene, point.surface, pose, place, &normal).map_or(0.0, |now| angle(now, normal.map(|c| -c)))
+    let now = see(scene, point.surface, pose, place, &normal);
+    now.map_or(0.0, |now| angle(pose.forth(&now.gradient), normal.map(|c| -c)))
 }
 
 /// The same of a node of a contact that does not face the obstacle, with the normal of the body: by how much that of the
@@ -134,16 +135,27 @@ pub(crate) fn turned_to(
     pose: &Pose,
     place: &[f64; 3],
 ) -> f64 {
-    let along = |pose: &Pose, place: &[f64; 3]| gradient(scene, contact, pose, place, &normal);
-    let now = along(pose, place).filter(|now| vec3::dot(*now, normal) < -FACING);
-    let first = now.and_then(|_| along(&Pose::default(), &scene.mesh.points()[node as usize]));
-    first.zip(now).map_or(0.0, |(first, now)| angle(first, now))
+    let start = &scene.mesh.points()[node as usize];
+    let now = see(scene, contact, pose, place, &normal).filter(|now| !now.has_ended());
+    let now = now.map(|now| pose.forth(&now.gradient));
+    let now = now.filter(|now| vec3::dot(*now, normal) < -FACING);
+    let Some((shape, now)) = scene.contacts[contact].shape.as_ref().zip(now) else {
+        return 0.0;
+    };
+    let first = shape.see(*start, normal);
+    // where a side has ended it has no direction
+    let first = if first.has_ended() {
+        shape.distance(*start).1
+    } else {
+        first.gradient
+    };
+    angle(first, now)
 }
 
-/// The gradient of the distance to the obstacle of a contact, if it has a shape.
-fn gradient(scene: &Scene, contact: usize, pose: &Pose, place: &[f64; 3], against: &[f64; 3]) -> Option<[f64; 3]> {
+/// What a place sees of the obstacle of a contact, if it has a shape, where that is.
+fn see(scene: &Scene, contact: usize, pose: &Pose, place: &[f64; 3], against: &[f64; 3]) -> Option<Seen> {
     let shape = scene.contacts[contact].shape.as_ref()?;
-    Some(pose.forth(&shape.distance_against(pose.origin(place), pose.back(against)).1))
+    Some(shape.see(pose.origin(place), pose.back(against)))
 }
 
 fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {

@@ -424,7 +424,9 @@ impl Contact {
             (Gap::Field(field), _) => field(position),
             (Gap::Measured, _) if matches!(self.closing, Closing::UpTo(reach) if measured <= reach) => 0.0,
             (Gap::Measured, _) => measured,
-            (Gap::Obstacle, Some(shape)) if self.normal == ContactNormal::Obstacle => shape.distance(position).0,
+            (Gap::Obstacle, Some(shape)) if self.normal == ContactNormal::Obstacle => {
+                shape.see(position, *normal).level
+            }
             (Gap::Obstacle, Some(shape)) => shape.along(position, *normal),
             (Gap::None | Gap::Obstacle, _) => 0.0,
         };
@@ -438,6 +440,14 @@ impl Contact {
                 value,
             })
         }
+    }
+
+    /// The distance to the obstacle, m, where a side of it that the normal leads towards has ended before a place.
+    pub(crate) fn beyond(&self, place: [f64; 3], normal: &[f64; 3]) -> Option<f64> {
+        let shape = self.shape.as_ref().filter(|_| matches!(self.gap, Gap::Obstacle))?;
+        let seen = shape.see(place, *normal);
+        let leads = || self.normal != ContactNormal::Obstacle && shape.reach(place, *normal).is_ok();
+        (seen.ends && seen.level < seen.distance && !leads()).then_some(seen.distance)
     }
 
     /// Whether the obstacle moves and takes a gap with it that depends on the place.
@@ -465,9 +475,7 @@ impl Contact {
         match &self.gap {
             Gap::Obstacle => {
                 let whole = at(pose.origin(&position), &pose.back(normal))?;
-                let way = vector::dot(&pose.way(&position), normal);
-                let whole = whole + (pose.factor - 1.0) * (whole - way);
-                Ok(whole - vector::dot(&pose.drag(&position), normal))
+                Ok(pose.brings(whole, &position, normal))
             }
             Gap::Field(_) => {
                 let way = pose.way(&position);

@@ -4,8 +4,9 @@
 //! a corner that of its facets weighted by angle (Bærentzen and Aanæs, 2005). Beyond the rim of an open surface there
 //! is no inside.
 
+use super::obstacle::Seen;
 use crate::error::ContactError;
-use crate::tolerances::{RIM, SAME_NORMAL};
+use crate::tolerances::{RIM, SAME_NORMAL, SHARP};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 use signorini_fem_mesh::vec3::{add, area_vector, cross, dot, is_finite, norm, scale, sub, unit};
 use std::collections::{HashMap, HashSet};
@@ -22,9 +23,9 @@ struct Facet {
     /// Mean normals at the corners, and at the edges from each corner to the next.
     corner_normals: [[f64; 3]; 3],
     edge_normals: [[f64; 3]; 3],
-    /// Whether the surface ends at these corners and edges.
-    corner_rims: [bool; 3],
-    edge_rims: [bool; 3],
+    /// What these corners and edges are.
+    corner_ends: [At; 3],
+    edge_ends: [At; 3],
 }
 
 /// The nearest place of a facet.
@@ -35,20 +36,16 @@ struct Nearest {
     at: At,
 }
 
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, PartialOrd)]
 enum At {
     /// Between its edges.
     Middle,
     /// On an edge or corner with facets all around.
     Edge,
+    /// On a sharp one.
+    Sharp,
     /// Where the surface ends.
     Rim,
-}
-
-impl At {
-    fn edge(is_rim: bool) -> Self {
-        if is_rim { Self::Rim } else { Self::Edge }
-    }
 }
 
 impl RTreeObject for Facet {
@@ -112,8 +109,14 @@ impl Facets {
         if let Some(facet) = turned {
             return Err(wrong(facet, "turns the other way round than its neighbour"));
         }
-        let rims = at_edge.iter().filter(|(_, own)| own.is_rim());
-        let rim_nodes: HashSet<u32> = rims.flat_map(|(ends, _)| *ends).collect();
+        let mut node_ends = vec![At::Edge; points.len()];
+        for (nodes, own) in &at_edge {
+            for end in nodes.map(|n| n as usize) {
+                if own.end() > node_ends[end] {
+                    node_ends[end] = own.end();
+                }
+            }
+        }
         let facet = |(corners, normal, triangle): (_, _, [u32; 3])| {
             let edges = [0, 1, 2].map(|c| &at_edge[&edge(&triangle, c)]);
             Facet {
@@ -121,8 +124,8 @@ impl Facets {
                 normal,
                 corner_normals: triangle.map(|n| at_node[n as usize]),
                 edge_normals: edges.map(|own| own.normal),
-                corner_rims: triangle.map(|n| rim_nodes.contains(&n)),
-                edge_rims: edges.map(Edge::is_rim),
+                corner_ends: triangle.map(|n| node_ends[n as usize]),
+                edge_ends: edges.map(Edge::end),
             }
         };
         let facets = facets.into_iter().map(facet).collect();
@@ -133,10 +136,10 @@ impl Facets {
 
     /// Signed distance of a place, m, and its gradient; turned inside out with a `side` of -1 instead of 1. On an edge
     /// or a corner, where there are many, the gradient is the mean normal, or the one that is most opposite to a
-    /// direction.
-    pub(super) fn distance(&self, place: [f64; 3], side: f64, against: Option<[f64; 3]>) -> (f64, [f64; 3]) {
+    /// direction; so it is beyond a sharp edge or the rim, if a direction is told.
+    pub(super) fn distance(&self, place: [f64; 3], side: f64, against: Option<[f64; 3]>) -> Seen {
         let Some(facet) = is_finite(place).then(|| self.tree.nearest_neighbor(&place)).flatten() else {
-            return (f64::NAN, [f64::NAN; 3]);
+            return Seen::new(f64::NAN, [f64::NAN; 3]);
         };
         let Nearest {
             place: nearest,
@@ -148,29 +151,45 @@ impl Facets {
         let normal = scale(side, facet.normal);
         let beside = norm(sub(way, scale(dot(way, normal), normal)));
         if at == At::Middle || at == At::Rim && beside <= RIM * size {
-            return (dot(way, normal), normal);
+            return Seen::new(dot(way, normal), normal);
         }
         let length = norm(way);
-        if at == At::Rim {
-            return (length, scale(1.0 / length, way));
-        }
-        let sign = if side * dot(way, mean) < 0.0 { -1.0 } else { 1.0 };
-        let gradient = if length > RIM * size {
-            scale(sign / length, way)
-        } else {
-            let opposite = against.and_then(|direction| self.opposite(place, RIM * size, side, direction));
-            opposite.unwrap_or(scale(side / norm(mean), mean))
+        let inside = at != At::Rim && side * dot(way, mean) < 0.0;
+        let sign = if inside { -1.0 } else { 1.0 };
+        let out = scale(sign / length, way);
+        let opposite = |also: Option<[f64; 3]>| {
+            let around = |direction| self.opposite((nearest, RIM * size), side, (direction, also));
+            against.and_then(around)
         };
-        (sign * length, gradient)
+        if length <= RIM * size && at != At::Rim {
+            let gradient = opposite(None).unwrap_or(scale(side / norm(mean), mean));
+            return Seen::new(sign * length, gradient);
+        }
+        let ends = at >= At::Sharp && !inside;
+        let gradient = if ends { opposite(Some(out)) } else { None };
+        let seen = Seen::new(sign * length, gradient.unwrap_or(out));
+        match gradient {
+            Some(gradient) => Seen {
+                level: dot(way, gradient).min(length),
+                ends: true,
+                ..seen
+            },
+            None => seen,
+        }
     }
 
-    /// Of all combinations of the normals around a place, with factors that are not negative, the unit vector that is
-    /// most opposite to a direction.
-    fn opposite(&self, place: [f64; 3], within: f64, side: f64, direction: [f64; 3]) -> Option<[f64; 3]> {
+    /// Of all combinations of the normals around a place, and of another vector, with factors that are not negative, the
+    /// unit vector that is most opposite to a direction.
+    fn opposite(
+        &self,
+        (place, within): ([f64; 3], f64),
+        side: f64,
+        (direction, also): ([f64; 3], Option<[f64; 3]>),
+    ) -> Option<[f64; 3]> {
         let around = AABB::from_corners(place.map(|c| c - within), place.map(|c| c + within));
         let touched = self.tree.locate_in_envelope_intersecting(&around);
         let touched = touched.filter(|f| norm(sub(place, f.nearest(place).place)) <= within);
-        let mut normals: Vec<[f64; 3]> = Vec::new();
+        let mut normals: Vec<[f64; 3]> = Vec::from_iter(also);
         for normal in touched.map(|f| scale(side, f.normal)) {
             if normals.iter().all(|n| dot(*n, normal) <= SAME_NORMAL) {
                 normals.push(normal);
@@ -216,8 +235,14 @@ struct Edge {
 }
 
 impl Edge {
-    fn is_rim(&self) -> bool {
-        self.facets.len() == 1
+    fn end(&self) -> At {
+        // twice the cosine, and two
+        let both = dot(self.normal, self.normal);
+        match self.facets.len() {
+            1 => At::Rim,
+            2 if both < 2.0 * (1.0 + SHARP) => At::Sharp,
+            _ => At::Edge,
+        }
     }
 
     /// The later one of two facets that pass it in one direction.
@@ -260,12 +285,12 @@ impl Facet {
         let corner = |k: usize| Nearest {
             place: self.corners[k],
             mean: self.corner_normals[k],
-            at: At::edge(self.corner_rims[k]),
+            at: self.corner_ends[k],
         };
         let edge = |k: usize, place| Nearest {
             place,
             mean: self.edge_normals[k],
-            at: At::edge(self.edge_rims[k]),
+            at: self.edge_ends[k],
         };
         let (ab, ac) = (sub(b, a), sub(c, a));
         let [(d1, d2), (d3, d4), (d5, d6)] = self.corners.map(|from| {
@@ -341,11 +366,11 @@ mod tests {
             let out = x.map(|c| (c - 1.0).abs() - 1.0);
             let far = norm(out.map(|c| c.max(0.0)));
             let exact = far + out.iter().fold(f64::NEG_INFINITY, |m, c| m.max(*c)).min(0.0);
-            let (distance, gradient) = cube.distance(x, 1.0, None);
+            let Seen { distance, gradient, .. } = cube.distance(x, 1.0, None);
             worst = worst.max((distance - exact).abs());
             assert!((norm(gradient) - 1.0).abs() < 1e-12);
             // a step along the gradient changes the distance by its length
-            let (next, _) = cube.distance(add(x, scale(1e-6, gradient)), 1.0, None);
+            let next = cube.distance(add(x, scale(1e-6, gradient)), 1.0, None).distance;
             assert!((next - distance - 1e-6).abs() < 1e-9, "{x:?}: {distance} {next}");
         }
         assert!(worst < 1e-12, "{worst:e}");
@@ -353,7 +378,7 @@ mod tests {
 
     #[test]
     fn on_a_corner_the_gradient_is_the_mean_normal() {
-        let (distance, gradient) = cube().distance([2.0; 3], 1.0, None);
+        let Seen { distance, gradient, .. } = cube().distance([2.0; 3], 1.0, None);
         assert_eq!(distance, 0.0);
         assert!(
             gradient.iter().all(|c| (c - 3f64.sqrt().recip()).abs() < 1e-12),
@@ -374,7 +399,7 @@ mod tests {
             ([2.0, 2.0, 2.0], [1.0, 2.0, 3.0], [1.0, 2.0, 3.0]),
             ([2.0, 2.0, 2.0], [1.0, -2.0, 3.0], [1.0, 0.0, 3.0]),
         ] {
-            let (distance, gradient) = cube.distance(place, 1.0, Some(scale(-1.0, unit(wanted))));
+            let Seen { distance, gradient, .. } = cube.distance(place, 1.0, Some(scale(-1.0, unit(wanted))));
             assert_eq!(distance, 0.0);
             assert!(norm(sub(gradient, unit(found))) < 1e-14, "{wanted:?}: {gradient:?}");
         }
@@ -391,7 +416,7 @@ mod tests {
             let x = [k % 10, k / 10 % 10, k / 100].map(|i| 0.43 * f64::from(i) - 1.1);
             let [a, b] = [&whole, &apart].map(|cube| cube.distance(x, 1.0, None));
             assert!(
-                (a.0 - b.0).abs() < 1e-14 && norm(sub(a.1, b.1)) < 1e-12,
+                (a.distance - b.distance).abs() < 1e-14 && norm(sub(a.gradient, b.gradient)) < 1e-12,
                 "{x:?}: {a:?} {b:?}"
             );
         }
@@ -407,14 +432,14 @@ mod tests {
                 for (x, y) in [(1.5, 0.4), (0.3, -0.5), (1.3, 1.4), (-0.4, 0.0)] {
                     let beside: [f64; 2] = [x, y].map(|c: f64| (c - 0.5).abs() - 0.5);
                     let far = norm([beside[0].max(0.0), beside[1].max(0.0), height]);
-                    let (distance, gradient) = plate.distance([x, y, height], side, None);
+                    let Seen { distance, gradient, .. } = plate.distance([x, y, height], side, None);
                     assert!((distance - far).abs() < 1e-15, "{x} {y} {height}: {distance}");
                     assert!((gradient[2] - height / far).abs() < 1e-15);
                 }
                 // over it, and over the rim itself
                 for (x, y) in [(0.3, 0.4), (0.5, 0.5), (1.0, 0.4), (0.0, 1.0)] {
                     let found = plate.distance([x, y, height], side, None);
-                    assert_eq!((found.0, found.1[2]), (side * height, side));
+                    assert_eq!((found.distance, found.gradient[2]), (side * height, side));
                 }
             }
         }
@@ -430,7 +455,7 @@ mod tests {
             "{two:?}"
         );
         let twice = Facets::new(&points, &[[0, 1, 2], [2, 0, 1]]).expect("a sheet");
-        assert_eq!(twice.distance([3.0, 0.0, 0.0], 1.0, None).0, 1.0);
+        assert_eq!(twice.distance([3.0, 0.0, 0.0], 1.0, None).distance, 1.0);
         triangles[4].swap(0, 1);
         let found = Facets::new(&points, &triangles).err();
         assert!(

@@ -39,6 +39,7 @@ pub(crate) use gap::Gap;
 pub use load::Load;
 pub(crate) use load::{CouplingLoad, Kind as LoadKind};
 pub use obstacle::Obstacle;
+pub(crate) use obstacle::Seen;
 pub use pairs::ContactPair;
 pub use partition::Partition;
 pub(crate) use pose::Pose;

@@ -2,14 +2,43 @@
 
 use super::facets::Facets;
 use crate::error::ContactError;
-use crate::tolerances::{DISTANCE, FASTER, FEW_STEPS, NEWTON, RAY, RAY_END, STEEP};
+use crate::tolerances::{DISTANCE, ENDED, FASTER, FEW_STEPS, NEWTON, RAY, RAY_END, SIDEWAYS, STEEP};
 use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
 use std::sync::Arc;
 
 /// Of a place, the side that is free (1, or -1 for what is turned inside out), and the direction that the gradient is
 /// to be opposite to where there is a choice.
-type Field = dyn Fn([f64; 3], f64, Option<[f64; 3]>) -> (f64, [f64; 3]) + Send + Sync;
+type Field = dyn Fn([f64; 3], f64, Option<[f64; 3]>) -> Seen + Send + Sync;
+
+/// What a place sees of an obstacle.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Seen {
+    /// Signed distance, m.
+    pub(crate) distance: f64,
+    pub(crate) gradient: [f64; 3],
+    /// Where a side has ended before the place, the signed distance to its continuation across the gradient, m; elsewhere
+    /// the distance.
+    pub(crate) level: f64,
+    /// Whether a side has ended before the place, with the gradient that is most opposite to a direction.
+    pub(crate) ends: bool,
+}
+
+impl Seen {
+    pub(super) fn new(distance: f64, gradient: [f64; 3]) -> Self {
+        Self {
+            distance,
+            gradient,
+            level: distance,
+            ends: false,
+        }
+    }
+
+    /// Whether nothing of the obstacle is met along the gradient.
+    pub(crate) fn has_ended(&self) -> bool {
+        self.ends && self.level < ENDED * self.distance
+    }
+}
 
 /// A rigid obstacle of any shape: the signed distance to it, m, positive outside, and the gradient of the distance, a
 /// unit vector out of the obstacle.
@@ -117,7 +146,7 @@ impl Obstacle {
     ) -> Self {
         let turned = move |x, side, _| {
             let (distance, gradient): (f64, [f64; 3]) = field(x);
-            (side * distance, gradient.map(|c| side * c))
+            Seen::new(side * distance, gradient.map(|c| side * c))
         };
         Self {
             field: Function(Arc::new(turned) as Arc<Field>),
@@ -129,12 +158,21 @@ impl Obstacle {
 
     /// The signed distance of a place, m, and its gradient.
     pub fn distance(&self, place: [f64; 3]) -> (f64, [f64; 3]) {
-        (self.field)(place, self.side, None)
+        let seen = (self.field)(place, self.side, None);
+        (seen.distance, seen.gradient)
     }
 
-    /// The same; on edges and corners of surfaces with the gradient that is most opposite to a direction.
-    pub(crate) fn distance_against(&self, place: [f64; 3], against: [f64; 3]) -> (f64, [f64; 3]) {
-        (self.field)(place, self.side, Some(against))
+    /// The same; on edges and corners of surfaces, and beyond sharp ones and the rim, with the gradient that is most opposite
+    /// to a direction.
+    pub(crate) fn see(&self, place: [f64; 3], against: [f64; 3]) -> Seen {
+        let seen = (self.field)(place, self.side, Some(against));
+        let along = -dot(seen.gradient, against);
+        let level = match self.own && seen.distance > 0.0 && along < SIDEWAYS {
+            // a function does not tell where a side ends
+            true => seen.distance * along.max(0.0),
+            false => seen.level,
+        };
+        Seen { level, ..seen }
     }
 
     /// Whether its distance is a function of the user.
@@ -164,9 +202,19 @@ impl Obstacle {
         (!slopes.iter().any(is_good) && !ends()).then_some(slopes[0])
     }
 
-    /// The way along a direction from a place to the obstacle, m, negative inside; the shortest distance where that
-    /// direction does not lead there.
+    /// The way along a direction from a place to the obstacle, m, negative inside. Where that direction does not lead there
+    /// the way to the continuation of a side that has ended before, or the shortest distance.
     pub(super) fn along(&self, place: [f64; 3], direction: [f64; 3]) -> f64 {
+        self.reach(place, direction).unwrap_or_else(|start| {
+            let seen = self.see(place, direction);
+            let along = -dot(seen.gradient, direction);
+            let continues = seen.ends && along > STEEP;
+            if continues { seen.level / along } else { start }
+        })
+    }
+
+    /// The way along a direction to the obstacle, or the shortest distance where it does not lead there.
+    pub(super) fn reach(&self, place: [f64; 3], direction: [f64; 3]) -> Result<f64, f64> {
         let (start, _) = self.distance(place);
         // what was left at least, and the way there
         let (mut way, mut best) = (0.0, (f64::INFINITY, 0.0));
@@ -174,7 +222,7 @@ impl Obstacle {
             let (distance, gradient) = self.distance(add(place, scale(way, direction)));
             let slope = -dot(gradient, direction);
             if slope.is_nan() || slope < STEEP {
-                return start;
+                return Err(start);
             }
             let left = distance.abs();
             if left < best.0 {
@@ -185,10 +233,11 @@ impl Obstacle {
             }
             way += distance / slope;
             if left <= RAY * (start.abs() + way.abs()) {
-                return way;
+                return Ok(way);
             }
         }
-        if best.0 <= RAY_END * start.abs() { best.1 } else { start }
+        let ends = best.0 <= RAY_END * start.abs();
+        ends.then_some(best.1).ok_or(start)
     }
 
     /// A size that is not finite and positive.

@@ -73,6 +73,12 @@ impl Pose {
         ways.map(pose).collect()
     }
 
+    /// What of a whole gap along a normal it brings to a place, m, with its factor: without what it opens.
+    pub(crate) fn brings(&self, whole: f64, place: &[f64; 3], normal: &[f64; 3]) -> f64 {
+        let whole = whole + (self.factor - 1.0) * (whole - dot(self.way(place), *normal));
+        whole - dot(self.drag(place), *normal)
+    }
+
     /// Whether it is turned.
     pub(crate) fn turns(&self) -> bool {
         self.turn.is_some()

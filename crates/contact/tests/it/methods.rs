@@ -274,7 +274,11 @@ fn a_body_that_is_unloaded_again_converges_in_few_products() {
 /// step.
 #[test]
 fn a_block_lifted_to_rest_converges_in_few_products() {
-    for (order, cells) in [(1, [[7, 7, 2], [5, 6, 3]]), (2, [[7, 7, 2], [4, 5, 3]]), (2, [[6, 6, 2], [5, 6, 3]])] {
+    for (order, cells) in [
+        (1, [[7, 7, 2], [5, 6, 3]]),
+        (2, [[7, 7, 2], [4, 5, 3]]),
+        (2, [[6, 6, 2], [5, 6, 3]]),
+    ] {
         let low = block([4.0, 4.0, 1.0], cells[0]);
         let up = block([2.0, 2.4, 1.5], cells[1]).map_points(|[x, y, z]| [x + 1.0, y + 0.8, z + 1.0]);
         let mut mesh = with_second(&low, &up.expect("moved"));
@@ -296,7 +300,10 @@ fn a_block_lifted_to_rest_converges_in_few_products() {
         let products: Vec<usize> = results.iter().map(|r| r.report.counters.products).collect();
         let what = format!("order {order}: {products:?} products");
         println!("{what}");
-        assert!(results[3].summary.normal_force < 1e-6 * results[2].summary.normal_force, "{what}");
+        assert!(
+            results[3].summary.normal_force < 1e-6 * results[2].summary.normal_force,
+            "{what}"
+        );
         assert!(results.iter().all(|r| !r.report.fallback), "{what}");
         assert!(products[3] <= 150, "{what}");
     }

@@ -4,7 +4,13 @@ use crate::common::*;
 
 /// A table that ends at x: a box of triangles, or an open sheet.
 fn table(end: f64, is_box: bool) -> Obstacle {
-    let whole = block([end + 1.0, 3.0, 1.0], [1; 3]).map_points(|[x, y, z]| [x - 1.0, y - 1.0, z - 1.0]);
+    table_at(0.0, end, is_box)
+}
+
+/// The same at some height.
+fn table_at(height: f64, end: f64, is_box: bool) -> Obstacle {
+    let whole = block([end + 1.0, 3.0, 1.0], [1; 3]);
+    let whole = whole.map_points(|[x, y, z]| [x - 1.0, y - 1.0, z - 1.0 + height]);
     let whole = whole.expect("box");
     let mut facets = whole.facets().to_vec();
     facets.retain(|facet| is_box || facet.tag == brick::Z_MAX);
@@ -14,7 +20,16 @@ fn table(end: f64, is_box: bool) -> Obstacle {
 
 /// A block [0, 2] x [0, 1] x [0, 0.5] with node rows at 1 and 1.2, whose end is moved along the table.
 fn over_the_edge(contact: Contact, way: f64) -> Scene {
-    Scene::new(block([2.0, 1.0, 0.5], [10, 3, 3]), uniform(1e6, 0.3))
+    of_order(1, contact, way)
+}
+
+fn of_order(order: usize, contact: Contact, way: f64) -> Scene {
+    let mesh = block([2.0, 1.0, 0.5], [10, 3, 3]);
+    let mesh = match order {
+        2 => mesh.raise_order().expect("quadratic"),
+        _ => mesh,
+    };
+    Scene::new(mesh, uniform(1e6, 0.3))
         .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -1e3]))
         .with_support(Support::components(brick::X_MIN, [true, false, false]).with_motion([way, 0.0, 0.0], ramp()))
         .with_support(Support::components(brick::Y_MIN, [false, true, false]))
@@ -44,20 +59,77 @@ fn a_block_over_the_edge_of_a_table_is_held_by_what_is_below() {
     }
 }
 
-/// What is beside a table may not come over it: the table has no say there.
+/// A table that moves below nodes that lay beside it holds them, too.
 #[test]
-fn what_comes_over_the_edge_of_a_table_is_refused_or_warned_of() {
-    let contact = Contact::obstacle(brick::Z_MIN, table(1.03, true));
-    let error = refused(&over_the_edge(
-        contact.clone().with_motion([0.2, 0.0, 0.0], ramp()),
-        0.0,
-    ));
-    assert!(matches!(error, ContactError::TurnedNormal { .. }), "{error}");
+fn a_table_may_move_below_what_is_beside_it() {
+    for (is_box, order) in [(true, 1), (false, 1), (true, 2), (false, 2)] {
+        let of = |end: f64, way: f64| {
+            let contact = Contact::obstacle(brick::Z_MIN, table(end, is_box)).with_motion([way, 0.0, 0.0], ramp());
+            solve(of_order(order, contact, 0.0), at(1e-8))
+        };
+        let (moved, there) = (of(1.03, 0.2), of(1.23, 0.0));
+        let what = format!("box {is_box}, order {order}");
+        assert_eq!(moved.summary.active, there.summary.active, "{what}");
+        assert_close(&moved.displacement, &there.displacement, 1e-6, &what);
+    }
+}
+
+/// What the body itself moves over a table is warned of: the table has no say there.
+#[test]
+fn what_comes_over_the_edge_of_a_table_is_warned_of() {
     let warnings = |way: f64| {
-        let mut simulation = Simulation::new(over_the_edge(contact.clone(), way), at(1e-8)).expect("set-up");
+        let contact = Contact::obstacle(brick::Z_MIN, table(1.03, true));
+        let mut simulation = Simulation::new(over_the_edge(contact, way), at(1e-8)).expect("set-up");
         simulation.step().expect("step").warnings()
     };
     let turned = |w: &Warning| matches!(w, Warning::TurnedNormal { .. });
     assert!(!warnings(-0.1).iter().any(turned));
     assert!(warnings(-0.2).iter().any(turned));
+}
+
+/// The signed distance to such a box as a user writes it.
+fn own_distance(end: f64) -> Obstacle {
+    let beside = move |x: [f64; 3]| [(x[0] - end).max(0.0), x[2].max(0.0)];
+    let distance = move |x: [f64; 3]| match beside(x) {
+        [0.0, 0.0] => (x[0] - end).max(x[2]),
+        [a, b] => a.hypot(b),
+    };
+    let gradient = move |x: [f64; 3]| match beside(x) {
+        [0.0, 0.0] if x[2] >= x[0] - end => [0.0, 0.0, 1.0],
+        [0.0, 0.0] => [1.0, 0.0, 0.0],
+        [a, b] => [a / a.hypot(b), 0.0, b / a.hypot(b)],
+    };
+    Obstacle::from_distance(distance, gradient)
+}
+
+/// A quadratic block is held by as much of a table as a linear one. Means of distances to its edge left one node, and the
+/// block 300 times as soft. A table that comes from far below is the same, and turns nothing.
+#[test]
+fn a_quadratic_block_over_the_edge_of_a_table_lies_on_what_is_below() {
+    let held = |order: usize, contact: Contact| {
+        let found = solve(of_order(order, contact, 0.0), at(1e-8));
+        let sinks = found.displacement.chunks_exact(3).map(|u| -u[2]);
+        (found.summary.active, sinks.fold(0.0, f64::max))
+    };
+    for end in [1.9, 1.7, 1.55] {
+        let lies = |obstacle| Contact::obstacle(brick::Z_MIN, obstacle);
+        let comes = |obstacle| lies(obstacle).with_motion([0.0, 0.0, 0.3], ramp());
+        let (touched, linear) = held(1, lies(table(end, true)));
+        for (what, contact) in [
+            ("box", lies(table(end, true))),
+            ("sheet", lies(table(end, false))),
+            ("function", lies(own_distance(end))),
+            ("normals of the body", lies(table(end, true)).with_body_normals()),
+            ("one normal", lies(table(end, false)).with_normal([0.0, 0.0, -1.0])),
+            ("box from below", comes(table_at(-0.3, end, true))),
+            ("sheet from below", comes(table_at(-0.3, end, false))),
+        ] {
+            let (active, sinks) = held(2, contact);
+            assert!(active.abs_diff(touched) <= 1, "{what}, {end}: {active} {touched}");
+            assert!(
+                (sinks / linear - 1.0).abs() < 0.1,
+                "{what}, {end}: {sinks:e} {linear:e}"
+            );
+        }
+    }
 }
