@@ -101,7 +101,7 @@ pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactErr
     }
     for (index, contact) in scene.contacts.iter().enumerate() {
         let part = Part::Contact(index);
-        if let Some((value, history)) = &contact.motion {
+        for (value, history) in &contact.motions {
             let (factor, time) = scene.analysis.largest_factor(history);
             let place = || format!(" at time {time} s: the displacement of its obstacle");
             expect(factor * vector::max_abs(value), LENGTH, part, place)?;

@@ -334,7 +334,7 @@ pub(super) fn points(
 fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactPoint) -> Result<(), ContactError> {
     let [x, y] = [&*point, other].map(|c| &scene.contacts[c.surface]);
     let nearer = order(other.gap - point.gap, rounding);
-    if x.motion != y.motion
+    if x.motions != y.motions
         || x.rotation != y.rotation
         || x.gap_history != y.gap_history
         || x.compliance != y.compliance

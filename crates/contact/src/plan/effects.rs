@@ -75,7 +75,7 @@ impl Effects {
         let has_gap = |surface: usize| match contacts[surface].gap {
             // turned where it has moved to, an obstacle opens more than its way
             Gap::None | Gap::Constant(0.0) => {
-                contacts[surface].motion.is_some() && contacts[surface].rotation.is_some()
+                !contacts[surface].motions.is_empty() && contacts[surface].rotation.is_some()
             }
             Gap::Measured => measured(surface),
             _ => true,

@@ -42,9 +42,10 @@ pub(super) fn zero_at_steps(scene: &Scene, discrete: &DiscreteScene) -> Option<W
     let motions = supports.filter_map(|(k, s)| Some((k, s.motion.as_ref()?)));
     let motions = motions.filter(|(_, (ways, _))| ways.iter().flatten().any(|w| *w != 0.0));
     let contacts = scene.contacts.iter().enumerate();
-    let obstacles = contacts.filter_map(|(k, contact)| {
-        let (_, history) = contact.motion.as_ref().filter(|(way, _)| *way != [0.0; 3])?;
-        Some((Part::Contact(k), history))
+    let obstacles = contacts.flat_map(|(k, contact)| {
+        let motions = contact.motions.iter().filter(|(way, _)| *way != [0.0; 3]);
+        let turn = contact.rotation.as_ref().map(|rotation| &rotation.angle);
+        (motions.map(|(_, history)| history).chain(turn)).map(move |history| (Part::Contact(k), history))
     });
     let couplings = scene.couplings.iter().enumerate().flat_map(|(k, coupling)| {
         let motions = coupling.motions().iter().filter(|(way, _)| *way != [0.0; 6]);

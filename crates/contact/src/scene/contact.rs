@@ -8,6 +8,7 @@ use super::span::Span;
 use crate::error::ContactError;
 use crate::vec3::norm;
 use signorini_fem_mesh::loads::Function;
+use signorini_fem_mesh::vec3::{add, scale};
 use signorini_fem_mesh::{FacetTag, History};
 use signorini_qp::vector;
 use std::sync::Arc;
@@ -53,7 +54,7 @@ pub struct Contact {
     /// Angle of a crease, degrees.
     pub(crate) crease: f64,
     /// Displacement of the obstacle, m, and its factor in time.
-    pub(crate) motion: Option<([f64; 3], History)>,
+    pub(crate) motions: Vec<([f64; 3], History)>,
     pub(crate) closing: Closing,
     /// Factor of the gap in time.
     pub(crate) gap_history: Option<History>,
@@ -83,7 +84,7 @@ impl Contact {
             law_given: false,
             friction_axis: None,
             crease: CREASE,
-            motion: None,
+            motions: Vec::new(),
             closing: Closing::Faceted,
             gap_history: None,
             rotation: None,
@@ -256,9 +257,9 @@ impl Contact {
     /// motions that are long against the radius of curvature are refused ([`MovedField`](ContactError::MovedField)).
     /// Friction laws that depend on position stay with the nodes of the body.
     ///
-    /// Of [tied](Self::tied) sides the first one moves relative to the other. It replaces a motion that was told before.
+    /// Of [tied](Self::tied) sides the first one moves relative to the other. Several such motions add up.
     pub fn with_motion(mut self, displacement: [f64; 3], history: History) -> Self {
-        self.motion = Some((displacement, history));
+        self.motions.push((displacement, history));
         self
     }
 
@@ -276,18 +277,20 @@ impl Contact {
 
     /// Whether the obstacle moves or turns.
     pub(crate) fn moves(&self) -> bool {
-        self.motion.is_some() || self.rotation.is_some()
+        !self.motions.is_empty() || self.rotation.is_some()
+    }
+
+    /// How far the obstacle is displaced at a time, m; of tied sides the first one against the other.
+    pub(crate) fn shift(&self, time: f64) -> [f64; 3] {
+        let ways = self
+            .motions
+            .iter()
+            .map(|(way, history)| scale(history.value(time), *way));
+        ways.reduce(add).unwrap_or_default()
     }
 
     /// Where the obstacle is at some times, and what has become of the gap; none if it rests and the gap stays.
     pub(crate) fn poses(&self, times: &[f64]) -> Vec<Pose> {
-        let shift = |time: f64| match &self.motion {
-            Some((displacement, history)) => {
-                let factor = history.value(time);
-                displacement.map(|c| factor * c)
-            }
-            None => [0.0; 3],
-        };
         let all = times.iter().copied();
         let mut poses: Vec<Pose> = match &self.rotation {
             Some(rotation) => {
@@ -295,12 +298,12 @@ impl Contact {
                 way.extend(all);
                 way.sort_by(f64::total_cmp);
                 way.dedup();
-                let poses = Pose::turning(rotation, way.iter().map(|&t| (shift(t), rotation.angle.value(t))));
+                let poses = Pose::turning(rotation, way.iter().map(|&t| (self.shift(t), rotation.angle.value(t))));
                 let reached = |time: &f64| times.binary_search_by(|t| t.total_cmp(time)).is_ok();
                 let reached = way.iter().zip(poses).filter(|(time, _)| reached(time));
                 reached.map(|(_, pose)| pose).collect()
             }
-            None if self.motion.is_some() => all.map(|t| Pose::shifted(shift(t))).collect(),
+            None if self.moves() => all.map(|t| Pose::shifted(self.shift(t))).collect(),
             None if self.gap_history.is_some() => vec![Pose::default(); times.len()],
             None => Vec::new(),
         };
@@ -313,10 +316,11 @@ impl Contact {
 
     /// Times up to the last one at which an obstacle that is displaced and turns changes its way: points of its tables.
     fn kinks(&self, rotation: &Rotation, times: &[f64]) -> Vec<f64> {
-        let (Some((_, course)), Some(&last)) = (&self.motion, times.last()) else {
+        let Some(&last) = times.last().filter(|_| !self.motions.is_empty()) else {
             return Vec::new();
         };
-        let points = course.points().iter().chain(rotation.angle.points());
+        let courses = self.motions.iter().flat_map(|(_, course)| course.points());
+        let points = courses.chain(rotation.angle.points());
         points.map(|p| p.0).filter(|t| (0.0..last).contains(t)).collect()
     }
 

@@ -129,9 +129,9 @@ impl Scene {
                 motion.into_iter().chain(&s.fading).map(move |h| ("support", k, h))
             }))
             .chain(contacts.flat_map(|(k, c)| {
-                let motion = c.motion.as_ref().map(|(_, history)| history);
+                let motions = c.motions.iter().map(|(_, history)| history);
                 let turn = c.rotation.as_ref().map(|rotation| &rotation.angle);
-                (motion.into_iter().chain(turn).chain(&c.gap_history)).map(move |h| ("contact", k, h))
+                (motions.chain(turn).chain(&c.gap_history)).map(move |h| ("contact", k, h))
             }))
             .chain(couplings)
             .chain(equations.filter_map(|(k, e)| Some(("equation", k, &e.value.as_ref()?.1))))
@@ -167,7 +167,7 @@ impl Scene {
             };
             good.then_some(()).ok_or(error)
         };
-        if let Some((displacement, _)) = &contact.motion {
+        for (displacement, _) in &contact.motions {
             let name = "displacement of the obstacle";
             let mut values = displacement.iter();
             values.try_for_each(|c| check(c.is_finite(), name, *c, "of finite numbers"))?;

@@ -175,12 +175,9 @@ impl StepProblem {
             return;
         }
         for (tied, tie) in model.tied() {
-            let Some((displacement, history)) = &model.scene.contacts[tie.surface].motion else {
-                continue;
-            };
-            let way = tie.sides.sign() * history.value(self.time);
+            let way = model.scene.contacts[tie.surface].shift(self.time);
             for (row, (direction, length)) in tied.rows.clone().zip(&tied.directions) {
-                self.offset[row] += length * way * dot(displacement, direction);
+                self.offset[row] += length * tie.sides.sign() * dot(&way, direction);
             }
         }
     }

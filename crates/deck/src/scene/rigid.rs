@@ -46,10 +46,10 @@ pub(super) struct Lead {
     pub(super) word: Word,
 }
 
-/// How a body moves: the displacement of a point, and its rotation about it, radians.
+/// How a body moves: the displacements of a point, which add up, and its rotation about it, radians.
 #[derive(Debug)]
 pub(super) struct Motion {
-    shift: Course,
+    shifts: Vec<(Vec3, History)>,
     turn: Course,
     about: Vec3,
 }
@@ -74,67 +74,71 @@ impl FreeLead {
 }
 
 impl Lead {
-    /// Three components as one vector.
-    fn course(&self, timeline: &Timeline, tracks: &[Track]) -> Result<Course, DeckError> {
+    /// Three components as vectors, one for each history.
+    fn courses(timeline: &Timeline, tracks: &[Track]) -> Result<Vec<(Vec3, History)>, DeckError> {
         let mut histories = Histories::default();
-        let mut value = [0.0; 3];
-        for (component, track) in value.iter_mut().zip(tracks) {
-            let Some((size, history)) = histories.add(timeline, track)? else {
-                continue;
-            };
-            if history > 0 {
-                let why = "the components of a rigid motion have different histories, and displacement and rotation \
-                have one each; give their components one amplitude";
-                return Err(self.word.cannot(why));
+        let mut values: Vec<Vec3> = Vec::new();
+        for (component, track) in tracks.iter().enumerate() {
+            if let Some((size, history)) = histories.add(timeline, track)? {
+                values.resize(values.len().max(history + 1), [0.0; 3]);
+                values[history][component] = size;
             }
-            *component = size;
         }
-        let moves = value.iter().any(|v| *v != 0.0);
-        Ok(moves.then(|| (value, histories.at(0))))
+        let moves = values.into_iter().enumerate().filter(|(_, value)| *value != [0.0; 3]);
+        Ok(moves.map(|(history, value)| (value, histories.at(history))).collect())
+    }
+
+    /// The rotation; an error if its components have different histories.
+    fn turn(&self, timeline: &Timeline) -> Result<Course, DeckError> {
+        let mut courses = Self::courses(timeline, &self.tracks[3..])?;
+        if courses.len() > 1 {
+            let why = "the components of a rigid rotation have different histories: it would be about an axis that changes, and \
+            there is one here; give its components one amplitude";
+            return Err(self.word.cannot(why));
+        }
+        Ok(courses.pop())
     }
 
     /// The motion of an obstacle.
     pub(super) fn motion(&self, timeline: &Timeline) -> Result<Motion, DeckError> {
         Ok(Motion {
-            shift: self.course(timeline, &self.tracks[..3])?,
-            turn: self.course(timeline, &self.tracks[3..])?,
+            shifts: Self::courses(timeline, &self.tracks[..3])?,
+            turn: self.turn(timeline)?,
             about: self.about,
         })
     }
 
     /// The motion of what turns; where nothing turns, each component may have a history of its own.
     pub(super) fn turning(&self, timeline: &Timeline) -> Result<Option<Motion>, DeckError> {
-        let turns = self.course(timeline, &self.tracks[3..])?.is_some();
+        let turns = self.turn(timeline)?.is_some();
         turns.then(|| self.motion(timeline)).transpose()
+    }
+
+    /// Whether it turns while its components have different histories.
+    pub(super) fn turns_apart(&self, timeline: &Timeline) -> Result<bool, DeckError> {
+        let turns = !Self::courses(timeline, &self.tracks[3..])?.is_empty();
+        let mut histories = Histories::default();
+        let mut last = None;
+        for track in &self.tracks {
+            last = last.max(histories.add(timeline, track)?.map(|(_, history)| history));
+        }
+        Ok(turns && last > Some(0))
     }
 }
 
 impl Motion {
-    /// A component of the displacement of a place, for small rotations, and its history; `None` if it is zero, the
-    /// error if there are two.
-    pub(super) fn at(&self, place: Vec3, component: usize) -> Result<Option<(f64, History)>, &'static str> {
+    /// A component of the displacement of a place, for small rotations, and its history; `None` if it is zero. Of what
+    /// does not [turn apart](Lead::turns_apart).
+    pub(super) fn at(&self, place: Vec3, component: usize) -> Option<(f64, History)> {
         let arm = sub(place, self.about);
-        let shift = self.shift.as_ref().map(|(by, history)| (by[component], history));
+        let shifts = self.shifts.iter().map(|(by, history)| (by[component], history));
         let turn = self
             .turn
-            .as_ref()
+            .iter()
             .map(|(by, history)| (cross(*by, arm)[component], history));
-        let parts: Vec<_> = [shift, turn]
-            .into_iter()
-            .flatten()
-            .filter(|part| part.0 != 0.0)
-            .collect();
-        match parts[..] {
-            [] => Ok(None),
-            [(value, history)] => Ok(Some((value, history.clone()))),
-            [(a, one), (b, other), ..] => match one.points() == other.points() {
-                true => Ok(Some((a + b, one.clone()))),
-                false => Err(
-                    "elastic nodes of what is rigid are displaced and turned with different histories, and a \
-                    support has one; give both one amplitude, or move the nodes with *BOUNDARY",
-                ),
-            },
-        }
+        let parts = shifts.chain(turn).filter(|part| part.0 != 0.0);
+        let whole = parts.reduce(|(a, history), (b, _)| (a + b, history));
+        whole.map(|(value, history)| (value, history.clone()))
     }
 }
 
@@ -377,7 +381,7 @@ pub(super) fn obstacle(
             )
         }
     };
-    if let Some((displacement, history)) = &motion.shift {
+    for (displacement, history) in &motion.shifts {
         contact = contact.with_motion(*displacement, history.clone());
     }
     if let Some((by, history)) = &motion.turn {

@@ -346,7 +346,8 @@ impl Table {
     }
 
     /// Gives nodes of the mesh the displacement of a reference node and its rotation; `what` they are, and its word. A
-    /// coupling where not all of its components are held, or it is loaded, or nodes are held by themselves, too.
+    /// coupling where not all of its components are held, it is loaded, nodes are held by themselves, too, or it turns and
+    /// has several histories, of which a support has one.
     fn move_rigidly(
         &mut self,
         known: Known,
@@ -365,7 +366,10 @@ impl Table {
             about: known.model.nodes[leads.0 as usize].point,
             word: word.clone(),
         };
-        let motion = lead.turning(known.timeline)?;
+        let motion = match lead.turns_apart(known.timeline)? {
+            true => return self.coupling(known, nodes, leads, word).map(Some),
+            false => lead.turning(known.timeline)?,
+        };
         for node in nodes {
             let label = known.raw.node_labels[node as usize];
             if known.transforms.of(node).is_some() {
@@ -376,10 +380,8 @@ impl Table {
                 let mut held = lead.clone();
                 if let Some(motion) = &motion {
                     let at = motion.at(known.raw.points[node as usize], component);
-                    let (value, history) = at
-                        .map_err(|why| word.cannot(why))?
-                        .unwrap_or((0.0, History::constant(0.0)));
-                    held.track = held.track.with_course(value, history);
+                    let at = at.unwrap_or((0.0, History::constant(0.0)));
+                    held.track = held.track.with_course(at.0, at.1);
                 }
                 self.held.insert((node, component), held);
             }
@@ -481,10 +483,8 @@ fn moved(
     word: &Word,
 ) -> Result<Rigid, DeckError> {
     let mut histories = Histories::default();
-    for (component, held) in held.iter().enumerate() {
-        let Some(held) = held else {
-            continue;
-        };
+    let held = held.iter().enumerate();
+    for (component, held) in held.filter_map(|(k, held)| Some((k, held.as_ref()?))) {
         if let Some((value, history)) = histories.add(known.timeline, &held.track)? {
             let mut motion = [0.0; 6];
             motion[component] = value;

@@ -101,15 +101,6 @@ fn what_is_refused() {
     refused(other, &idle, other, "WEIGHTING METHOD=LINEAR", "by area");
     refused("*KINEMATIC\n1, 2", &idle, "1, 2", "1, 2", "give 1 to 3");
     refused("*DISTRIBUTING\n4, 7", &idle, "4, 7", "4, 7", "1 to 6");
-    let own = "*AMPLITUDE, NAME=A\n0., 0., 1., 1., 2., 0.\n";
-    let turned = step("*BOUNDARY\n900, 2, 5\n900, 1, 1, 0.1\n*BOUNDARY, AMPLITUDE=A\n900, 6, 6, 0.1\n");
-    refused(
-        "*KINEMATIC",
-        &format!("{own}{HELD}{turned}"),
-        card,
-        "SURFACE=S6",
-        "one amplitude",
-    );
     let held = format!("{HELD}*BOUNDARY\n900, 1, 6\n{idle}");
     refused("*DISTRIBUTING", &held, "900, 1, 6", "900", "takes loads");
     let moment = format!("{HELD}{}", step("*CLOAD\n900, 5, 1.\n"));

@@ -35,6 +35,54 @@ fn elastic_nodes_move_with_what_is_rigid() {
     }
 }
 
+/// Pressed in one step and turned in the next.
+#[test]
+fn what_is_rigid_turns_after_it_was_displaced() {
+    let node = "*NODE\n900, 0.3, 0.2, 2.\n901\n*BOUNDARY\nN5, 1, 3\n901, 1, 2\n";
+    let step = |moves: &str| format!("*STEP\n*STATIC\n*BOUNDARY\n{moves}*END STEP\n");
+    let steps = step("900, 1, 2\n900, 3, 3, -0.05\n901, 3, 3, 0.\n") + &step("900, 1, 1, 0.1\n901, 3, 3, 0.02\n");
+    let deck = node.to_owned() + "*RIGID BODY, NSET=N6, REF NODE=900, ROT NODE=901\n" + &steps;
+    let deck = read(&cube(&deck)).expect("deck");
+    let mut simulation = Simulation::new(deck.scene().expect("scene"), Settings::default()).expect("simulation");
+    for (shift, angle) in [([0.0, 0.0, -0.05], 0.0), ([0.1, 0.0, -0.05], 0.02)] {
+        let result = simulation.step().expect("solved");
+        for n in deck.mesh().nodes_on(brick::Z_MAX) {
+            let turn = cross(
+                [0.0, 0.0, angle],
+                sub(deck.mesh().points()[n as usize], [0.3, 0.2, 2.0]),
+            );
+            let exact = [0, 1, 2].map(|c| shift[c] + turn[c]);
+            let found = result.displacement()[n as usize];
+            assert!(norm(sub(found, exact)) < 1e-9, "{found:?} {exact:?}");
+        }
+    }
+}
+
+/// A plane that presses from below in one step and drags in the next has two motions, which add up.
+#[test]
+fn a_rigid_surface_presses_and_then_drags() {
+    let block = Brick::new([1.0; 3], [3, 3, 2]).build().expect("brick");
+    let deck = mesh(&block)
+        + STEEL
+        + "*NODE\n101, -1., -1., 0.\n102, 2., -1., 0.\n103, 2., 2., 0.\n104, -1., 2., 0.\n109\n\
+        *ELEMENT, TYPE=R3D4, ELSET=FLOOR\n900, 101, 102, 103, 104\n*RIGID BODY, REF NODE=109, ELSET=FLOOR\n\
+        *SURFACE, NAME=PLANE\nFLOOR, SPOS\n*SURFACE INTERACTION, NAME=ROUGH\n*FRICTION\n0.25\n\
+        *CONTACT PAIR, INTERACTION=ROUGH\nS5, PLANE\n*BOUNDARY\nN6, PINNED\n109, 4, 6\n\
+        *STEP\n*STATIC\n1., 1.\n*BOUNDARY\n109, 1, 2\n109, 3, 3, 0.001\n*END STEP\n\
+        *STEP\n*STATIC\n1., 1.\n*BOUNDARY\n109, 1, 1, 0.002\n*END STEP\n";
+    let table = |points: &[(f64, f64)]| History::table(points.to_vec()).expect("table");
+    let program = Scene::new(block, steel())
+        .with_support(Support::fixed(brick::Z_MAX))
+        .with_contact(
+            Contact::half_space(brick::Z_MIN, [-1.0, -1.0, 0.0], [0.0, 0.0, 1.0])
+                .with_motion([0.002, 0.0, 0.0], table(&[(1.0, 0.0), (2.0, 1.0)]))
+                .with_motion([0.0, 0.0, 0.001], table(&[(0.0, 0.0), (1.0, 1.0)]))
+                .with_friction(Friction::coulomb(0.25)),
+        )
+        .with_analysis(Analysis::quasistatic(2.0, 2).with_formula(DifferenceFormula::BACKWARD_EULER));
+    compare(&deck, program);
+}
+
 /// Without a rotation each component has a history of its own.
 #[test]
 fn what_does_not_turn_moves_along_each_axis_by_itself() {

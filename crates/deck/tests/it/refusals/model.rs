@@ -269,7 +269,7 @@ fn rigid_bodies() {
     try_one(plane, &free, body, "REF NODE=109", "component 4");
     let step = |lines: &str| format!("{held}*STEP\n*STATIC\n{lines}*END STEP\n");
     let two = "*AMPLITUDE, NAME=A\n0., 0., 1., 1., 2., 0.\n".to_owned()
-        + &step("*BOUNDARY\n109, 1, 1, 0.1\n*BOUNDARY, AMPLITUDE=A\n109, 2, 2, 0.1\n");
+        + &step("*BOUNDARY\n109, 4, 4, 0.1\n*BOUNDARY, AMPLITUDE=A\n109, 5, 5, 0.1\n");
     try_one(plane, &two, body, "REF NODE=109", "different histories");
     try_one(
         plane,
