@@ -7,6 +7,10 @@ pub(crate) const ROUNDING: f64 = 1e-9;
 /// Difference of unit vectors, and of places over their distance from the origin, that is rounding of what a deck writes.
 pub(crate) const TURNED: f64 = 1e-5;
 
+/// What cut edges of rigid faces may be off the curved ones, over their lengths before; the most parts of one.
+pub(crate) const SAGITTA: f64 = 5e-4;
+pub(crate) const MOST_PARTS: f64 = 8.0;
+
 /// Part of the area of a face that is none.
 pub(crate) const NO_AREA: f64 = 1e-12;
 

@@ -12,7 +12,7 @@ use signorini_fem_mesh::{FacetTag, History};
 
 use super::history::{Histories, Track};
 use super::numbers::Sets;
-use super::rigid_face::RigidFace;
+use super::rigid_face::{RigidFace, triangles};
 use super::timeline::Timeline;
 use crate::error::{DeckError, Word};
 use crate::lexer::Named;
@@ -369,8 +369,7 @@ pub(super) fn obstacle(
     let mut contact = match plane {
         Some([point, normal]) => Contact::half_space(tag, point, normal),
         None => {
-            let triangles = faces.iter().flat_map(|face| &face.triangles);
-            let points: Vec<Vec3> = triangles.flatten().copied().collect();
+            let points = triangles(faces).concat();
             let triangles: Vec<[u32; 3]> = (0..points.len() as u32 / 3)
                 .map(|t| [3 * t, 3 * t + 1, 3 * t + 2])
                 .collect();
@@ -426,7 +425,7 @@ fn plane(faces: &[RigidFace], over: &[Vec3]) -> Option<[Vec3; 2]> {
         let own = area_vector(t);
         t.iter().all(|x| height(x).abs() <= ROUNDING * reach) && dot(own, normal) >= (1.0 - ROUNDING) * norm(own)
     };
-    let mids = faces.iter().flat_map(|face| &face.triangles).flatten();
+    let mids = faces.iter().flat_map(|face| &face.mids);
     let is_flat = triangles.iter().all(flat) && mids.into_iter().all(|x| height(x).abs() <= ROUNDING * reach);
     let covers = |x: &Vec3| triangles.iter().any(|t| contains(t, normal, *x));
     (is_flat && over.iter().all(covers)).then_some([point, normal])
