@@ -1,7 +1,7 @@
 //! Runs a CalculiX or Abaqus deck: `cargo run --release --example deck -- part.inp --out DIR`.
 //!
 //! Prints what the deck asks for and does not get, the plan, a line a step, and the reactions at the end; progress and
-//! warnings on standard error.
+//! warnings on standard error. Normal and friction forces of the lines are sums of their lengths at all points.
 //! With `--out` series for ParaView and a table are written. With `--states` the run is stored in that folder every five
 //! minutes, and the same command goes on from there. Ctrl-C ends it after the step, a second one at once.
 
@@ -77,6 +77,8 @@ fn run(part: &Path, out: Option<&Path>, states: Option<&Path>, stop: Arc<AtomicB
         let (sum, u) = (step.summary(), step.displacement());
         let length = |u: &[f64; 3]| u[0].hypot(u[1]).hypot(u[2]);
         let largest = u.iter().map(length).fold(0.0, f64::max);
+        // lengths at the points: those of two pairs, or around an axis, would cancel
+        let friction: f64 = step.points().iter().map(|point| length(&point.friction_force)).sum();
         println!(
             "{:10.4} {:9} {:8} {:8} {:13.5e} {:15.5e} {largest:10.3e} {:12.0e}",
             step.time(),
@@ -84,7 +86,7 @@ fn run(part: &Path, out: Option<&Path>, states: Option<&Path>, stop: Arc<AtomicB
             sum.active,
             sum.slip,
             sum.normal_force,
-            length(&sum.friction_force),
+            friction,
             step.certificate().largest()
         );
         if let Some(writer) = &mut writer {
