@@ -65,6 +65,11 @@ pub(crate) const SHARP: f64 = 0.9;
 /// Cosine between a direction and the way to an obstacle of a function below which the place is taken to be beside it.
 pub(crate) const SIDEWAYS: f64 = 0.9;
 
+/// What the mean of a gap that is given goes beyond its values at the nodes, and what it is off the value in the middle, over
+/// the range of the former, from which on the gap jumps between nodes.
+pub(crate) const OVERSHOT: f64 = 0.02;
+pub(crate) const JUMP: f64 = 0.25;
+
 /// Distance to the continuation of a side over that to the obstacle, up to which nothing of the obstacle is met there.
 pub(crate) const ENDED: f64 = 0.9;
 

@@ -9,7 +9,8 @@ use super::creases::around;
 use super::partners::{Partner, Partners};
 use super::side::{Sides, mean_place};
 use crate::error::ContactError;
-use crate::scene::Contact;
+use crate::scene::{Contact, Gap};
+use crate::tolerances::{JUMP, OVERSHOT};
 use signorini_fem_mesh::internal::Lists;
 use signorini_fem_mesh::vec3::{add, norm, scale, sub};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
@@ -138,18 +139,42 @@ pub(super) fn mean_gap(
     measured: impl Fn(u32) -> f64,
 ) -> Result<f64, ContactError> {
     let centre = || {
-        side.iter().fold([0.0; 3], |sum, (node, weight)| {
-            add(sum, scale(*weight, mesh.points()[*node as usize]))
-        })
+        let part = |(node, weight): &(u32, f64)| scale(*weight, mesh.points()[*node as usize]);
+        side.iter().map(part).fold([0.0; 3], add)
     };
     if let Some(distance) = contact.beyond(centre(), normal) {
         return Ok(distance);
     }
-    let gap = |&(node, weight): &(u32, f64)| {
-        let place = mesh.points()[node as usize];
-        Ok(weight * contact.gap_at(index, node, place, normal, measured(node))?)
+    mean(mesh, contact, (side, centre), |node, place| {
+        contact.gap_at(index, node, place, normal, measured(node))
+    })
+}
+
+/// The mean over the nodes of a side of what is at each; where a gap that is given jumps between them, what is at the centre.
+pub(super) fn mean(
+    mesh: &TetMesh,
+    contact: &Contact,
+    (side, centre): (&[(u32, f64)], impl Fn() -> [f64; 3]),
+    at: impl Fn(u32, [f64; 3]) -> Result<f64, ContactError>,
+) -> Result<f64, ContactError> {
+    let (mut sum, mut least, mut most) = (0.0, f64::INFINITY, f64::NEG_INFINITY);
+    for &(node, weight) in side {
+        let value = at(node, mesh.points()[node as usize])?;
+        sum += weight * value;
+        (least, most) = (value.min(least), value.max(most));
+    }
+    let [(node, _), _, ..] = side else {
+        return Ok(sum);
     };
-    side.iter().map(gap).sum()
+    if !matches!(contact.gap, Gap::Field(_)) || most <= least {
+        return Ok(sum);
+    }
+    let there = at(*node, centre())?;
+    // where all directions are alike, as around a node, the mean of a quadratic field is its value in the middle
+    let range = most - least;
+    let beyond = (sum - most).max(least - sum) > OVERSHOT * range;
+    let jumps = beyond || (sum - there).abs() > JUMP * range;
+    Ok(if jumps { there } else { sum })
 }
 
 /// The partners of corners, and of mid-nodes those on the edge between the partners of its ends.

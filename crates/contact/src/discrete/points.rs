@@ -9,7 +9,7 @@
 //! judges the former.
 
 use super::creases::{SurfaceSide, creases};
-use super::means::{MatchingMid, Means, mean_gap};
+use super::means::{MatchingMid, Means, mean, mean_gap};
 use super::normals::{along_axis, differ, shape_frames};
 use super::partners::{Paired, Partners, check_overlap};
 use super::side::{Sides, mean_place, turned};
@@ -61,11 +61,10 @@ impl ContactPoint {
         if let Some(distance) = contact.beyond(pose.origin(&self.centre), &pose.back(normal)) {
             return Ok(pose.brings(distance, &self.centre, normal));
         }
-        let at = |&(node, weight): &(u32, f64)| {
-            let place = scene.mesh.points()[node as usize];
-            Ok(weight * contact.gap_brought(self.surface, node, place, normal, (self.gap, pose))?)
-        };
-        self.sides.own.nodes().iter().map(at).sum()
+        let side = (self.sides.own.nodes(), || self.centre);
+        mean(&scene.mesh, contact, side, |node, place| {
+            contact.gap_brought(self.surface, node, place, normal, (self.gap, pose))
+        })
     }
 
     /// The gap where the obstacle has moved, m.

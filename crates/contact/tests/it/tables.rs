@@ -102,8 +102,8 @@ fn own_distance(end: f64) -> Obstacle {
     Obstacle::from_distance(distance, gradient)
 }
 
-/// A quadratic block is held by as much of a table as a linear one. Means of distances to its edge left one node, and the
-/// block 300 times as soft. A table that comes from far below is the same, and turns nothing.
+/// A quadratic block is held by as much of a table as a linear one. Means of distances to its edge, or of a gap that jumps
+/// there, left one node, and the block 300 times as soft. A table that comes from far below is the same, and turns nothing.
 #[test]
 fn a_quadratic_block_over_the_edge_of_a_table_lies_on_what_is_below() {
     let held = |order: usize, contact: Contact| {
@@ -112,6 +112,7 @@ fn a_quadratic_block_over_the_edge_of_a_table_lies_on_what_is_below() {
         (found.summary.active, sinks.fold(0.0, f64::max))
     };
     for end in [1.9, 1.7, 1.55] {
+        let beyond = move |x: [f64; 3]| if x[0] > end + 1e-9 { 1.0 } else { 0.0 };
         let lies = |obstacle| Contact::obstacle(brick::Z_MIN, obstacle);
         let comes = |obstacle| lies(obstacle).with_motion([0.0, 0.0, 0.3], ramp());
         let (touched, linear) = held(1, lies(table(end, true)));
@@ -119,6 +120,7 @@ fn a_quadratic_block_over_the_edge_of_a_table_lies_on_what_is_below() {
             ("box", lies(table(end, true))),
             ("sheet", lies(table(end, false))),
             ("function", lies(own_distance(end))),
+            ("gap that jumps", Contact::rigid(brick::Z_MIN).with_gap_field(beyond)),
             ("normals of the body", lies(table(end, true)).with_body_normals()),
             ("one normal", lies(table(end, false)).with_normal([0.0, 0.0, -1.0])),
             ("box from below", comes(table_at(-0.3, end, true))),
