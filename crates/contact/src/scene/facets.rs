@@ -4,7 +4,7 @@
 //! a corner that of its facets weighted by angle (Bærentzen and Aanæs, 2005). Beyond the rim of an open surface there
 //! is no inside.
 
-use super::obstacle::Seen;
+use super::seen::Seen;
 use crate::error::ContactError;
 use crate::tolerances::{RIM, SAME_NORMAL, SHARP};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};

@@ -1,8 +1,9 @@
 //! Rigid obstacles of any shape, as signed distances.
 
 use super::facets::Facets;
+use super::seen::Seen;
 use crate::error::ContactError;
-use crate::tolerances::{DISTANCE, ENDED, FASTER, FEW_STEPS, NEWTON, RAY, RAY_END, SIDEWAYS, STEEP};
+use crate::tolerances::{DISTANCE, FASTER, FEW_STEPS, NEWTON, RAY, RAY_END, SIDEWAYS, STEEP};
 use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
 use std::sync::Arc;
@@ -10,35 +11,6 @@ use std::sync::Arc;
 /// Of a place, the side that is free (1, or -1 for what is turned inside out), and the direction that the gradient is
 /// to be opposite to where there is a choice.
 type Field = dyn Fn([f64; 3], f64, Option<[f64; 3]>) -> Seen + Send + Sync;
-
-/// What a place sees of an obstacle.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Seen {
-    /// Signed distance, m.
-    pub(crate) distance: f64,
-    pub(crate) gradient: [f64; 3],
-    /// Where a side has ended before the place, the signed distance to its continuation across the gradient, m; elsewhere
-    /// the distance.
-    pub(crate) level: f64,
-    /// Whether a side has ended before the place, with the gradient that is most opposite to a direction.
-    pub(crate) ends: bool,
-}
-
-impl Seen {
-    pub(super) fn new(distance: f64, gradient: [f64; 3]) -> Self {
-        Self {
-            distance,
-            gradient,
-            level: distance,
-            ends: false,
-        }
-    }
-
-    /// Whether nothing of the obstacle is met along the gradient.
-    pub(crate) fn has_ended(&self) -> bool {
-        self.ends && self.level < ENDED * self.distance
-    }
-}
 
 /// A rigid obstacle of any shape: the signed distance to it, m, positive outside, and the gradient of the distance, a
 /// unit vector out of the obstacle.
