@@ -194,7 +194,8 @@ impl Contact {
     }
 
     /// A gap in m that depends on position: the distance of a point from the obstacle along the contact normal. If the
-    /// obstacle [moves](Self::with_motion) along the surface, it is also evaluated beside the surface.
+    /// obstacle [moves](Self::with_motion) along the surface, it is also evaluated beside the surface. With quadratic
+    /// elements it is a mean around a corner, and where it jumps there the value in the middle.
     pub fn with_gap_field(mut self, gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
         self.gap = Gap::Field(Function(Arc::new(gap)));
         self.given[1] = true;

@@ -435,6 +435,10 @@ mod tests {
                     let Seen { distance, gradient, .. } = plate.distance([x, y, height], side, None);
                     assert!((distance - far).abs() < 1e-15, "{x} {y} {height}: {distance}");
                     assert!((gradient[2] - height / far).abs() < 1e-15);
+                    // from above it goes on as a plane, on which nothing is met
+                    let seen = plate.distance([x, y, height], side, Some([0.0, 0.0, -side]));
+                    assert_eq!((seen.distance, seen.ends), (distance, true));
+                    assert!((seen.gradient[2] - side).abs() < 1e-15 && seen.level == side * height);
                 }
                 // over it, and over the rim itself
                 for (x, y) in [(0.3, 0.4), (0.5, 0.5), (1.0, 0.4), (0.0, 1.0)] {
