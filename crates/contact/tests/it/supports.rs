@@ -345,7 +345,7 @@ fn rigid_motions_take_few_products() {
 fn statically_determinate_bodies_take_no_iterations() {
     for (cells, order) in [([2, 2, 2], 1), ([3, 3, 3], 1), ([3, 3, 3], 2)] {
         let brick = Brick::new([1.0, 1.0, 0.5], cells);
-        let corner = |at: [usize; 3]| [brick.node(at) as u32];
+        let corner = |at: [usize; 3]| [brick.node(at).expect("a corner")];
         let mut mesh = brick.build().expect("brick");
         if order == 2 {
             mesh = mesh.raise_order().expect("quadratic");

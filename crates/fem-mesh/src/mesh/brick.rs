@@ -117,9 +117,16 @@ impl Brick {
         self
     }
 
-    /// Number of the node at a grid point, counted from 0 to `cells` along each axis.
-    pub fn node(&self, [i, j, k]: [usize; 3]) -> usize {
-        i + (self.cells[0] + 1) * (j + (self.cells[1] + 1) * k)
+    /// Number of the node at a grid point, counted from 0 to `cells` along each axis; none beyond the brick, or
+    /// if that cannot be built.
+    #[must_use]
+    pub fn node(&self, grid: [usize; 3]) -> Option<u32> {
+        let is_inside = grid.iter().zip(self.cells).all(|(k, cells)| *k <= cells);
+        (is_inside && self.check().is_ok()).then(|| self.number(grid))
+    }
+
+    fn number(&self, [i, j, k]: [usize; 3]) -> u32 {
+        (i + (self.cells[0] + 1) * (j + (self.cells[1] + 1) * k)) as u32
     }
 
     /// Builds the mesh with all six sides tagged.
@@ -215,7 +222,7 @@ impl Brick {
     fn tets(&self) -> Vec<[u32; 4]> {
         let mut tets = Vec::with_capacity(5 * self.cells.iter().product::<usize>());
         for [i, j, k] in grid(self.cells) {
-            let vertex = |v: usize| self.node([i + (v & 1), j + (v >> 1 & 1), k + (v >> 2)]) as u32;
+            let vertex = |v: usize| self.number([i + (v & 1), j + (v >> 1 & 1), k + (v >> 2)]);
             let cut = if (i + j + k) % 2 == 0 { &EVEN_CELL } else { &ODD_CELL };
             tets.extend(cut.iter().map(|tet| tet.map(vertex)));
         }
@@ -235,7 +242,7 @@ impl Brick {
                             grid[d] = end * self.cells[d];
                             grid[a] = ja + da;
                             grid[b] = jb + db;
-                            (self.node(grid) as u32, grid.iter().sum::<usize>() % 2 == 0)
+                            (self.number(grid), grid.iter().sum::<usize>() % 2 == 0)
                         };
                         let square = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
                         let [n0, n1, n2, n3] = square.map(|(node, _)| node);

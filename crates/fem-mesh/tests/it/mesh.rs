@@ -31,7 +31,10 @@ fn central_tetrahedra_join_even_vertices() {
             assert_eq!((p[0] + p[1] + p[2]).round() as i64 % 2, 0);
         }
     }
-    assert_eq!(mesh.points()[brick.node([2, 1, 2])], [2.0, 1.0, 2.0]);
+    let node = brick.node([2, 1, 2]).expect("a node");
+    assert_eq!(mesh.points()[node as usize], [2.0, 1.0, 2.0]);
+    let beyond = |axis| brick.node([0, 1, 2].map(|k| if k == axis { 100 } else { 0 }));
+    assert!((0..3).all(|axis| beyond(axis).is_none()));
 }
 
 #[test]
@@ -77,7 +80,7 @@ fn neighbours_are_mutual() {
 fn grading_and_perturbation() {
     let brick = Brick::new([1.0, 1.0, 2.0], [4; 3]).graded([1.0, 8.0, 0.125]);
     let mesh = brick.build().unwrap();
-    let y = |j| mesh.points()[brick.node([0, j, 0])][1];
+    let y = |j| mesh.points()[brick.node([0, j, 0]).expect("a node") as usize][1];
     assert_abs_diff_eq!((y(4) - y(3)) / (y(1) - y(0)), 8.0, epsilon = 1e-12);
     assert_eq!(y(4), 1.0);
     let perturbed = brick.clone().perturbed(0.15, 7).build().unwrap();
