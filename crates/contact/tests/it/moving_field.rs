@@ -145,10 +145,9 @@ fn a_run_over_a_moving_ball_continues() {
 #[test]
 fn fields_are_asked_at_all_places_that_pass() {
     let known = |p: [f64; 3]| if p[0] < -1e-9 { f64::NAN } else { 0.1 };
-    let contact = Contact::rigid(brick::Z_MIN)
-        .with_gap_field(known)
-        .with_motion([0.5, 0.0, 0.0], ramp());
-    match refused(&scene(contact.clone(), 4)) {
+    let contact = Contact::rigid(brick::Z_MIN).with_gap_field(known);
+    let along = contact.clone().with_motion([0.5, 0.0, 0.0], ramp());
+    match refused(&scene(along, 4)) {
         ContactError::Gap { contact, position, .. } => assert_eq!((contact, position[0]), (0, -0.125)),
         error => panic!("{error}"),
     }
@@ -170,20 +169,15 @@ fn fields_are_asked_at_all_places_that_pass() {
 /// Two fields on one side with one motion: refused only where the nearer one changes.
 #[test]
 fn which_field_is_nearer_must_not_change() {
-    let field = |slope: f64| {
+    let field = |slope: f64, way: f64| {
         Contact::rigid(brick::Z_MIN)
             .with_gap_field(move |p| 0.1 + slope * (p[0] - 7.0))
-            .with_motion([2.0, 0.0, 0.0], ramp())
+            .with_motion([way, 0.0, 0.0], ramp())
     };
-    let both = |a: f64, b: f64| scene(field(a), 4).with_contact(field(b));
-    Plan::new(&both(0.0, 0.01), &Settings::default()).expect("one stays nearer");
+    let both = |way: f64| scene(field(0.0, way), 4).with_contact(field(0.01, way));
+    Plan::new(&both(2.0), &Settings::default()).expect("one stays nearer");
     // they cross at x = 7, and pass the end of the block on their way back
-    let back = |slope: f64| {
-        let other = field(slope);
-        other.with_motion([-2.0, 0.0, 0.0], ramp())
-    };
-    let crossing = scene(back(0.0), 4).with_contact(back(0.01));
-    match refused(&crossing) {
+    match refused(&both(-2.0)) {
         ContactError::SharedNode { first, second, .. } => assert_eq!((first, second), (0, 1)),
         error => panic!("{error}"),
     }

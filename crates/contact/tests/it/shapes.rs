@@ -348,18 +348,19 @@ fn a_ball_that_spins_keeps_its_gap() {
 #[test]
 fn a_ball_dragged_along_a_plane_is_a_ball_that_stands_there() {
     let ball = |x: f64| Obstacle::sphere([x, 0.5, 2.98], 2.0);
-    let dragged = Contact::obstacle(brick::Z_MAX, ball(0.3)).with_motion([0.4, 0.0, 0.0], ramp());
+    let stands = Contact::obstacle(brick::Z_MAX, ball(0.3));
+    let dragged = stands.clone().with_motion([0.4, 0.0, 0.0], ramp());
     let (_, results) = run(held(dragged.clone().with_body_normals(), 2), at(1e-9));
     for result in &results {
         let there = Contact::obstacle(brick::Z_MAX, ball(0.3 + 0.4 * result.time)).with_body_normals();
         let there = solve(held(there, 1), at(1e-9));
         assert_close(&result.displacement, &there.displacement, 1e-7, "displacement");
     }
-    let error = refused(&held(dragged.clone(), 2));
+    let error = refused(&held(dragged, 2));
     assert!(matches!(error, ContactError::TurnedNormal { time: 1.0, .. }), "{error}");
     // a small way: normals of the start, gaps of the place
     let [large, small] = [0.02, 0.01].map(|way| {
-        let near = dragged.clone().with_motion([way, 0.0, 0.0], ramp());
+        let near = stands.clone().with_motion([way, 0.0, 0.0], ramp());
         let near = solve(held(near, 1), at(1e-9));
         let there = solve(held(Contact::obstacle(brick::Z_MAX, ball(0.3 + way)), 1), at(1e-9));
         distance(&near.displacement, &there.displacement)
