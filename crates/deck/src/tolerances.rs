@@ -7,9 +7,11 @@ pub(crate) const ROUNDING: f64 = 1e-9;
 /// Difference of unit vectors, and of places over their distance from the origin, that is rounding of what a deck writes.
 pub(crate) const TURNED: f64 = 1e-5;
 
-/// What cut edges of rigid faces may be off the curved ones, over their lengths before; the most parts of one.
+/// What cut edges of rigid faces may be off the curved ones, over their lengths before; the most parts of one, and the most
+/// squares of them on a surface, of which each is two triangles in a tree of 0.3 kB each.
 pub(crate) const SAGITTA: f64 = 5e-4;
 pub(crate) const MOST_PARTS: f64 = 8.0;
+pub(crate) const MOST_SQUARES: f64 = 3e5;
 
 /// Part of the area of a face that is none.
 pub(crate) const NO_AREA: f64 = 1e-12;

@@ -5,7 +5,7 @@ use signorini_fem_mesh::vec3::{Vec3, add, norm, scale, sub};
 use super::numbers::Sets;
 use crate::error::{DeckError, Word};
 use crate::model::{Kind, Side};
-use crate::tolerances::{MOST_PARTS, SAGITTA};
+use crate::tolerances::{MOST_PARTS, MOST_SQUARES, SAGITTA};
 
 /// A side of a rigid element: corners, counter-clockwise seen from outside, and of quadratic elements the nodes between each
 /// and the next.
@@ -147,7 +147,8 @@ fn on_edge_at([a, mid, b]: [Vec3; 3], k: usize, parts: usize) -> Vec3 {
 /// into as many parts: neighbours share places.
 pub(super) fn triangles(faces: &[RigidFace]) -> Vec<[Vec3; 3]> {
     let bow = faces.iter().map(RigidFace::bow).fold(0.0, f64::max);
-    let parts = (bow / SAGITTA).sqrt().ceil().clamp(2.0, MOST_PARTS) as usize;
+    let most = (MOST_SQUARES / faces.len() as f64).sqrt().min(MOST_PARTS);
+    let parts = (bow / SAGITTA).sqrt().ceil().min(most).max(2.0) as usize;
     faces.iter().flat_map(|face| face.triangles(parts)).collect()
 }
 
