@@ -12,7 +12,7 @@ use crate::error::ContactError;
 use crate::scene::{Contact, Gap};
 use crate::tolerances::{JUMP, OVERSHOT};
 use signorini_fem_mesh::internal::Lists;
-use signorini_fem_mesh::vec3::{add, norm, scale, sub};
+use signorini_fem_mesh::vec3::{norm, sub};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
 use signorini_tfeti::Side;
@@ -110,7 +110,7 @@ impl<'a> Means<'a> {
                 if gap.abs() <= self.rounding { 0.0 } else { gap }
             })
         };
-        let gap = mean_gap(self.mesh, (index, contact), own.nodes(), &frame.normal, measured)?;
+        let gap = mean_gap(self.mesh, (index, contact), &own, &frame.normal, measured)?;
         let sides = Sides {
             own,
             partner: partner.map(Side::new),
@@ -134,15 +134,12 @@ pub(super) struct MatchingMid {
 pub(super) fn mean_gap(
     mesh: &TetMesh,
     (index, contact): (usize, &Contact),
-    side: &[(u32, f64)],
+    side: &Side,
     normal: &[f64; 3],
     measured: impl Fn(u32) -> f64,
 ) -> Result<f64, ContactError> {
-    let centre = || {
-        let part = |(node, weight): &(u32, f64)| scale(*weight, mesh.points()[*node as usize]);
-        side.iter().map(part).fold([0.0; 3], add)
-    };
-    if let Some(distance) = contact.beyond(centre(), normal) {
+    let centre = mean_place(side, |node| mesh.points()[node as usize]);
+    if let Some(distance) = contact.beyond(centre, normal) {
         return Ok(distance);
     }
     mean(mesh, contact, (side, centre), |node, place| {
@@ -154,22 +151,19 @@ pub(super) fn mean_gap(
 pub(super) fn mean(
     mesh: &TetMesh,
     contact: &Contact,
-    (side, centre): (&[(u32, f64)], impl Fn() -> [f64; 3]),
+    (side, centre): (&Side, [f64; 3]),
     at: impl Fn(u32, [f64; 3]) -> Result<f64, ContactError>,
 ) -> Result<f64, ContactError> {
     let (mut sum, mut least, mut most) = (0.0, f64::INFINITY, f64::NEG_INFINITY);
-    for &(node, weight) in side {
+    for &(node, weight) in side.nodes() {
         let value = at(node, mesh.points()[node as usize])?;
         sum += weight * value;
         (least, most) = (value.min(least), value.max(most));
     }
-    let [(node, _), _, ..] = side else {
-        return Ok(sum);
-    };
     if !matches!(contact.gap, Gap::Field(_)) || most <= least {
         return Ok(sum);
     }
-    let there = at(*node, centre())?;
+    let there = at(side.nodes()[0].0, centre)?;
     // where all directions are alike, as around a node, the mean of a quadratic field is its value in the middle
     let range = most - least;
     let beyond = (sum - most).max(least - sum) > OVERSHOT * range;

@@ -121,12 +121,12 @@ fn check_along(
 }
 
 /// The frame at each node of a contact with the normals of its obstacle, none where the body does not face it or the side
-/// of the obstacle that it faces has ended, at all times; empty for all others. `place` is where the force of a node acts.
+/// of the obstacle that it faces has ended, in all `poses`; empty for all others. `place` is where the force of a node acts.
 pub(super) fn shape_frames(
     (index, contact): (usize, &Contact),
     surface: &Surface,
     place: impl Fn(usize) -> [f64; 3],
-    times: &[f64],
+    poses: &[Pose],
 ) -> Result<Vec<Option<SurfaceFrame>>, ContactError> {
     let Some(shape) = &contact.shape else {
         return Ok(Vec::new());
@@ -136,7 +136,6 @@ pub(super) fn shape_frames(
         check_along((index, contact), surface, place, way)?;
         return Ok(Vec::new());
     }
-    let poses = contact.poses(times);
     let frame = |(local, (&node, own)): (usize, (&u32, &SurfaceFrame))| {
         let position = place(local);
         let seen = shape.see(position, own.normal);

@@ -61,8 +61,7 @@ impl ContactPoint {
         if let Some(distance) = contact.beyond(pose.origin(&self.centre), &pose.back(normal)) {
             return Ok(pose.brings(distance, &self.centre, normal));
         }
-        let side = (self.sides.own.nodes(), || self.centre);
-        mean(&scene.mesh, contact, side, |node, place| {
+        mean(&scene.mesh, contact, (&self.sides.own, self.centre), |node, place| {
             contact.gap_brought(self.surface, node, place, normal, (self.gap, pose))
         })
     }
@@ -89,8 +88,13 @@ pub(crate) fn of_contact(conditions: &[ContactPoint], contact: usize) -> Range<u
     first..end
 }
 
-/// What the contacts of a scene say: each of their nodes with each of its normals. Contact by contact, nodes ascending.
-pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Result<Vec<ContactPoint>, ContactError> {
+/// What the contacts of a scene say, with the poses of their obstacles: each of their nodes with each of its normals. Contact
+/// by contact, nodes ascending.
+pub(super) fn conditions(
+    scene: &Scene,
+    (paired, poses): (&[Paired], &[Vec<Pose>]),
+    rounding: f64,
+) -> Result<Vec<ContactPoint>, ContactError> {
     let mut out: Vec<ContactPoint> = Vec::new();
     let acting = |(_, (contact, _)): &(usize, (&Contact, &Paired))| scene.acts(contact.span);
     for (index, (contact, paired)) in scene.contacts.iter().zip(paired).enumerate().filter(acting) {
@@ -102,7 +106,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
             Some(means) => means.place(local),
             None => scene.mesh.points()[surface.nodes()[local] as usize],
         };
-        let shaped = shape_frames((index, contact), surface, place, scene.analysis.times())?;
+        let shaped = shape_frames((index, contact), surface, place, &poses[index])?;
         let sides = match (partners, fixed) {
             (Partners::Obstacle, None) if shaped.is_empty() => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
@@ -156,7 +160,7 @@ pub(super) fn conditions(scene: &Scene, paired: &[Paired], rounding: f64) -> Res
                             partner: partner.clone(),
                             swapped: paired.swapped,
                         };
-                        let gap = mean_gap(&scene.mesh, (index, contact), &mean, &frame.normal, |_| measured)?;
+                        let gap = mean_gap(&scene.mesh, (index, contact), &sides.own, &frame.normal, |_| measured)?;
                         if curved && !contact.tied {
                             turn(&scene.mesh, &mut sides, rounding);
                         }

@@ -80,7 +80,9 @@ impl DiscreteScene {
         let search = started.elapsed();
         let mortar = paired.iter().enumerate().filter(|(_, p)| p.is_apart());
         let apart = mortar.map(|(index, p)| (index, p.swapped)).collect();
-        let mut conditions = conditions(scene, &paired, rounding)?;
+        let times = scene.analysis.times();
+        let poses: Vec<Vec<Pose>> = scene.contacts.iter().map(|c| c.poses(times)).collect();
+        let mut conditions = conditions(scene, (&paired, &poses), rounding)?;
         let ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
         if !ties.is_empty() {
             // a bonded node does not move against the other body; nodes behind its side do
@@ -95,8 +97,6 @@ impl DiscreteScene {
         let faceted = close_faceted(scene, &paired, &mut conditions, rounding)?;
         let handed_on = handed_on(&paired);
         let surfaces: Vec<Surface> = paired.into_iter().map(|p| p.surface).collect();
-        let times = scene.analysis.times();
-        let poses: Vec<Vec<Pose>> = scene.contacts.iter().map(|c| c.poses(times)).collect();
         for (index, own) in surfaces.iter().enumerate() {
             let own_conditions = &conditions[of_contact(&conditions, index)];
             check_turn(scene, index, own, own_conditions, &poses[index])?;

@@ -124,7 +124,7 @@ pub(crate) fn beside(surface: &Surface, own: &[ContactPoint]) -> impl Iterator<I
 pub(crate) fn turned(scene: &Scene, point: &ContactPoint, pose: &Pose, place: &[f64; 3]) -> f64 {
     let normal = point.frame.normal;
     let now = see(scene, point.surface, pose, place, &normal);
-    now.map_or(0.0, |now| angle(pose.forth(&now.gradient), normal.map(|c| -c)))
+    now.map_or(0.0, |now| angle(now.gradient, normal.map(|c| -c)))
 }
 
 /// The same of a node of a contact that does not face the obstacle, with the normal of the body: by how much that of the
@@ -135,27 +135,27 @@ pub(crate) fn turned_to(
     pose: &Pose,
     place: &[f64; 3],
 ) -> f64 {
-    let start = &scene.mesh.points()[node as usize];
-    let now = see(scene, contact, pose, place, &normal).filter(|now| !now.has_ended());
-    let now = now.map(|now| pose.forth(&now.gradient));
-    let now = now.filter(|now| vec3::dot(*now, normal) < -FACING);
-    let Some((shape, now)) = scene.contacts[contact].shape.as_ref().zip(now) else {
+    let faces = |now: &Seen| !now.has_ended() && vec3::dot(now.gradient, normal) < -FACING;
+    let now = see(scene, contact, pose, place, &normal).filter(faces);
+    let (Some(shape), Some(now)) = (&scene.contacts[contact].shape, now) else {
         return 0.0;
     };
-    let first = shape.see(*start, normal);
+    let start = scene.mesh.points()[node as usize];
+    let first = shape.see(start, normal);
     // where a side has ended it has no direction
-    let first = if first.has_ended() {
-        shape.distance(*start).1
-    } else {
-        first.gradient
+    let first = match first.has_ended() {
+        true => shape.distance(start).1,
+        false => first.gradient,
     };
-    angle(first, now)
+    angle(first, now.gradient)
 }
 
 /// What a place sees of the obstacle of a contact, if it has a shape, where that is.
 fn see(scene: &Scene, contact: usize, pose: &Pose, place: &[f64; 3], against: &[f64; 3]) -> Option<Seen> {
     let shape = scene.contacts[contact].shape.as_ref()?;
-    Some(shape.see(pose.origin(place), pose.back(against)))
+    let seen = shape.see(pose.origin(place), pose.back(against));
+    let gradient = pose.forth(&seen.gradient);
+    Some(Seen { gradient, ..seen })
 }
 
 fn angle(a: [f64; 3], b: [f64; 3]) -> f64 {

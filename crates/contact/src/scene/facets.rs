@@ -165,16 +165,14 @@ impl Facets {
             let gradient = opposite(None).unwrap_or(scale(side / norm(mean), mean));
             return Seen::new(sign * length, gradient);
         }
-        let ends = at >= At::Sharp && !inside;
-        let gradient = if ends { opposite(Some(out)) } else { None };
-        let seen = Seen::new(sign * length, gradient.unwrap_or(out));
-        match gradient {
+        let is_end = at >= At::Sharp && !inside;
+        match is_end.then(|| opposite(Some(out))).flatten() {
+            None => Seen::new(sign * length, out),
             Some(gradient) => Seen {
                 level: dot(way, gradient).min(length),
                 ends: true,
-                ..seen
+                ..Seen::new(length, gradient)
             },
-            None => seen,
         }
     }
 

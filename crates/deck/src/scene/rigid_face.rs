@@ -1,5 +1,6 @@
 //! Sides of the elements of rigid bodies, as polygons and triangles.
 
+use signorini_fem_mesh::internal::facet_shape;
 use signorini_fem_mesh::vec3::{Vec3, add, norm, scale, sub};
 
 use super::numbers::Sets;
@@ -35,12 +36,8 @@ impl RigidFace {
                     let edge = shape.edges().iter().position(|e| e.iter().all(|k| ends.contains(k)));
                     p.get(shape.corners() + edge?).copied()
                 };
-                mids.extend(
-                    (0..around.len())
-                        .map(mid)
-                        .collect::<Option<Vec<Vec3>>>()
-                        .unwrap_or_default(),
-                );
+                let all: Option<Vec<Vec3>> = (0..around.len()).map(mid).collect();
+                mids = all.unwrap_or_default();
                 around.into_iter().map(|k| p[k]).collect()
             }
             (Kind::Solid(_), _) => return Err(word.expected("faces S1 to S6 of solid elements")),
@@ -111,9 +108,7 @@ impl RigidFace {
         }
         let [u, v] = [i, j].map(|k| k as f64 / parts as f64);
         let weights: Vec<f64> = if is_triangle {
-            let l = [1.0 - u - v, u, v];
-            let corners = l.map(|l| l * (2.0 * l - 1.0));
-            [corners, [0, 1, 2].map(|k| 4.0 * l[k] * l[(k + 1) % 3])].concat()
+            facet_shape(&[1.0 - u - v, u, v]).to_vec()
         } else {
             let [s, t] = [u, v].map(|u| 2.0 * u - 1.0);
             let corner = |[a, b]: [f64; 2]| 0.25 * (1.0 + a * s) * (1.0 + b * t) * (a * s + b * t - 1.0);
