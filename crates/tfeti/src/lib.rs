@@ -92,8 +92,9 @@ pub use system::tfeti::Tfeti;
 pub mod internal {
     pub use crate::coarse::space::CoarseScratch;
     pub use crate::dual::boundary::PanelScratch;
+    pub use crate::dual::formed_size::RowGroups;
     pub use crate::linalg::{of_length, zeros};
-    pub use crate::preconditioner::explicit::{ExplicitCost, ExplicitScratch, formed_bytes};
+    pub use crate::preconditioner::explicit::{ExplicitCost, ExplicitScratch};
     pub use crate::preconditioner::operator::DualPreconditionerScratch;
     pub use crate::processes::threads::on_ranks;
     pub use crate::projector::active_set::ActiveSetFactor;

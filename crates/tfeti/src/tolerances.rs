@@ -139,9 +139,9 @@ pub(crate) const BANDWIDTH: [f64; 2] = [6e10, 1.2e10];
 pub(crate) const PRODUCTS: usize = 2000;
 /// Bytes of dense matrices that still stay in the caches of one processor.
 pub(crate) const CACHE: u64 = 16 << 20;
-/// Most rows of an `F` that is formed (3.2 GB), and most contact rows of these; factors of interior points and active
-/// sets of a step with its inverse.
-pub(crate) const EXPLICIT_ROWS: usize = 20_000;
+/// Most bytes of an `F` that is formed, with the factor of what is eliminated, and most contact rows of it; factors of
+/// interior points and active sets of a step with its inverse.
+pub(crate) const EXPLICIT_BYTES: f64 = 3.2e9;
 pub(crate) const EXPLICIT_CONTACT: usize = 4000;
 pub(crate) const INTERIOR_FACTORS: f64 = 100.0;
 pub(crate) const EXPLICIT_SETS: f64 = 20.0;

@@ -1,6 +1,7 @@
-//! Overlaps of bodies that touch, which are there because straight facets stand for a curve.
+//! Overlaps of bodies that touch each other or an obstacle, which are there because straight facets stand for a curve.
 //!
-//! Nodes are on the curve, facets of a hollow side before it, those of a convex side behind it. What facets make of gaps
+//! Nodes are on the curve, facets of a hollow side before it, those of a convex side behind it; mid-nodes may be on straight
+//! facets, and an obstacle has none. What facets make of gaps
 //! is known in the mean over a facet: a third of the sum of the arcs over its edges, for any curve of second degree. Taken
 //! from the measured gaps, in the mean over all contact of two bodies, it tells whether they touch or are pressed together.
 
@@ -36,14 +37,14 @@ pub(crate) struct FacetedOverlaps {
     pub(crate) closed: Option<(Overlap, [usize; 2])>,
 }
 
-/// A contact with measured gaps and its two sides.
+/// A contact with measured gaps and its sides: two, or that before an obstacle.
 struct Faceted {
     index: usize,
     /// Its conditions.
     range: Range<usize>,
     /// Whether its overlaps may go; else they are meant.
     closes: bool,
-    sides: [Side; 2],
+    sides: Vec<Side>,
 }
 
 struct Side {
@@ -71,7 +72,12 @@ pub(super) fn close_faceted(
 ) -> Result<FacetedOverlaps, ContactError> {
     let is_measured = |(index, paired): &(usize, &Paired)| {
         let contact = &scene.contacts[*index];
-        paired.is_apart() && !contact.tied && matches!(contact.gap, Gap::Measured)
+        match contact.gap {
+            Gap::Measured => paired.is_apart() && !contact.tied,
+            // nodes of linear facets are on the curve
+            Gap::Obstacle => scene.mesh.order() == 2,
+            _ => false,
+        }
     };
     let measured = || paired.iter().enumerate().filter(is_measured);
     let is_inside = |c: &ContactPoint| c.gap < -rounding;
@@ -80,16 +86,22 @@ pub(super) fn close_faceted(
     }
     let faceted = measured().map(|(index, paired)| {
         let contact = &scene.contacts[index];
-        let tags = match paired.swapped {
+        let other = match paired.swapped {
             true => &contact.tags,
             false => &contact.partner,
         };
-        let sides = [paired.surface.clone(), Surface::new(&scene.mesh, tags)?];
+        let mut sides = vec![paired.surface.clone()];
+        if matches!(contact.gap, Gap::Measured) {
+            sides.push(Surface::new(&scene.mesh, other)?);
+        }
         Ok::<_, ContactError>(Faceted {
             index,
             range: of_contact(conditions, index),
             closes: matches!(contact.closing, Closing::Faceted) && contact.gap_history.is_none(),
-            sides: sides.map(|surface| Side::new(&scene.mesh, surface)),
+            sides: sides
+                .into_iter()
+                .map(|surface| Side::new(&scene.mesh, surface))
+                .collect(),
         })
     });
     let faceted = faceted.collect::<Result<Vec<_>, _>>()?;
@@ -107,7 +119,7 @@ pub(super) fn close_faceted(
             let (known, mut counts) = out.closed.unwrap_or((deepest, [0; 2]));
             for faceted in group {
                 let inside = conditions[faceted.range.clone()].iter_mut().filter(|c| is_inside(c));
-                let points = inside.map(|c| c.gap = 0.0).count();
+                let points = inside.map(ContactPoint::close).count();
                 counts = [counts[0] + points, counts[1] + usize::from(points > 0)];
             }
             let deepest = if deepest.depth > known.depth { deepest } else { known };
@@ -151,13 +163,13 @@ fn touch(group: &[&Faceted], conditions: &[ContactPoint], deepest: f64) -> bool 
         for point in conditions[faceted.range.clone()].iter().filter(|c| c.gap <= reach) {
             let own = point.sides.own.nodes();
             let partner = point.sides.partner.as_ref().map_or(&[][..], |side| side.nodes());
-            let behind = [(0, own), (1, partner)].map(|(k, nodes)| {
-                let bends = &faceted.sides[k].bends;
-                let at = |(node, weight): &(u32, f64)| bends.get(node).map_or(0.0, |bend| weight * bend.behind);
+            let behind = faceted.sides.iter().zip([own, partner]).map(|(side, nodes)| {
+                let at = |(node, weight): &(u32, f64)| side.bends.get(node).map_or(0.0, |bend| weight * bend.behind);
                 nodes.iter().map(at).sum::<f64>()
             });
+            let behind: Vec<f64> = behind.collect();
             let before = behind.iter().map(|b| (-b).max(0.0)).sum::<f64>();
-            gap += point.area * (point.gap - behind[0] - behind[1]);
+            gap += point.area * (point.gap - behind.iter().sum::<f64>());
             hollow += point.area * before;
             deep = deep.max(before);
         }
@@ -185,7 +197,9 @@ impl Faceted {
 
     /// Whether the nodes around one have others over them, so that facets are as far from the curve on both sides.
     fn is_over(&self, mesh: &TetMesh, overlap: &Overlap) -> bool {
-        let [own, other] = &self.sides;
+        let [own, other] = &self.sides[..] else {
+            return false;
+        };
         let place = |node: &u32| mesh.points()[*node as usize];
         let is_over = |local: &u32| {
             let node = &own.surface.nodes()[*local as usize];

@@ -42,6 +42,8 @@ pub(crate) struct ContactPoint {
     pub(crate) area: f64,
     /// Distance to the obstacle as given, m.
     pub(crate) gap: f64,
+    /// Of it what was added to a measured overlap that facets alone make.
+    pub(crate) closed: f64,
     /// Friction along the second tangent over that along the first.
     pub(crate) stretch: f64,
     /// How far it gives way along the normal and along the surface, m/Pa.
@@ -61,9 +63,15 @@ impl ContactPoint {
         if let Some(distance) = contact.beyond(pose.origin(&self.centre), &pose.back(normal)) {
             return Ok(pose.brings(distance, &self.centre, normal));
         }
-        mean(&scene.mesh, contact, (&self.sides.own, self.centre), |node, place| {
-            contact.gap_brought(self.surface, node, place, normal, (self.gap, pose))
-        })
+        let brought = mean(&scene.mesh, contact, (&self.sides.own, self.centre), |node, place| {
+            contact.gap_brought(self.surface, node, place, normal, (self.gap - self.closed, pose))
+        })?;
+        Ok(brought + self.closed)
+    }
+
+    /// Closes an overlap.
+    pub(crate) fn close(&mut self) {
+        (self.gap, self.closed) = (0.0, self.closed - self.gap);
     }
 
     /// The gap where the obstacle has moved, m.
@@ -177,6 +185,7 @@ pub(super) fn conditions(
                     frame,
                     area: side.area,
                     gap,
+                    closed: 0.0,
                     stretch: contact.friction_axis.map_or(1.0, |(_, ratio)| ratio),
                     compliance: contact.compliance,
                 });
@@ -245,6 +254,7 @@ fn tied_mid(
         frame: frame.unwrap_or(one),
         area: 0.5 * (surface.areas()[a] + surface.areas()[b]),
         gap: 0.0,
+        closed: 0.0,
         stretch: 1.0,
         compliance: [0.0; 2],
     }

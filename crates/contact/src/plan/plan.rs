@@ -8,7 +8,7 @@ use crate::error::ContactError;
 use crate::report::Warning;
 use crate::scene::{Scene, Stage};
 use crate::settings::{MethodKind, Preconditioner, Settings};
-use signorini_tfeti::internal::{Forecast, Rate, forecast_levels, formed_bytes};
+use signorini_tfeti::internal::{Forecast, Rate, RowGroups, forecast_levels};
 use std::collections::BTreeSet;
 
 /// Sizes of a scene and the method chosen for it.
@@ -230,14 +230,43 @@ impl Plan {
         };
         plan.vector_bytes = 8 * (vectors * plan.dual() + (1 + scene.loads.len()) * primal) as u64;
         if active_sets && settings.preconditioner != Preconditioner::None {
-            let contact = plan.normal_rows + plan.tangential_rows;
-            plan.formed_bytes = formed_bytes(plan.dual(), contact).unwrap_or(0);
+            plan.formed_bytes = row_groups(scene, discrete, &points).bytes(forecast.largest_boundary());
         }
         let sizes = [plan.dual(), primal, plan.steps];
         let tets = elements as f64 / subdomains.max(1) as f64;
         plan.estimate = Estimate::new(sizes, tets, plan.method, settings, &forecast, coarse);
         Ok((plan, forecast))
     }
+}
+
+/// The rows by the subdomains that they touch.
+fn row_groups(scene: &Scene, discrete: &DiscreteScene, points: &[&ContactPoint]) -> RowGroups {
+    let (decomposition, supports) = (&discrete.decomposition, &discrete.supports);
+    let mut groups = RowGroups::of_interface(decomposition);
+    let near = |node: u32| decomposition.copies(node as usize).iter().map(|copy| copy.subdomain);
+    for point in points {
+        let rough = scene.contacts[point.surface].friction().is_some();
+        let rows = if rough { free_directions(point, supports) } else { 1 };
+        groups.add(true, rows, point.sides.nodes().flat_map(|n| near(n.0)));
+    }
+    for tie in &discrete.ties {
+        let nodes = tie.sides.nodes();
+        groups.add(false, free_directions(tie, supports), nodes.flat_map(|n| near(n.0)));
+    }
+    for (node, held) in &supports.directions {
+        groups.add(false, held.len(), near(*node));
+    }
+    discrete
+        .springs
+        .nodal
+        .iter()
+        .for_each(|spring| groups.add(false, 1, near(spring.node)));
+    for equation in &discrete.equations {
+        groups.add(false, 1, equation.terms.iter().flat_map(|term| near(term.0)));
+    }
+    let held = discrete.couplings.supports.iter();
+    held.for_each(|held| groups.add(false, 1, std::iter::once(held.subdomain)));
+    groups
 }
 
 /// Number of directions of a point that supports leave free: an estimate at nodes with one or two fixed directions; the

@@ -57,12 +57,12 @@ signorini_fem_mesh::errors! {
             {extent:.3e} long; look at the unit of the gap and at the places of the bodies",
             gap.abs(), if *gap < 0.0 { "inside" } else { "from" }, told(place);
         FacetedOverlap { contact: usize, node: u32, place: [f64; 3], overlap: f64, sagitta: f64 } =
-            "contact {contact} begins {overlap:.3e} inside its partner at node {node}, {}, between facets that are \
+            "contact {contact} begins {overlap:.3e} inside what it touches at node {node}, {}, between facets that are \
             {sagitta:.3e} beside the curve that they stand for, which is measured with it and presses all the same: tell \
             the gap (with_gap, 0 for sides that touch), or take smaller facets, or mid-nodes on the curve",
             told(place);
         ClosedOverlaps { contact: usize, node: u32, place: [f64; 3], overlap: f64, points: usize, contacts: usize } =
-            "{points} point(s) of {contacts} contact(s) begin inside their partner, most by {overlap:.3e} at node {node} of \
+            "{points} point(s) of {contacts} contact(s) begin inside what they touch, most by {overlap:.3e} at node {node} of \
             contact {contact}, {}, because straight facets stand for a hollow side; in the mean the sides touch, and so \
             do these points: to press, tell the gap (with_gap, negative), or take Contact::with_measured_overlaps",
             told(place);

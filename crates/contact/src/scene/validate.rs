@@ -185,12 +185,12 @@ impl Scene {
             return Err(ContactError::Compliance { contact: index, value });
         }
         let measured = matches!(contact.gap, Gap::Measured) && !contact.tied;
-        if contact.closing == Closing::Nothing && !measured {
+        if contact.closing == Closing::Nothing && !measured && !matches!(contact.gap, Gap::Obstacle) {
             return Err(ContactError::Idle {
                 what: "contact",
                 index,
                 setting: "with_measured_overlaps",
-                needs: "a gap that is measured between bodies",
+                needs: "a gap that is measured between bodies or from a shape",
             });
         }
         if let Closing::UpTo(reach) = contact.closing {

@@ -133,3 +133,52 @@ fn flats_that_meet_in_a_kink_press() {
         );
     }
 }
+
+/// Half a ring of straight quadratic elements around a rigid shaft of its radius, upon which nothing acts: mid-nodes lie
+/// within the shaft and pressed, without a warning, three times as hard as a fit of a thousandth of the radius. The shaft
+/// may turn, or move and press.
+#[test]
+fn straight_quadratic_elements_around_an_obstacle_press_nothing() {
+    let pressed = |radius: f64, bent: bool, with: &dyn Fn(Contact) -> Contact| {
+        let straight = Brick::new([std::f64::consts::PI, 0.2, 0.3], [16, 2, 2])
+            .build()
+            .expect("brick");
+        let raised = |mesh: TetMesh| mesh.raise_order().expect("order 2");
+        let place = |[a, r, z]: [f64; 3]| [-(0.8 + r) * a.cos(), (0.8 + r) * a.sin(), z];
+        let ring = match bent {
+            true => raised(straight).map_points(place).expect("ring"),
+            false => raised(straight.map_points(place).expect("ring")),
+        };
+        let shaft = Obstacle::cylinder([0.0; 3], [0.0, 0.0, 1.0], radius);
+        let contact = Contact::obstacle(brick::Y_MIN, shaft).with_friction(Friction::coulomb(0.3));
+        let scene = Scene::new(ring, uniform(1e9, 0.3))
+            .with_support(Support::components(brick::Z_MIN, [false, false, true]))
+            .with_support(Support::components(brick::X_MIN, [false, true, false]))
+            .with_support(Support::components(brick::X_MAX, [false, true, false]))
+            .with_contact(with(contact))
+            .with_analysis(Analysis::quasistatic(1.0, 2));
+        let (simulation, results) = run(scene, Settings::default());
+        (results[1].summary.normal_force, simulation.plan().warnings().to_vec())
+    };
+    let closed = |warnings: &[Warning]| warnings.iter().any(|w| matches!(w, Warning::ClosedOverlaps { .. }));
+    let as_it_is = |contact: Contact| contact;
+    let ramp = |value: f64| History::ramp(1.0, value).expect("ramp");
+    let moved = |contact: Contact| contact.with_motion([0.0, 1e-3, 0.0], ramp(1.0));
+    let turned = |contact: Contact| moved(contact).with_rotation([0.0; 3], [0.0, 0.0, 1.0], ramp(0.1));
+    let (meant, told) = pressed(0.8, false, &Contact::with_measured_overlaps);
+    assert!(meant > 5e5 && !closed(&told), "{meant} {told:?}");
+    let (force, told) = pressed(0.8, false, &as_it_is);
+    assert!(force < 1e-6 * meant && closed(&told), "{force} {told:?}");
+    // what presses does so as with mid-nodes on the circle
+    for with in [&moved as &dyn Fn(Contact) -> Contact, &turned] {
+        let (force, told) = pressed(0.8, false, with);
+        let (expected, curved) = pressed(0.8, true, with);
+        println!("{meant:e} {force:e} {expected:e}");
+        assert!(closed(&told) && !closed(&curved), "{told:?} {curved:?}");
+        assert!((force / expected - 1.0).abs() < 0.1, "{force} {expected}");
+    }
+    // a fit as deep as facets are beside the circle is told
+    let (_, told) = pressed(0.81, false, &as_it_is);
+    let told_of = told.iter().find(|w| matches!(w, Warning::FacetedOverlap { .. }));
+    assert!(told_of.is_some(), "{told:?}");
+}

@@ -68,7 +68,10 @@ fn overlaps_are_measured_between_bodies_only() {
         between.clone().with_gap(1e-3),
         Contact::rigid(brick::X_MAX),
     ] {
-        let words = ["with_measured_overlaps", "a gap that is measured between bodies"];
+        let words = [
+            "with_measured_overlaps",
+            "a gap that is measured between bodies or from a shape",
+        ];
         assert_idle(&scene(contact), Part::Contact(0), words);
     }
     assert!(Plan::new(&scene(between), &Settings::default()).is_ok());

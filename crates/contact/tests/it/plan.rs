@@ -58,16 +58,28 @@ fn the_plan_tells_what_a_formed_f_needs() {
         let plan = Plan::new(&scene, &settings).expect("plan");
         println!("{plan}");
         assert_eq!(plan.to_string().contains("for a hard step"), plan.formed_bytes > 0);
-        (plan.formed_bytes, plan.dual() as u64)
+        let simulation = Simulation::new(scene, settings).expect("set up");
+        let found = simulation.tfeti().explicit_cost().map_or(0, |cost| cost.bytes);
+        (plan.formed_bytes, found, plan)
     };
     let scene = || small_benchmark(Friction::coulomb(0.3), 2);
-    let (bytes, rows) = formed(scene(), Settings::default());
-    assert_eq!(bytes, 8 * rows * rows);
+    let (told, found, plan) = formed(scene(), Settings::default());
+    let rows = plan.dual() as u64;
+    assert!(told == found && told > 0 && told < 24 * rows * rows, "{told} {found}");
     assert_eq!(formed(scene(), by(Method::paper())).0, 0);
-    let torn = loaded_brick(block([3.0, 1.0, 1.0], [24, 8, 8]), up_down_up()).with_boxes([24, 8, 8]);
-    let torn = torn.with_contact(foundation(Friction::coulomb(0.3)));
-    let (bytes, rows) = formed(torn, Settings::default());
-    assert!(bytes == 0 && rows > 20_000, "{rows}");
+    // rows that share no subdomain have no entry
+    let torn = |parts: [usize; 3]| {
+        let scene = loaded_brick(block([3.0, 1.0, 1.0], [24, 8, 8]), up_down_up()).with_boxes(parts);
+        scene.with_contact(foundation(Friction::coulomb(0.3)))
+    };
+    let (told, found, plan) = formed(torn([24, 8, 8]), Settings::default());
+    let rows = plan.dual() as u64;
+    assert!(
+        told == found && rows > 20_000 && told < rows * rows,
+        "{told} {found} {rows}"
+    );
+    let (told, found, plan) = formed(torn([6, 1, 1]).with_subdomains(1), Settings::default());
+    assert!(told == found && plan.interface_rows == 0, "{told} {found}");
 }
 
 /// Every tetrahedron a subdomain, by mistake: six unknowns each and thirty neighbours make a coarse problem that

@@ -73,6 +73,43 @@ fn a_slippery_sheet_is_solved() {
     assert!(10 * results[1].summary.slip >= 9 * results[1].summary.active, "{what}");
 }
 
+/// A steel shim of 300 times its thickness between blocks, pressed at one corner: it is softer in bending than they are by
+/// the cube of that. It is cut into many subdomains, and where products do not help F is formed without its gluing.
+#[test]
+fn a_shim_under_a_corner_is_solved_with_a_formed_f() {
+    let lifted = |mesh: TetMesh, by: f64| mesh.map_points(|[x, y, z]| [x, y, z + by]).expect("lifted");
+    let steel = || block([60.0, 60.0, 20.0], [12, 12, 4]);
+    let shim = lifted(block([60.0, 60.0, 0.2], [17, 17, 1]), 20.0).map_tags(tags(1));
+    let (corner, below) = (FacetTag(999), tags(2)(brick::Z_MIN));
+    let upper = lifted(steel(), 20.2).tag_boundary(|[x, y, z], normal| match normal[2] < -0.9 {
+        true => Some(below),
+        false => (z > 40.1 && x + y < 60.0).then_some(corner),
+    });
+    let mesh = steel()
+        .append(&shim)
+        .and_then(|mesh| mesh.append(&upper))
+        .expect("mesh");
+    let on = |own, other| Contact::between(own, other).with_friction(Friction::coulomb(0.2));
+    let scene = Scene::new(mesh, uniform(210e3, 0.3))
+        .with_support(Support::fixed(brick::Z_MIN))
+        .with_contact(on(tags(1)(brick::Z_MIN), brick::Z_MAX))
+        .with_contact(on(tags(1)(brick::Z_MAX), below))
+        .with_load(Load::pressure(corner, 10.0))
+        .with_subdomains(60);
+    let (simulation, results) = run(scene, Settings::default());
+    println!(
+        "{:?} {}",
+        simulation.tfeti().explicit_cost(),
+        simulation.tfeti().dual_dim()
+    );
+    let counters = &results[0].report.counters;
+    println!("shim: {counters:?}");
+    assert!(
+        counters.formed_operators == 1 && counters.products <= 700,
+        "{counters:?}"
+    );
+}
+
 /// Supports, obstacles, gaps and ties that stop are at rest as loads are; one that goes on is not.
 #[test]
 fn all_that_moves_has_to_stop_before_a_step_rests() {

@@ -1,38 +1,77 @@
-//! `F` as a matrix: each subdomain answers for the rows that touch it, so a column costs what its subdomains do.
+//! `F + w Gᵀ G` as a matrix: each subdomain answers for the rows that touch it, so rows that share none have a zero.
 
 use std::borrow::Cow;
 
 use crate::dual::operator::DualOperator;
+use crate::linalg::sparse::Columns;
+use crate::subdomain::kernel::Kernel;
+use signorini_fem_mesh::internal::distinct;
+use std::ops::Range;
 
-/// Coefficients of rows at one subdomain, by row: its place, unknown of the boundary, coefficient.
+/// Coefficients of rows at one subdomain, by row: its number, unknown, coefficient.
 type Rows = Vec<(usize, usize, f64)>;
 
+/// `F + w Gᵀ G`, lower triangle, and `w`.
+#[derive(Debug)]
+pub(crate) struct Formed {
+    pub(crate) matrix: Columns,
+    pub(crate) weight: f64,
+}
+
 impl DualOperator {
-    /// `F` by columns, lower triangle, zeros above; row `first` comes first, those before it last. The same on all ranks.
-    pub(crate) fn formed(&self, first: usize) -> Vec<f64> {
+    /// `F`, and `Gᵀ G` with so many times its trace. The same on all ranks.
+    pub(crate) fn formed(&self, times: f64) -> Formed {
         let rows = self.gluing.ranges().total();
-        let row_at = |place: usize| (place + first) % rows.max(1);
-        let mut matrix = vec![0.0; rows * rows];
         let mut touching: Vec<Rows> = vec![Vec::new(); self.subdomains.count()];
-        for place in 0..rows {
-            for (subdomain, unknown, coefficient) in self.gluing.row(row_at(place)) {
-                touching[subdomain].push((place, unknown, coefficient));
+        for row in 0..rows {
+            for (subdomain, unknown, coefficient) in self.gluing.row(row) {
+                touching[subdomain].push((row, unknown, coefficient));
             }
         }
+        let (matrix, weight) = (self.pattern(&touching), 0.0);
+        let mut formed = Formed { matrix, weight };
         for (class, own) in self.subdomains.classes.classes().iter().enumerate() {
             if own.is_rigid {
                 continue;
             }
             let inverse = self.boundary_inverse(class);
             for &member in &own.members {
-                self.add_member(class, &inverse, &mut touching[member as usize], &mut matrix);
+                self.add_member(class, &inverse, touching[member as usize].clone(), &mut formed);
             }
         }
         for (row, compliance) in self.gluing.compliance() {
-            let place = (row + rows - first) % rows;
-            matrix[place * (rows + 1)] += compliance;
+            *formed.diagonal_mut(row) += compliance;
         }
-        matrix
+        let motions = touching.iter().enumerate();
+        let motions: Vec<_> = motions
+            .map(|(s, rows)| motions_of(self.subdomains.kernel(s), rows))
+            .collect();
+        let square: f64 = motions.iter().flatten().flat_map(|(_, g)| g).map(|v| v * v).sum();
+        if square > 0.0 {
+            formed.weight = times * (0..rows).map(|row| *formed.diagonal_mut(row)).sum::<f64>() / square;
+        }
+        for rows in &motions {
+            for (k, (row, g)) in rows.iter().enumerate() {
+                let product = |h: &[f64; 6]| g.iter().zip(h).map(|(a, b)| a * b).sum::<f64>();
+                let weight = formed.weight;
+                formed.add(*row, rows[k..].iter().map(|(other, h)| (*other, weight * product(h))));
+            }
+        }
+        formed
+    }
+
+    /// Zeros where rows share a subdomain.
+    fn pattern(&self, touching: &[Rows]) -> Columns {
+        let mut out = Columns::empty(self.gluing.ranges().total());
+        for row in 0..out.dim {
+            let subdomains = distinct(self.gluing.row(row).into_iter().map(|entry| entry.0));
+            let from = |s: usize| touching[s].partition_point(|other| other.0 < row);
+            let near = subdomains.into_iter().flat_map(|s| &touching[s][from(s)..]);
+            out.rows.extend(distinct(near.map(|other| other.0)));
+            out.pointers.push(out.rows.len());
+        }
+        out.values = vec![0.0; out.rows.len()];
+        out
     }
 
     /// The inverse of a class on its boundary, from a rank that holds it.
@@ -53,26 +92,66 @@ impl DualOperator {
         matrix
     }
 
-    /// Adds `B A B^T` of a subdomain, whose rows are left in unknowns of the boundary.
-    fn add_member(&self, class: usize, inverse: &[f64], rows: &mut Rows, out: &mut [f64]) {
+    /// Adds `B A Bᵀ` of a subdomain.
+    fn add_member(&self, class: usize, inverse: &[f64], mut rows: Rows, out: &mut Formed) {
         let nodes = &self.map.classes[class].nodes;
-        let (size, height) = (3 * nodes.len(), self.gluing.ranges().total());
-        for (_, unknown, _) in &mut *rows {
+        let size = 3 * nodes.len();
+        for (_, unknown, _) in &mut rows {
             let node = nodes.partition_point(|node| (*node as usize) < *unknown / 3);
             *unknown = 3 * node + *unknown % 3;
         }
-        let mut answer = vec![0.0; size];
+        let (mut answer, mut start) = (vec![0.0; size], 0);
         for row in rows.chunk_by(|a, b| a.0 == b.0) {
             answer.fill(0.0);
             for (_, unknown, coefficient) in row {
                 let column = &inverse[unknown * size..(unknown + 1) * size];
                 answer.iter_mut().zip(column).for_each(|(y, a)| *y += coefficient * a);
             }
-            let column = &mut out[row[0].0 * height..(row[0].0 + 1) * height];
-            let from = rows.partition_point(|other| other.0 < row[0].0);
-            for (place, unknown, coefficient) in &rows[from..] {
-                column[*place] += coefficient * answer[*unknown];
-            }
+            let entries = rows[start..].iter();
+            out.add(row[0].0, entries.map(|(row, unknown, c)| (*row, c * answer[*unknown])));
+            start += row.len();
         }
+    }
+}
+
+/// What each row at a subdomain does to its six motions.
+fn motions_of(kernel: &Kernel, rows: &Rows) -> Vec<(usize, [f64; 6])> {
+    let of = |row: &[(usize, usize, f64)]| {
+        let mut sum = [0.0; 6];
+        for (_, unknown, coefficient) in row {
+            let modes = kernel.node_modes(unknown / 3)[unknown % 3];
+            sum.iter_mut().zip(modes).for_each(|(s, mode)| *s += coefficient * mode);
+        }
+        (row[0].0, sum)
+    };
+    rows.chunk_by(|a, b| a.0 == b.0).map(of).collect()
+}
+
+impl Formed {
+    /// Adds to a column, which the pattern has, at rows that ascend from its own.
+    fn add(&mut self, column: usize, entries: impl Iterator<Item = (usize, f64)>) {
+        let matrix = &mut self.matrix;
+        let mut at = matrix.pointers[column];
+        for (row, value) in entries {
+            while matrix.rows[at] < row {
+                at += 1;
+            }
+            matrix.values[at] += value;
+        }
+    }
+
+    fn diagonal_mut(&mut self, row: usize) -> &mut f64 {
+        // the first of its column
+        &mut self.matrix.values[self.matrix.pointers[row]]
+    }
+
+    /// The largest entry of the diagonal among some rows.
+    pub(crate) fn largest(&mut self, rows: Range<usize>) -> f64 {
+        rows.fold(0.0, |most: f64, row| most.max(*self.diagonal_mut(row)))
+    }
+
+    /// Adds to the diagonal of some rows.
+    pub(crate) fn shift(&mut self, rows: Range<usize>, value: f64) {
+        rows.for_each(|row| *self.diagonal_mut(row) += value);
     }
 }

@@ -145,10 +145,27 @@ impl Symbolic {
     pub(crate) fn new(pattern: &Columns, block: usize) -> Result<Self, FactorError> {
         debug_assert!(block > 0 && pattern.dim.is_multiple_of(block));
         let (pointers, rows) = quotient(pattern, block);
-        let forward: Vec<usize> = minimum_degree(&pointers, &rows)?
-            .into_iter()
-            .flat_map(|b| block * b..block * (b + 1))
-            .collect();
+        let order = minimum_degree(&pointers, &rows)?;
+        Self::in_order(
+            pattern,
+            order.into_iter().flat_map(|b| block * b..block * (b + 1)).collect(),
+        )
+    }
+
+    /// The same of a lower triangle whose first unknowns come last, in their order.
+    pub(crate) fn with_last(pattern: &Columns, last: usize) -> Result<Self, FactorError> {
+        let start = pattern.pointers[last];
+        let pointers: Vec<usize> = pattern.pointers[last..].iter().map(|p| p - start).collect();
+        let rows: Vec<usize> = pattern.rows[start..].iter().map(|row| row - last).collect();
+        let order = match pointers.len() {
+            1 => Vec::new(),
+            _ => minimum_degree(&pointers, &rows)?,
+        };
+        Self::in_order(pattern, order.into_iter().map(|k| k + last).chain(0..last).collect())
+    }
+
+    /// With the old number of each unknown.
+    fn in_order(pattern: &Columns, forward: Vec<usize>) -> Result<Self, FactorError> {
         let mut inverse = vec![0; forward.len()];
         for (new, &old) in forward.iter().enumerate() {
             inverse[old] = new;
@@ -364,6 +381,20 @@ impl SparseCholesky {
             let columns = node.start()..node.start() + block.ncols();
             each(columns, node.pattern(), &|i, j| block[(i, j)]);
         }
+    }
+
+    /// The last `size` rows and columns, lower triangle, zeros above.
+    pub(crate) fn corner(&self, size: usize) -> Vec<f64> {
+        let (mut out, first) = (vec![0.0; size * size], self.dim() - size);
+        self.for_supernodes(&mut |columns, below, value| {
+            let rows = || columns.clone().chain(below.iter().copied()).enumerate();
+            for (j, column) in columns.clone().enumerate().filter(|(_, column)| *column >= first) {
+                for (i, row) in rows().skip(j) {
+                    out[row - first + (column - first) * size] = value(i, j);
+                }
+            }
+        });
+        out
     }
 
     /// Work memory that solves with so many columns need.

@@ -1,18 +1,19 @@
-//! The inverse of `F` on an active set, for systems of so few rows that `F` can be formed.
+//! The inverse of `F` on an active set, for systems of so few contact rows that `F` can be formed.
 //!
 //! Each subdomain adds what it answers to its rows. `H = F + w Gᵀ G` is definite; with a large `w` its inverse is that of `F` where
-//! `G x = 0`. Rows that no active set takes away are eliminated once, the Schur complement of the contact rows is
-//! factored on each set. A body that bends far more easily than it is pressed in (a plate on a floor) leaves no other
+//! `G x = 0`. Rows that share no subdomain have a zero in it: those that no active set takes away, most of all the gluing, are
+//! eliminated once by a sparse factor. The Schur complement of the contact rows is factored on each set. A body that bends far more easily than it is pressed in (a plate on a floor) leaves no other
 //! choice: on part of its contact rows the stiffness of their nodes is nowhere near an inverse.
 
 use crate::coarse::space::Coarse;
 use crate::dual::part::RowPart;
 use crate::linalg::dense;
+use crate::linalg::sparse::{SolveMemory, SparseCholesky, Symbolic};
 use crate::system::part::SystemPart;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{
-    BALANCED, BALANCES, EXPLICIT_CONTACT, EXPLICIT_ROWS, EXPLICIT_SETS, EXPLICIT_WEIGHT, INTERIOR_FACTORS, LEFT_OF_ROW,
-    ROW_OPERATIONS, SECANT, SHIFTS, STREAMED, UNBALANCED,
+    BALANCED, BALANCES, EXPLICIT_SETS, EXPLICIT_WEIGHT, INTERIOR_FACTORS, LEFT_OF_ROW, ROW_OPERATIONS, SECANT, SHIFTS,
+    STREAMED, UNBALANCED,
 };
 use signorini_qp::active_set::{ActiveSetPreconditioner, ActiveSetView, Freedom};
 use signorini_qp::{DenseOperator, QpError, Status, SymmetricOperator, vector};
@@ -24,8 +25,10 @@ type Direction = [(usize, f64); 2];
 /// A preconditioner for `F` that is nearly its inverse on the kernel of `G`, on each active set.
 #[derive(Debug)]
 pub struct ExplicitInverse {
-    /// Columns of the rows behind the contact rows in the factor of `H`, in which the contact rows come last.
-    columns: Vec<f64>,
+    /// Factor of `H` with a multiple of the identity in the contact rows, which come last.
+    factor: SparseCholesky,
+    /// Its rows and columns of these, lower triangle.
+    corner: Vec<f64>,
     /// The Schur complement of the contact rows, lower triangle.
     schur: Vec<f64>,
     rows: usize,
@@ -46,9 +49,16 @@ pub struct ExplicitScratch {
     /// Factor of the Schur complement in them.
     factor: Vec<f64>,
     whole: Vec<f64>,
-    /// In the order of the factor of `H`.
-    ordered: Vec<f64>,
     reduced: Vec<f64>,
+    others: OthersScratch,
+}
+
+/// Work memory for the rows behind the contact rows.
+#[derive(Debug)]
+struct OthersScratch {
+    memory: SolveMemory,
+    /// In the order of the factor.
+    half: Vec<f64>,
 }
 
 /// What steps with a formed `F` cost, in products of a solve; the same for any number of processes.
@@ -57,6 +67,8 @@ pub struct ExplicitScratch {
 pub struct ExplicitCost {
     /// Of forming and factoring it.
     pub forming: usize,
+    /// In memory at once.
+    pub bytes: u64,
     solves: f64,
     factors: f64,
 }
@@ -69,77 +81,49 @@ impl ExplicitCost {
     }
 }
 
-/// Whether so many rows, so many of them of contact, are few enough.
-fn are_few(rows: usize, contact: usize) -> bool {
-    rows <= EXPLICIT_ROWS && contact <= EXPLICIT_CONTACT
-}
-
-/// Bytes of an `F` of so many rows, so many of them of contact, that is formed; `None` where there are too many.
-#[doc(hidden)]
-#[must_use]
-pub fn formed_bytes(rows: usize, contact: usize) -> Option<u64> {
-    are_few(rows, contact).then(|| 8 * (rows as u64).pow(2))
-}
-
 impl Tfeti {
     /// `None` where there are too many rows, or unknowns on the boundary of a subdomain.
     #[doc(hidden)]
     pub fn explicit_cost(&self) -> Option<ExplicitCost> {
-        let (rows, contact) = (self.dual_dim(), self.gluing().ranges().contact().end);
+        let (size, bytes) = self.dual().formed_size()?;
         let own: f64 = STREAMED * self.gather(self.dual().flops() as f64).ok()?.iter().sum::<f64>();
-        let [n, modes, parts] = [rows, self.coarse().rows(), self.subdomains().max(1)].map(|n| n as f64);
+        let [n, parts] = [self.dual_dim(), self.subdomains().max(1)].map(|n| n as f64);
         // with what belongs to a product in a solve: projectors, preconditioner, sums
         let product = (own + ROW_OPERATIONS * n).max(1.0);
         // a column is what two subdomains answer
-        let forming = 2.0 * n / parts * own + n * n * modes + n.powi(3) / 3.0;
-        let cost = ExplicitCost {
-            forming: (forming / product) as usize,
+        let columns = 2.0 * n / parts * own;
+        let solve = 4.0 * size.stored + 4.0 * size.contact.powi(2);
+        Some(ExplicitCost {
+            forming: ((columns + size.flops + size.contact.powi(3)) / product) as usize,
+            bytes,
             // of active sets, with three solves each
-            solves: EXPLICIT_SETS * 6.0 * n * n / product,
+            solves: EXPLICIT_SETS * 3.0 * solve / product,
             factors: (INTERIOR_FACTORS / 1.5 + EXPLICIT_SETS / 3.0) / product,
-        };
-        // of each class the whole boundary answers
-        let boundaries = self.dual().map.classes.iter().map(|class| 3 * class.nodes.len());
-        let largest = boundaries.max().unwrap_or(0).max(rows);
-        are_few(largest, contact).then_some(cost)
+        })
     }
 
     /// Forms `F` and eliminates the rows behind the contact rows. `None` if rounding leaves it indefinite.
     pub fn explicit_inverse(&self) -> Option<ExplicitInverse> {
         let (rows, contact) = (self.dual_dim(), self.gluing().ranges().contact().end);
-        let (others, coarse) = (rows - contact, self.coarse());
-        let mut matrix = self.dual().formed(contact);
-        let (mut motions, mut column) = (vec![0.0; coarse.rows()], vec![0.0; rows]);
-        let mut transposed = Vec::with_capacity(rows * coarse.rows());
-        for k in 0..coarse.rows() {
-            motions[k] = 1.0;
-            coarse.transpose_times(&motions, &mut column);
-            motions[k] = 0.0;
-            transposed.extend_from_slice(&column[contact..]);
-            transposed.extend_from_slice(&column[..contact]);
-        }
-        let trace: f64 = matrix.iter().step_by(rows + 1).sum();
-        let square: f64 = transposed.iter().map(|v| v * v).sum();
-        let weight = if square > 0.0 {
-            EXPLICIT_WEIGHT * trace / square
-        } else {
-            0.0
-        };
-        dense::add_square(&mut matrix, weight, &transposed, rows, coarse.rows());
-        shift_diagonal(&mut matrix, rows, SHIFTS[0]);
-        let mut schur = Vec::with_capacity(contact * contact);
-        for column in matrix[rows * others..].chunks_exact(rows.max(1)) {
-            schur.extend_from_slice(&column[others..]);
-        }
-        matrix.truncate(rows * others);
-        dense::eliminate_in_parts(&mut matrix, &mut schur, [rows, others], 0.0).ok()?;
-        matrix.shrink_to_fit();
+        let mut formed = self.dual().formed(EXPLICIT_WEIGHT);
+        let size = formed.largest(0..rows);
+        formed.shift(0..rows, SHIFTS[0] * size);
+        // contact rows may depend on one another: for the time of the factor they do not
+        let own = formed.largest(0..contact);
+        formed.shift(0..contact, own);
+        let symbolic = Symbolic::with_last(&formed.matrix, contact).ok()?;
+        let factor = SparseCholesky::new(&symbolic, &formed.matrix).ok()?;
+        let corner = factor.corner(contact);
+        let mut schur = vec![0.0; contact * contact];
+        dense::add_square(&mut schur, 1.0, &corner, contact, contact);
+        schur.iter_mut().step_by(contact + 1).for_each(|v| *v -= own);
         Some(ExplicitInverse {
-            columns: matrix,
+            factor,
+            corner,
             schur,
             rows,
             contact,
-            weight,
+            weight: formed.weight,
             part: None,
         })
     }
@@ -223,31 +207,26 @@ impl ExplicitInverse {
         x: &mut [f64],
         mut solve: impl FnMut(&DenseOperator, &[f64], &mut [f64]) -> Result<Status, QpError>,
     ) -> Result<Option<Vec<f64>>, QpError> {
-        let others = self.rows - self.contact;
         let mut matrix = self.schur.clone();
         dense::mirror_lower(&mut matrix, self.contact);
         let matrix = DenseOperator::new(self.contact, matrix)?;
         let (mut aim, mut lacks) = (e.to_vec(), vec![0.0; e.len()]);
-        let (mut ordered, mut scratch) = (vec![0.0; self.rows], coarse.scratch());
+        let (mut load, mut scratch) = (vec![0.0; self.rows], (coarse.scratch(), self.others_scratch()));
         let mut secants = Secants::default();
         let (mut solved, mut best, mut least, mut waited) = (false, [Vec::new(), Vec::new()], f64::INFINITY, 0);
         for _ in 0..BALANCES {
-            coarse.transpose_times(&aim, &mut ordered);
-            for (load, linear) in ordered.iter_mut().zip(linear) {
+            coarse.transpose_times(&aim, &mut load);
+            for (load, linear) in load.iter_mut().zip(linear) {
                 *load = linear + self.weight * *load;
             }
-            ordered.rotate_left(self.contact);
-            dense::forward(&self.columns, self.rows, others, &mut ordered);
+            self.forward(&mut load, &mut scratch.1);
             let own = &mut x[..self.contact];
-            let found = solve(&matrix, &ordered[others..], own)? == Status::Converged;
+            let found = solve(&matrix, &load[..self.contact], own)? == Status::Converged;
             if !vector::norm(own).is_finite() {
                 break;
             }
-            ordered[others..].copy_from_slice(own);
-            dense::backward(&self.columns, self.rows, others, &mut ordered);
-            ordered.rotate_right(self.contact);
-            x.copy_from_slice(&ordered);
-            coarse.apply(x, &mut lacks, &mut scratch);
+            self.backward(x, &mut scratch.1);
+            coarse.apply(x, &mut lacks, &mut scratch.0);
             lacks.iter_mut().zip(e).for_each(|(lacks, e)| *lacks = e - *lacks);
             let lack = vector::norm(&lacks) / vector::norm(x).max(f64::MIN_POSITIVE);
             waited += 1;
@@ -257,7 +236,7 @@ impl ExplicitInverse {
                 // of `F x - linear + Gᵀ alpha`
                 let alpha = lacks.iter().zip(e).zip(&aim);
                 let alpha = alpha.map(|((lack, e), aim)| self.weight * (e - lack - aim)).collect();
-                best = [ordered.clone(), alpha];
+                best = [x.to_vec(), alpha];
             }
             if lack <= BALANCED || waited == UNBALANCED {
                 break;
@@ -302,12 +281,39 @@ impl ExplicitInverse {
         s.factor.clear();
     }
 
+    fn others_scratch(&self) -> OthersScratch {
+        OthersScratch {
+            memory: SolveMemory::new(self.factor.need(1)),
+            half: vec![0.0; self.rows],
+        }
+    }
+
+    /// Eliminates the rows behind the contact rows, whose load then takes in theirs.
+    fn forward(&self, x: &mut [f64], s: &mut OthersScratch) {
+        self.factor.half_solve(x, &mut s.half, &mut s.memory);
+        let own = &s.half[self.rows - self.contact..];
+        x[..self.contact].fill(0.0);
+        for (j, value) in own.iter().enumerate() {
+            let column = &self.corner[j * (self.contact + 1)..(j + 1) * self.contact];
+            vector::axpy(*value, column, &mut x[j..self.contact]);
+        }
+    }
+
+    /// The rows behind the contact rows from those, after [`forward`](Self::forward).
+    fn backward(&self, x: &mut [f64], s: &mut OthersScratch) {
+        let contact = x[..self.contact].to_vec();
+        let own = &mut s.half[self.rows - self.contact..];
+        for (j, value) in own.iter_mut().enumerate() {
+            let column = &self.corner[j * (self.contact + 1)..(j + 1) * self.contact];
+            *value = vector::dot(column, &contact[j..]);
+        }
+        self.factor.half_solve_transpose(&mut s.half, x, &mut s.memory);
+        x[..self.contact].copy_from_slice(&contact);
+    }
+
     fn solve(&self, x: &mut [f64], s: &mut ExplicitScratch) {
-        let others = self.rows - self.contact;
-        s.ordered.copy_from_slice(x);
-        s.ordered.rotate_left(self.contact);
-        dense::forward(&self.columns, self.rows, others, &mut s.ordered);
-        let (size, contact) = (s.directions.len(), &mut s.ordered[others..]);
+        self.forward(x, &mut s.others);
+        let (size, contact) = (s.directions.len(), &mut x[..self.contact]);
         let along = |direction: &Direction| direction.iter().map(|(row, v)| v * contact[*row]).sum::<f64>();
         s.reduced.clear();
         s.reduced.extend(s.directions.iter().map(along));
@@ -317,9 +323,7 @@ impl ExplicitInverse {
         for (direction, value) in s.directions.iter().zip(&s.reduced) {
             direction.iter().for_each(|(row, v)| contact[*row] += v * value);
         }
-        dense::backward(&self.columns, self.rows, others, &mut s.ordered);
-        x.copy_from_slice(&s.ordered);
-        x.rotate_right(self.contact);
+        self.backward(x, &mut s.others);
     }
 }
 
@@ -336,8 +340,8 @@ impl SymmetricOperator for ExplicitInverse {
             added: vec![0.0; self.contact],
             factor: Vec::new(),
             whole: vec![0.0; if self.part.is_some() { self.rows } else { 0 }],
-            ordered: vec![0.0; self.rows],
             reduced: Vec::new(),
+            others: self.others_scratch(),
         };
         self.factor(&mut scratch);
         scratch
