@@ -96,11 +96,9 @@ impl ActiveSetSolver {
         if model.points.is_empty() && !free.is_empty() {
             return Err(not_determined(model, free));
         }
-        // rows that depend on one another leave F singular
-        let definite = gluing.dependent_nodes().is_empty();
         let explicit_cost = match settings.preconditioner {
             Preconditioner::None => None,
-            _ if model.points.is_empty() || !definite => None,
+            _ if model.points.is_empty() => None,
             _ => model.tfeti.explicit_cost(),
         };
         Ok(Self {

@@ -94,8 +94,7 @@ fn a_shim_under_a_corner_is_solved_with_a_formed_f() {
         .with_support(Support::fixed(brick::Z_MIN))
         .with_contact(on(tags(1)(brick::Z_MIN), brick::Z_MAX))
         .with_contact(on(tags(1)(brick::Z_MAX), below))
-        .with_load(Load::pressure(corner, 10.0))
-        .with_subdomains(60);
+        .with_load(Load::pressure(corner, 10.0));
     let (simulation, results) = run(scene, Settings::default());
     println!(
         "{:?} {}",
