@@ -146,9 +146,10 @@ signorini_fem_mesh::errors! {
             "contact {contact} is between two bodies, and has no obstacle that could move or have a shape; move a body by \
             its supports instead, and give the obstacle a contact of its own";
         MovedField { contact: usize, node: u32, turn: f64, most: f64 } =
-            "contact {contact}: its gap field moves with the obstacle along a curved surface, whose normal turns by \
-            {turn:.1} degrees on that way at node {node}; along the body's normals the gap is known for ways of less \
-            than {most:.1} degrees; give one direction (with_normal), for which any way is exact, or a shorter way";
+            "contact {contact}: its obstacle moves or turns by {turn:.1} degrees against the normal of the body at node \
+            {node}, along which the gap is known for less than {most:.1} degrees: give the obstacle a shape \
+            (Contact::obstacle), which is measured where it is, or what does not turn one direction (with_normal), for \
+            which any way is exact";
         ObstacleGradient { contact: usize, node: u32, position: [f64; 3], gradient: [f64; 3] } =
             "contact {contact}: at node {node}, {}, the gradient of the distance to the obstacle is \
             {gradient:?}, which is no unit vector; give a signed distance in m, positive outside, with its gradient, \

@@ -49,7 +49,8 @@ impl StepStatus {
             }
             Self::NotHeld => "press the body more, take a larger coefficient, or hold it by a support",
             Self::NotCertified => {
-                "take better shaped cells, Poisson's ratio further from 1/2, smaller steps, or Method::paper()"
+                "take better shaped cells, Poisson's ratio further from 1/2, springs less soft beside the body, smaller \
+                steps, or Method::paper()"
             }
         }
     }
