@@ -92,7 +92,7 @@ pub use system::tfeti::Tfeti;
 pub mod internal {
     pub use crate::coarse::space::CoarseScratch;
     pub use crate::dual::boundary::PanelScratch;
-    pub use crate::dual::formed_size::RowGroups;
+    pub use crate::dual::formed_size::{RowGroups, may_be_formed};
     pub use crate::linalg::{of_length, zeros};
     pub use crate::preconditioner::explicit::{ExplicitCost, ExplicitScratch};
     pub use crate::preconditioner::operator::DualPreconditionerScratch;

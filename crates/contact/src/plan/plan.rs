@@ -8,7 +8,7 @@ use crate::error::ContactError;
 use crate::report::Warning;
 use crate::scene::{Scene, Stage};
 use crate::settings::{MethodKind, Preconditioner, Settings};
-use signorini_tfeti::internal::{Forecast, Rate, RowGroups, forecast_levels};
+use signorini_tfeti::internal::{Forecast, Rate, RowGroups, forecast_levels, may_be_formed};
 use std::collections::BTreeSet;
 
 /// Sizes of a scene and the method chosen for it.
@@ -229,7 +229,9 @@ impl Plan {
             MethodKind::SuccessiveApproximations | MethodKind::OneLoop => 18,
         };
         plan.vector_bytes = 8 * (vectors * plan.dual() + (1 + scene.loads.len()) * primal) as u64;
-        if active_sets && settings.preconditioner != Preconditioner::None {
+        let contact = plan.normal_rows + plan.tangential_rows;
+        let formed = active_sets && settings.preconditioner != Preconditioner::None;
+        if formed && may_be_formed(plan.dual(), contact, subdomains) {
             plan.formed_bytes = row_groups(scene, discrete, &points).bytes(forecast.largest_boundary());
         }
         let sizes = [plan.dual(), primal, plan.steps];

@@ -211,7 +211,8 @@ impl Contact {
     }
 
     /// Measured overlaps press as they are. Without it, those of bodies that touch but for straight facets of a hollow
-    /// side, as of a bolt in its bore, or of quadratic ones around an obstacle, are closed, which [`ClosedOverlaps`](crate::Warning::ClosedOverlaps) tells.
+    /// side, as of a bolt in its bore, or of quadratic ones around an obstacle, are closed, which
+    /// [`ClosedOverlaps`](crate::Warning::ClosedOverlaps) tells.
     pub fn with_measured_overlaps(mut self) -> Self {
         self.closing = Closing::Nothing;
         self

@@ -40,7 +40,7 @@ impl DualOperator {
             }
         }
         for (row, compliance) in self.gluing.compliance() {
-            *formed.diagonal_mut(row) += compliance;
+            formed.shift(row..row + 1, compliance);
         }
         let motions = touching.iter().enumerate();
         let motions: Vec<_> = motions
@@ -48,7 +48,7 @@ impl DualOperator {
             .collect();
         let square: f64 = motions.iter().flatten().flat_map(|(_, g)| g).map(|v| v * v).sum();
         if square > 0.0 {
-            formed.weight = times * (0..rows).map(|row| *formed.diagonal_mut(row)).sum::<f64>() / square;
+            formed.weight = times * formed.diagonal(0..rows).sum::<f64>() / square;
         }
         for rows in &motions {
             for (k, (row, g)) in rows.iter().enumerate() {
@@ -140,18 +140,18 @@ impl Formed {
         }
     }
 
-    fn diagonal_mut(&mut self, row: usize) -> &mut f64 {
-        // the first of its column
-        &mut self.matrix.values[self.matrix.pointers[row]]
+    /// Entries of the diagonal: each is the first of its column.
+    fn diagonal(&self, rows: Range<usize>) -> impl Iterator<Item = f64> {
+        rows.map(|row| self.matrix.values[self.matrix.pointers[row]])
     }
 
-    /// The largest entry of the diagonal among some rows.
-    pub(crate) fn largest(&mut self, rows: Range<usize>) -> f64 {
-        rows.fold(0.0, |most: f64, row| most.max(*self.diagonal_mut(row)))
+    /// The largest of them.
+    pub(crate) fn largest(&self, rows: Range<usize>) -> f64 {
+        self.diagonal(rows).fold(0.0, f64::max)
     }
 
-    /// Adds to the diagonal of some rows.
+    /// Adds to them.
     pub(crate) fn shift(&mut self, rows: Range<usize>, value: f64) {
-        rows.for_each(|row| *self.diagonal_mut(row) += value);
+        rows.for_each(|row| self.matrix.values[self.matrix.pointers[row]] += value);
     }
 }

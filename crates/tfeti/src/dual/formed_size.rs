@@ -32,12 +32,23 @@ impl RowGroups {
     /// The rows that glue the copies of nodes.
     #[must_use]
     pub fn of_interface(decomposition: &Decomposition) -> Self {
-        let mut out = Self::default();
-        for node in 0..decomposition.nodes() {
-            let copies = decomposition.copies(node);
-            for last in 1..copies.len() {
-                out.add(false, 3, copies[..=last].iter().map(|copy| copy.subdomain));
+        let mut nodes: BTreeMap<Vec<u32>, usize> = BTreeMap::new();
+        let mut key = Vec::new();
+        for copies in (0..decomposition.nodes()).map(|node| decomposition.copies(node)) {
+            if copies.len() > 1 {
+                key.clear();
+                key.extend(copies.iter().map(|copy| copy.subdomain));
+                match nodes.get_mut(&key) {
+                    Some(count) => *count += 1,
+                    None => {
+                        nodes.insert(key.clone(), 1);
+                    }
+                }
             }
+        }
+        let mut out = Self::default();
+        for (key, count) in nodes {
+            (2..=key.len()).for_each(|copies| out.add(false, 3 * count, key[..copies].iter().copied()));
         }
         out
     }
@@ -83,7 +94,7 @@ impl RowGroups {
                 .sum(),
             ..FormedSize::default()
         };
-        if size.contact > EXPLICIT_CONTACT as f64 || size.bytes(boundary) > EXPLICIT_BYTES {
+        if size.bytes(boundary) > EXPLICIT_BYTES {
             return None;
         }
         let (mut pointers, mut rows) = (vec![0], Vec::new());
@@ -111,6 +122,15 @@ impl RowGroups {
     }
 }
 
+/// Whether so many rows, so many of them of contact, might be few enough, without a look at them: each of the others meets at
+/// least its share of them, of entries with a number and its place.
+#[doc(hidden)]
+#[must_use]
+pub fn may_be_formed(rows: usize, contact: usize, subdomains: usize) -> bool {
+    let least = ((rows - contact) as f64).powi(2) / subdomains.max(1) as f64;
+    contact <= EXPLICIT_CONTACT && 16.0 * least <= EXPLICIT_BYTES
+}
+
 impl FormedSize {
     /// Of all that is in memory at once.
     fn bytes(&self, boundary: usize) -> f64 {
@@ -123,15 +143,16 @@ impl DualOperator {
     /// Of this operator, with the bytes; `None` where there are too many rows.
     pub(crate) fn formed_size(&self) -> Option<(FormedSize, u64)> {
         let (ranges, subdomains) = (self.gluing.ranges(), &self.subdomains);
-        let (contact, others) = (ranges.contact().end, ranges.total() - ranges.contact().end);
-        // without a look at rows: each meets at least its share of the others
-        let least = (others as f64).powi(2) / subdomains.count().max(1) as f64;
-        if contact > EXPLICIT_CONTACT || 16.0 * least > EXPLICIT_BYTES {
+        let contact = ranges.contact().end;
+        if !may_be_formed(ranges.total(), contact, subdomains.count()) {
             return None;
         }
         let mut groups = RowGroups::default();
-        for block in 0..self.gluing.blocks() {
-            groups.add(false, 3, self.gluing.block(block).iter().map(|entry| entry.subdomain));
+        for glob in &self.gluing.globs {
+            for run in 0..glob.runs as usize {
+                let entries = self.gluing.block(glob.block(run, 0)).iter();
+                groups.add(false, 3 * glob.nodes as usize, entries.map(|entry| entry.subdomain));
+            }
         }
         for row in (0..ranges.total()).filter(|row| !ranges.interface.contains(row)) {
             let entries = self.gluing.row(row).into_iter();
