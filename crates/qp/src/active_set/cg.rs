@@ -61,7 +61,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         // without constraints there is no other set
         let most = if self.constrained() == 0 {
             usize::MAX
-        } else if self.compliance.c > 0.0 {
+        } else if self.compliance.c > 0.0 || self.problem.preconditioner.knows_added() {
             MOST_STEPS_ON_PATH
         } else {
             MOST_STEPS
