@@ -16,7 +16,7 @@ pub struct RowGroups {
     others: BTreeMap<Vec<u32>, usize>,
 }
 
-/// Numbers that `F + w Gᵀ G` has, and its factor in the rows behind the contact rows.
+/// What `F + w Gᵀ G` and its factor store, and what that costs.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
 pub(crate) struct FormedSize {
     /// Contact rows.
