@@ -105,7 +105,7 @@ pub(crate) const NEGLIGIBLE: f64 = 0.03;
 pub(crate) const MOST_STEPS: usize = 500;
 /// The same on the path of compliant constraints: its problems are badly conditioned, and need not be solved well. And with a
 /// preconditioner that is nearly an inverse: where a few steps do not do, radii that follow lead astray.
-pub(crate) const MOST_STEPS_ON_PATH: usize = 50;
+pub(crate) const FEW_STEPS: usize = 50;
 /// Error over that at the start of a set from which on steps may lead away for good, and the longest step then, over
 /// `|x|`. Small enough that the rest of the set still tells something.
 pub(crate) const ASTRAY: f64 = 4.0;

@@ -86,13 +86,13 @@ pub(super) fn close_faceted(
     }
     let faceted = measured().map(|(index, paired)| {
         let contact = &scene.contacts[index];
-        let other = match paired.swapped {
-            true => &contact.tags,
-            false => &contact.partner,
-        };
         let mut sides = vec![paired.surface.clone()];
         if matches!(contact.gap, Gap::Measured) {
-            sides.push(Surface::new(&scene.mesh, other)?);
+            let tags = match paired.swapped {
+                true => &contact.tags,
+                false => &contact.partner,
+            };
+            sides.push(Surface::new(&scene.mesh, tags)?);
         }
         Ok::<_, ContactError>(Faceted {
             index,
@@ -163,13 +163,14 @@ fn touch(group: &[&Faceted], conditions: &[ContactPoint], deepest: f64) -> bool 
         for point in conditions[faceted.range.clone()].iter().filter(|c| c.gap <= reach) {
             let own = point.sides.own.nodes();
             let partner = point.sides.partner.as_ref().map_or(&[][..], |side| side.nodes());
-            let behind = faceted.sides.iter().zip([own, partner]).map(|(side, nodes)| {
+            let (mut open, mut before) = (point.gap, 0.0);
+            for (side, nodes) in faceted.sides.iter().zip([own, partner]) {
                 let at = |(node, weight): &(u32, f64)| side.bends.get(node).map_or(0.0, |bend| weight * bend.behind);
-                nodes.iter().map(at).sum::<f64>()
-            });
-            let behind: Vec<f64> = behind.collect();
-            let before = behind.iter().map(|b| (-b).max(0.0)).sum::<f64>();
-            gap += point.area * (point.gap - behind.iter().sum::<f64>());
+                let behind: f64 = nodes.iter().map(at).sum();
+                open -= behind;
+                before += (-behind).max(0.0);
+            }
+            gap += point.area * open;
             hollow += point.area * before;
             deep = deep.max(before);
         }

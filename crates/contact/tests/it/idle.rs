@@ -53,7 +53,7 @@ fn an_axis_of_friction_needs_a_law() {
 }
 
 #[test]
-fn overlaps_are_measured_between_bodies_only() {
+fn overlaps_are_measured_between_bodies_or_from_a_shape() {
     let cube = block([1.0; 3], [2; 3]);
     let two = with_second(&cube, &lifted(&cube, 1.0));
     let sides = || (second(brick::Z_MIN), brick::Z_MAX);

@@ -17,8 +17,8 @@
 use crate::error::QpError;
 use crate::problem::{Constrained, EqualityProjector, SymmetricOperator, for_constrained};
 use crate::tolerances::{
-    ASTRAY, ASTRAY_STEP, ENOUGH, FLAT, FLAT_GRADIENT, GROWN, LENT, LONG, MOST_STEPS, MOST_STEPS_ON_PATH,
-    NEGATIVE_CURVATURE, PASSING, PASSING_STEP, ROUNDED_STEPS, TAMED, WILD,
+    ASTRAY, ASTRAY_STEP, ENOUGH, FEW_STEPS, FLAT, FLAT_GRADIENT, GROWN, LENT, LONG, MOST_STEPS, NEGATIVE_CURVATURE,
+    PASSING, PASSING_STEP, ROUNDED_STEPS, TAMED, WILD,
 };
 use crate::vector;
 
@@ -62,7 +62,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         let most = if self.constrained() == 0 {
             usize::MAX
         } else if self.compliance.c > 0.0 || self.problem.preconditioner.knows_added() {
-            MOST_STEPS_ON_PATH
+            FEW_STEPS
         } else {
             MOST_STEPS
         };

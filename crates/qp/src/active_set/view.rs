@@ -73,8 +73,8 @@ pub trait ActiveSetPreconditioner: SymmetricOperator {
     /// part of their result counts. Stays symmetric on such vectors.
     fn enter(&self, _active: &ActiveSetView<'_>, _s: &mut Self::Scratch) {}
 
-    /// Whether it knows what the method [adds to the diagonal](ActiveSetView::for_each_added); else the method damps it
-    /// there.
+    /// Whether it is nearly the inverse on a set, with what the method [adds to the
+    /// diagonal](ActiveSetView::for_each_added): a set then has few steps. Else the method damps it there.
     fn knows_added(&self) -> bool {
         false
     }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use crate::dual::operator::DualOperator;
 use crate::linalg::sparse::Columns;
-use crate::subdomain::kernel::Kernel;
+use crate::subdomain::kernel::{Kernel, add_wrench};
 use signorini_fem_mesh::internal::distinct;
 use std::ops::Range;
 
@@ -117,12 +117,13 @@ impl DualOperator {
 /// What each row at a subdomain does to its six motions.
 fn motions_of(kernel: &Kernel, rows: &Rows) -> Vec<(usize, [f64; 6])> {
     let of = |row: &[(usize, usize, f64)]| {
-        let mut sum = [0.0; 6];
+        let mut wrench = [0.0; 6];
         for (_, unknown, coefficient) in row {
-            let modes = kernel.node_modes(unknown / 3)[unknown % 3];
-            sum.iter_mut().zip(modes).for_each(|(s, mode)| *s += coefficient * mode);
+            let mut force = [0.0; 3];
+            force[unknown % 3] = *coefficient;
+            add_wrench(&mut wrench, kernel.arm(unknown / 3), force);
         }
-        (row[0].0, sum)
+        (row[0].0, kernel.project_wrench(&wrench))
     };
     rows.chunk_by(|a, b| a.0 == b.0).map(of).collect()
 }
