@@ -150,7 +150,7 @@ impl fmt::Display for Slide {
             .collect();
         match others.is_empty() {
             true => Ok(()),
-            false => write!(f, ", together with {},", others.join(" and ")),
+            false => write!(f, ", together with {}", others.join(" and ")),
         }
     }
 }

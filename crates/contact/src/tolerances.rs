@@ -182,8 +182,8 @@ pub(crate) const WRENCH_RESIDUAL: f64 = 1e-8;
 /// relative to the motion, which is found to [`LEVERAGE`].
 pub(crate) const SLIDING: f64 = 1e-3;
 
-/// Least length that is left of a motion of length one when its opening part is taken out; a shorter rest does not tell
-/// where the body slides.
+/// Least length that is left of a motion of length one when its opening part is taken out, or of forces that lack for balance
+/// when pressure is: a shorter rest does not tell where the body slides.
 pub(crate) const SLIDES: f64 = 0.5;
 
 /// Singular values below this part of the largest count as zero where contact forces are found.

@@ -28,11 +28,6 @@ pub struct Contraction {
 }
 
 impl Contraction {
-    /// Forgets all changes.
-    fn clear(&mut self) {
-        self.changes.clear();
-    }
-
     /// Records the absolute change between two successive iterates.
     pub fn record(&mut self, change: f64) {
         self.changes.push(change);
@@ -99,12 +94,12 @@ pub fn successive_approximations<E>(
     // differences of evaluations with full accuracy only: loose ones say nothing about the map
     let mut sharp = Contraction::default();
     let mut old = x.to_vec();
-    let mut change = 1.0;
+    let (mut change, mut asked) = (1.0, 1.0);
     let mut verdict = Verdict::Unknown;
     let mut evaluations = 0;
     while evaluations < max_evaluations {
         old.copy_from_slice(x);
-        let exact = map(x, change)?;
+        let exact = map(x, asked)?;
         evaluations += 1;
         let difference = vector::distance(x, &old);
         let size = vector::norm(x).max(least);
@@ -112,16 +107,17 @@ pub fn successive_approximations<E>(
         if exact {
             sharp.record(difference);
         } else {
-            sharp.clear();
+            sharp = Contraction::default();
         }
         change = if difference == 0.0 { 0.0 } else { difference / size };
+        asked = change;
         if change < tolerance {
             if exact {
                 verdict = Verdict::Converged;
                 break;
             }
             // a loose evaluation cannot tell: the next one is exact
-            change = 0.0;
+            asked = 0.0;
             continue;
         }
         let stalls = sharp.stalls(MAP_PATIENCE) || contraction.stalls(2 * MAP_PATIENCE);

@@ -236,6 +236,9 @@ pub(crate) const MORE_STEPS: usize = 8;
 /// Gradient that pushes a component off the bound on which it rests, over the largest of all, each over the root of its
 /// diagonal entry.
 pub(crate) const PUSHES: f64 = 1e-9;
+/// Part of the diagonal that keeps the solution without bounds small, where the method begins: rows that depend on one
+/// another may contradict each other without them.
+pub(crate) const CONTRADICTING: f64 = 1e-6;
 /// Rounds of letting go after which all goes, and halvings of the way inwards to a start.
 pub(crate) const ROUNDS: usize = 6;
 pub(crate) const DEPTHS: usize = 20;

@@ -13,7 +13,7 @@ use super::model::Model;
 use crate::error::ContactError;
 use crate::scene::Friction;
 use crate::status::{FreeCoupling, Slide};
-use crate::tolerances::{ALONGSIDE, FREE_WORK, LEFT_FREE, NEAR_BALANCE, ROUNDING};
+use crate::tolerances::{ALONGSIDE, FREE_WORK, LEFT_FREE, NEAR_BALANCE, ROUNDING, SLIDES};
 use signorini_qp::vector;
 use signorini_tfeti::{BodyMotion, FreeMotion};
 
@@ -57,8 +57,9 @@ pub(crate) fn slides(model: &Model, e: &[f64], lambda: &[f64]) -> Result<Option<
     Ok((length > 0.0).then_some(Slide { force: length, ..slide }))
 }
 
-/// Whether friction could balance the loads `e` with the normal forces among multipliers, within the slip bounds of the
-/// points, in units of force of their bodies. Where it could, it is other forces that are not found yet.
+/// Whether friction within the slip bounds of the points, in units of force of their bodies, could balance the loads `e` with
+/// the normal forces among multipliers and any that come to them, or pressure most of what is missing. Where it could, it
+/// is other forces that are not found yet.
 pub(crate) fn friction_could_hold(
     model: &Model,
     e: &[f64],
@@ -68,32 +69,45 @@ pub(crate) fn friction_could_hold(
     let coarse = model.tfeti.coarse();
     let mut normal = lambda.to_vec();
     normal[model.tangential_start()..model.tfeti.gluing().ranges().contact().end].fill(0.0);
-    let mut pressed = vec![0.0; e.len()];
-    coarse.apply(&normal, &mut pressed, &mut coarse.scratch());
+    let [pressed, held] = [&normal, lambda].map(|forces| {
+        let mut out = vec![0.0; e.len()];
+        coarse.apply(forces, &mut out, &mut coarse.scratch());
+        out
+    });
     let all = model.loose_motions()?;
     for body in 0..model.bodies.count() {
         let motions = of_body(model, body, all);
-        let mut rest = vec![0.0; motions.len()];
-        let mut size = 0.0_f64;
-        for (rest, motion) in rest.iter_mut().zip(&motions) {
-            let [load, pressed] = [e, &pressed].map(|forces| vector::dot(&motion.amplitudes, forces));
-            *rest = load - pressed;
-            size = size.max(load.abs()).max(pressed.abs());
-        }
-        // pressure alone is in balance with the loads
-        if vector::norm(&rest) <= NEAR_BALANCE * size {
+        let work =
+            |forces: &[f64]| -> Vec<f64> { motions.iter().map(|m| vector::dot(&m.amplitudes, forces)).collect() };
+        let [load, pressed, held] = [e, &pressed, &held].map(work);
+        let [mut rest, mut missing] = [load.clone(), load.clone()];
+        vector::subtract(&pressed, &mut rest);
+        vector::subtract(&held, &mut missing);
+        // pressure alone is in balance with the loads, or all is
+        let size = load.iter().chain(&pressed).fold(0.0_f64, |size, v| size.max(v.abs()));
+        let small = |rest: &[f64]| vector::norm(rest) <= NEAR_BALANCE * size;
+        if small(&rest) || small(&missing) {
             continue;
         }
         let columns = columns(model, &motions);
-        let own = model.points.iter().enumerate();
-        let own = own.filter(|(_, point)| model.bodies.of_row(point.row) == body);
-        let friction = own.map(|(k, point)| Generators {
-            normal: vec![0.0; motions.len()],
+        let own = || {
+            let points = model.points.iter().enumerate();
+            points.filter(|(_, point)| model.bodies.of_row(point.row) == body)
+        };
+        // an iterate may have lifted a body off what presses it
+        let pressure = own().map(|(_, point)| Generators::pressure(along(&columns, point.row, -1.0 / point.scale)));
+        vector::scale(vector::norm(&missing).recip(), &mut missing);
+        let slides = WrenchCone::new(pressure.collect()).separates(&missing);
+        if slides.is_none_or(|motion| vector::dot(&motion, &missing) < SLIDES) {
+            continue;
+        }
+        let friction = own().map(|(k, point)| Generators {
+            normal: along(&columns, point.row, -1.0 / point.scale),
             tangents: tangents(&columns, point),
             coefficient: Some(0.0),
             tresca: bound(k, point),
         });
-        let mut cone = WrenchCone::new(motions.len(), friction.collect());
+        let mut cone = WrenchCone::new(friction.collect());
         if cone.exceeded(&rest).is_some() {
             return Ok(false);
         }
@@ -116,7 +130,7 @@ struct Escape {
 
 /// The first step at which nothing can hold a body.
 fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Option<Escape>, ContactError> {
-    let mut cone = WrenchCone::new(motions.len(), generators(model, body, motions)?);
+    let mut cone = WrenchCone::new(generators(model, body, motions)?);
     let largest = motions.iter().map(|m| vector::norm(&m.amplitudes));
     let largest = largest.fold(0.0, f64::max);
     let tresca = model.any_law(|law| matches!(law, Friction::Tresca(_)));

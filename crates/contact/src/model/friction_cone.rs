@@ -30,6 +30,16 @@ pub(crate) struct Generators {
 }
 
 impl Generators {
+    /// Of a point without friction.
+    pub(crate) fn pressure(normal: Vec<f64>) -> Self {
+        Self {
+            normal,
+            tangents: Vec::new(),
+            coefficient: Some(0.0),
+            tresca: 0.0,
+        }
+    }
+
     /// The work of a friction force of 1 N along a motion, at most.
     fn friction_work(&self, motion: &[f64]) -> f64 {
         norm(&self.along(motion))
@@ -73,7 +83,6 @@ enum Found {
 /// The cone, and the bounded set of Tresca friction around it.
 #[derive(Debug)]
 pub(crate) struct WrenchCone {
-    dim: usize,
     generators: Vec<Generators>,
     /// Norm of the largest generator.
     largest: f64,
@@ -88,12 +97,11 @@ const ROUNDS: usize = 500;
 const STEPS: usize = 200;
 
 impl WrenchCone {
-    pub(crate) fn new(dim: usize, generators: Vec<Generators>) -> Self {
+    pub(crate) fn new(generators: Vec<Generators>) -> Self {
         let vectors = generators
             .iter()
             .flat_map(|g| std::iter::once(&g.normal).chain(&g.tangents));
         Self {
-            dim,
             largest: vectors.map(|v| norm(v)).fold(0.0, f64::max),
             generators,
             last_friction: Vec::new(),
@@ -109,7 +117,7 @@ impl WrenchCone {
                 tresca: factor * g.tresca,
                 ..g.clone()
             });
-            Self::new(self.dim, scaled.collect())
+            Self::new(scaled.collect())
         };
         let holds = |factor: f64| cone(factor).exceeded(b).is_none();
         let (mut low, mut high) = (1.0_f64, MOST_FRICTION);
@@ -235,7 +243,7 @@ impl WrenchCone {
                 None => return Found::Apart(scaled(&r, length)),
             }
             factors.push(0.0);
-            if !improve(self.dim, &mut used, &mut factors, b) {
+            if !improve(&mut used, &mut factors, b) {
                 return Found::Open;
             }
         }
@@ -273,13 +281,13 @@ fn scaled(v: &[f64], length: f64) -> Vec<f64> {
 }
 
 /// Least squares over the columns in use with positive factors; columns that would get negative ones leave.
-fn improve(dim: usize, used: &mut Vec<Vec<f64>>, factors: &mut Vec<f64>, b: &[f64]) -> bool {
+fn improve(used: &mut Vec<Vec<f64>>, factors: &mut Vec<f64>, b: &[f64]) -> bool {
     loop {
         let count = used.len();
         if count == 0 {
             return false;
         }
-        let a = DMatrix::from_fn(dim, count, |i, j| used[j][i]);
+        let a = DMatrix::from_fn(b.len(), count, |i, j| used[j][i]);
         let Some(solution) = least_squares(a, DVector::from_column_slice(b)) else {
             return false;
         };
@@ -360,7 +368,7 @@ mod tests {
             coefficient: Some(coefficient),
             tresca: 0.0,
         };
-        WrenchCone::new(3, vec![point(-1.0), point(1.0)])
+        WrenchCone::new(vec![point(-1.0), point(1.0)])
     }
 
     #[test]
@@ -438,7 +446,7 @@ mod tests {
                 let vectors = std::iter::once(&mut g.normal).chain(&mut g.tangents);
                 vectors.flatten().for_each(|v| *v *= scale);
             }
-            let mut cone = WrenchCone::new(3, cone.generators);
+            let mut cone = WrenchCone::new(cone.generators);
             assert!(held(&mut cone, [1.0, 0.29, 0.3]), "{scale:e}");
             assert!(!held(&mut cone, [1.0, 0.31, 0.3]), "{scale:e}");
             assert!(!held(&mut cone, [1.0, 0.0, 1.01]), "{scale:e}");
@@ -465,7 +473,7 @@ mod tests {
 
     #[test]
     fn without_contact_points_nothing_is_held() {
-        let cone = WrenchCone::new(2, Vec::new());
+        let cone = WrenchCone::new(Vec::new());
         assert_eq!(cone.separates(&[0.6, -0.8]), Some(vec![0.6, -0.8]));
     }
 
@@ -483,7 +491,7 @@ mod tests {
                 }
             })
             .collect();
-        let cone = WrenchCone::new(6, points);
+        let cone = WrenchCone::new(points);
         for (along, expected) in [(0.49, true), (0.499_99, true), (0.500_1, false)] {
             let b = [0.6 * along, 0.8 * along, 1.0, 0.0, 0.0, 0.0];
             let length = norm(&b);

@@ -30,15 +30,10 @@ pub(crate) fn nearest(columns: &[DMatrix<f64>; 2], wanted: &[DVector<f64>; 2]) -
         let generators = opened.row_iter().zip(&over).map(|(opened, over)| {
             let normal: Vec<f64> = opened.iter().copied().chain([over / most]).collect();
             let length = vector::norm(&normal);
-            Generators {
-                normal: normal.iter().map(|v| v / length).collect(),
-                tangents: Vec::new(),
-                coefficient: Some(0.0),
-                tresca: 0.0,
-            }
+            Generators::pressure(normal.iter().map(|v| v / length).collect())
         });
         let dim = opened.ncols();
-        let cone = WrenchCone::new(dim + 1, generators.collect());
+        let cone = WrenchCone::new(generators.collect());
         let last: Vec<f64> = (0..=dim).map(|k| f64::from(u8::from(k == dim))).collect();
         let apart = cone.separates(&last)?;
         let step = DVector::from_column_slice(&apart[..dim]);

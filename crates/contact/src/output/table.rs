@@ -34,7 +34,7 @@ impl Table {
         }
         let path = table.path.clone();
         let read = std::fs::read_to_string(&path);
-        let old = read.map_err(|source| OutputError::NoSeries { path, source })?;
+        let old = read.map_err(|source| OutputError::Read { path, source })?;
         let wrong = |line: usize, expected: &str| ContactError::ResultTable {
             path: table.path.clone(),
             line: line + 1,

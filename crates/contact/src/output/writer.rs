@@ -13,13 +13,14 @@ use std::path::PathBuf;
 /// |---|---|
 /// | `NAME.pvd` | the bodies: displacement and von Mises stress; of several processes each writes its subdomains |
 /// | `NAME_contact.pvd` | the contact surfaces, each a piece: displacement, contact pressure, friction stress, gap, slip, state |
-/// | `NAME.csv` | one row per step: time, products, status, certificate, numbers of points, contact forces, reactions, probes |
+/// | `NAME.csv` | one row per step: time, products, status, certificate, numbers of points, contact forces, reactions, couplings, probes |
 ///
 /// [`with_field`](Self::with_field) and [`with_fields`](Self::with_fields) choose other fields. The series
 /// begin at time 0, undeformed. All files are complete at any moment. If writing fails, the run ends with the error
 /// after the step; existing files stay. The first two lines of the table begin with `#`; columns are `contact_0_fx` to
-/// `contact_0_mz` for each contact surface and support (force on the body and its moment about the origin;
-/// [`Reactions::contacts`](crate::result::Reactions::contacts)), then `node_7_ux` for probes.
+/// `contact_0_mz` for each contact surface, support and coupling (force on the body and its moment about the origin;
+/// [`Reactions::contacts`](crate::result::Reactions::contacts)), `coupling_0_ux` to `coupling_0_rz` for motions of couplings,
+/// then `node_7_ux` for probes.
 ///
 /// A resumed run continues its files: files and rows of steps before its first one are kept, later ones are replaced.
 #[derive(Debug)]

@@ -33,7 +33,7 @@ pub(super) fn between_steps(scene: &Scene) -> Option<Warning> {
     })
 }
 
-/// The first load, or motion of a support, an obstacle or a coupling, whose history is zero at the end of each step but
+/// The first load, motion of a support, an obstacle or a coupling, or value of an equation whose history is zero at the end of each step but
 /// not at all times.
 pub(super) fn zero_at_steps(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
     let loads = scene.loads.iter().zip(&discrete.loads).enumerate();
@@ -51,10 +51,15 @@ pub(super) fn zero_at_steps(scene: &Scene, discrete: &DiscreteScene) -> Option<W
         let motions = coupling.motions().iter().filter(|(way, _)| *way != [0.0; 6]);
         motions.map(move |(_, history)| (Part::Coupling(k), history))
     });
+    let equations = scene.equations.iter().enumerate().filter_map(|(k, equation)| {
+        let (value, history) = equation.value.as_ref()?;
+        (*value != 0.0).then_some((Part::Equation(k), history))
+    });
     let mut all = (loads.map(|(k, (load, _))| (Part::Load(k), &load.history)))
         .chain(motions.map(|(k, (_, history))| (Part::Support(k), history)))
         .chain(obstacles)
-        .chain(couplings);
+        .chain(couplings)
+        .chain(equations);
     let times = scene.analysis.times();
     all.find_map(|(part, history)| {
         let (time, factor) = largest(history, times)?;

@@ -2,7 +2,7 @@
 
 use crate::discrete::{DiscreteScene, Extents};
 use crate::report::Warning;
-use crate::scene::{Coupled, Scene};
+use crate::scene::Scene;
 use signorini_fem_mesh::FacetTag;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -92,11 +92,17 @@ fn act_between(
         found.contains(&a) && found.contains(&b)
     };
     let mut equations = scene.equations.iter();
-    let mut couplings = scene.couplings.iter().filter_map(|c| match &c.coupled {
-        Coupled::Nodes(place) => Some(place.nodes(&scene.mesh)),
-        Coupled::Tied(_) | Coupled::Point => None,
+    let mut places = scene.couplings.iter().filter_map(|c| c.place());
+    // equations of one point join what they name
+    let mut points = (0..scene.couplings.len()).map(|k| {
+        let of_point = scene
+            .equations
+            .iter()
+            .filter(move |e| e.points.iter().any(|p| p.0 == k));
+        of_point.flat_map(|e| &e.terms).map(|t| t.0)
     });
     touch.any(|touch| touch)
         || equations.any(|e| both(&mut e.terms.iter().map(|t| t.0)))
-        || couplings.any(|nodes| both(&mut nodes.into_iter()))
+        || places.any(|place| both(&mut place.nodes(&scene.mesh).into_iter()))
+        || points.any(|mut nodes| both(&mut nodes))
 }

@@ -30,8 +30,8 @@ signorini_fem_mesh::errors! {
     Warning {
         LargeDisplacement { step: usize, node: u32, place: [f64; 3], displacement: f64, extent: f64 } =
             "step {step}: the displacement of node {node} at {} is {displacement:.3e}, the body is {extent:.3e} long; \
-            displacements count as small here, so from a tenth of the body on shapes and forces are wrong: look at the \
-            units of loads, material and gaps, and at the supports", told(place);
+            displacements count as small here, so from a tenth of the body on shapes and forces are wrong, unless it only moves \
+            along what it touches: look at the units of loads, material and gaps, and at the supports", told(place);
         LargeRotation { step: usize, node: u32, place: [f64; 3], turn: f64 } =
             "step {step}: the body of node {node} at {} turns by {turn:.1} degrees; rotations count as small here, so that \
             normals, places of contact and lengths are those of the start: support the body against it, or reduce the \

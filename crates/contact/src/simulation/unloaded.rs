@@ -28,7 +28,7 @@ struct Place<'a> {
 }
 
 /// Rows, and what they measure where bodies are to stand.
-type Targets = Vec<(usize, f64)>;
+pub(super) type Targets = Vec<(usize, f64)>;
 
 impl Simulation {
     /// The result of an increment at whose end no load acts that acted at its start, if forces vanish with the loads;
@@ -43,10 +43,8 @@ impl Simulation {
         way: &Way,
         (line, attempt): (bool, Attempt),
     ) -> Result<(StepReport, Option<Recovered>, Targets), ContactError> {
-        let (model, increment, mut report) = (&self.model, way.increment(), StepReport::new());
-        let unloaded = |start| self.problem.is_unloaded(model, start);
-        let loose = model.plan.effects.history && !model.loose_motions()?.is_empty();
-        if !loose || !increment.start.is_some_and(unloaded) {
+        let (increment, mut report) = (way.increment(), StepReport::new());
+        if !self.unloads(way)? {
             return Ok((report, None, Targets::new()));
         }
         self.start(state, way, line, attempt);
@@ -92,6 +90,32 @@ impl Simulation {
         if gone.contains(&false) {
             return Ok((report, None, targets));
         }
+        let unloaded = self.without_forces(state, &targets)?;
+        report.counters.products += usize::from(unloaded.is_some());
+        Ok((report, unloaded, targets))
+    }
+
+    /// Whether loads on bodies that contact alone holds end with an increment.
+    pub(super) fn unloads(&self, way: &Way) -> Result<bool, ContactError> {
+        let model = &self.model;
+        let loose = model.plan.effects.history && !model.loose_motions()?.is_empty();
+        let unloaded = |start| self.problem.is_unloaded(model, start);
+        Ok(loose && way.increment().start.is_some_and(unloaded))
+    }
+
+    /// The result without any forces, with bodies where rows are closest to their targets, or those of the points that were
+    /// pressed in the last state; `None` if that is no solution.
+    pub(super) fn without_forces(
+        &mut self,
+        state: &State,
+        targets: &Targets,
+    ) -> Result<Option<Recovered>, ContactError> {
+        let pressed = |point: &&ConstrainedPoint| was_pressed(state, point);
+        let before = || self.model.points.iter().filter(pressed).flat_map(rows);
+        let targets = match targets.is_empty() {
+            true => &before().map(|row| (row, self.problem.offset[row])).collect(),
+            false => targets,
+        };
         let zeros = vec![0.0; self.iterate.lambda.len()];
         let from = Place {
             lambda: &zeros,
@@ -99,16 +123,14 @@ impl Simulation {
             rows: &zeros,
             torn: &[],
         };
-        let placed = self.placed(state, model.loose_motions()?, &from, &targets)?;
-        report.counters.products += usize::from(placed.is_some());
+        let placed = self.placed(state, self.model.loose_motions()?, &from, targets)?;
         let certified = placed.filter(|(_, placed)| placed.certificate.largest() <= self.settings.tolerance);
-        let unloaded = certified.map(|(alpha, placed)| {
+        Ok(certified.map(|(alpha, placed)| {
             self.iterate.alpha = alpha;
             self.iterate.f_lambda.clone_from(&zeros);
             self.iterate.lambda = zeros;
             placed
-        });
-        Ok((report, unloaded, targets))
+        }))
     }
 
     /// The points with contact forces of more than rounding.
@@ -150,10 +172,8 @@ impl Simulation {
         let mut targets = told;
         targets.retain(|(row, _)| moved.contains(row));
         let known: HashSet<usize> = targets.iter().map(|(row, _)| model.bodies.of_row(*row)).collect();
-        let last = &state.lambda[0];
-        let pressed = |point: &&ConstrainedPoint| {
-            last.get(point.row).is_some_and(|force| *force < 0.0) && !known.contains(&model.bodies.of_row(point.row))
-        };
+        let pressed =
+            |point: &&ConstrainedPoint| was_pressed(state, point) && !known.contains(&model.bodies.of_row(point.row));
         let offset = |row| (row, problem.offset[row]);
         targets.extend(own().filter(pressed).flat_map(rows).map(offset));
         if targets.is_empty() {
@@ -304,6 +324,11 @@ impl Simulation {
         let svd = columns.svd(true, true);
         svd.solve(&missing, NULL_RANK * svd.singular_values.max()).ok()
     }
+}
+
+/// Whether contact pressed a point in the last state.
+fn was_pressed(state: &State, point: &ConstrainedPoint) -> bool {
+    state.lambda[0].get(point.row).is_some_and(|force| *force < 0.0)
 }
 
 /// The contact points of bodies that motions move.

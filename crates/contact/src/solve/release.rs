@@ -16,7 +16,6 @@ use super::iterate::Task;
 use crate::model::{ConstrainedPoint, Model};
 use crate::tolerances::{AT_BOUND, NULL_RANK};
 use nalgebra::{DMatrix, DVector};
-use signorini_tfeti::TangentialRows;
 use signorini_tfeti::internal::Dependency;
 
 /// The dependencies of a model, with the points whose rows they hold.
@@ -74,11 +73,8 @@ impl Exchange {
         let of = |row: usize| rows.binary_search(&row).ok();
         let place = |(k, point): (usize, &ConstrainedPoint)| {
             let normal = of(point.row)?;
-            let (tangential, scale) = match point.tangential {
-                TangentialRows::Disc { row, scale } => (vec![of(row)?, of(row + 1)?], scale),
-                TangentialRows::Interval { row, scale, .. } => (vec![of(row)?], scale),
-                _ => (Vec::new(), 1.0),
-            };
+            let (first, count, scale) = point.tangential_rows().unwrap_or((0, 0, 1.0));
+            let tangential = (first..first + count).map(of).collect::<Option<_>>()?;
             Some(Place {
                 point: k,
                 normal,

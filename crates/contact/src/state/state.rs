@@ -156,6 +156,11 @@ impl State {
         (get(&self.trace[0]), get(&self.trace[1]))
     }
 
+    /// The last trace of all of them; empty before the start.
+    pub(crate) fn last_trace(&self) -> &[f64] {
+        &self.trace[0]
+    }
+
     /// Takes over what a step leaves, whose products are those with this F. Returns the multipliers and products that
     /// are not needed any more, for their memory.
     pub(crate) fn advance(&mut self, keep_before: bool, operator: u64, new: Kept) -> [Vec<f64>; 2] {

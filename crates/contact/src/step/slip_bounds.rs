@@ -82,16 +82,14 @@ impl StepProblem {
             // normal multipliers are negative where pressed
             slope: -self.coefficients[k] * point.scale / scale,
         };
-        let disc = |(k, point): (usize, &ConstrainedPoint)| match point.tangential {
-            TangentialRows::Disc { row, scale } => Some(slope(row, scale, k, point)),
-            _ => None,
+        let with_rows = |rows: usize| {
+            let points = model.points.iter().enumerate();
+            points.filter_map(move |(k, point)| {
+                let (row, _, scale) = point.tangential_rows().filter(|(_, count, _)| *count == rows)?;
+                Some(slope(row, scale, k, point))
+            })
         };
-        let interval = |(k, point): (usize, &ConstrainedPoint)| match point.tangential {
-            TangentialRows::Interval { row, scale, .. } => Some(slope(row, scale, k, point)),
-            _ => None,
-        };
-        let points = || model.points.iter().enumerate();
-        points().filter_map(disc).chain(points().filter_map(interval)).collect()
+        with_rows(2).chain(with_rows(1)).collect()
     }
 
     /// Puts the friction forces of points that slide back on their circles: extrapolation leaves them a little inside,

@@ -359,3 +359,32 @@ fn bodies_that_go_together_are_all_named() {
     let (_, body, alone, _) = not_held(stack(3e5, 0.05));
     assert!(body == 1 && !alone.contains("together"), "{alone}");
 }
+
+/// Bricks that ride on a belt, with gaps to each other. An iterate lifts them, and they were said to slide away, into the
+/// belt, for want of friction.
+#[test]
+fn bricks_ride_on_a_belt() {
+    let (count, gap, way) = (4, 2e-3, 1e-3);
+    let tag = |k: u32, tag: FacetTag| FacetTag(100 + 20 * k + tag.0);
+    let brick = |k: u32| {
+        let moved = block([0.1; 3], [2; 3]).map_points(|[x, y, z]| [x + f64::from(k) * (0.1 + gap), y, z]);
+        moved.expect("moved").map_tags(|t| tag(k, t))
+    };
+    let mesh = (1..count).fold(brick(0), |all, k| all.append(&brick(k)).expect("bodies"));
+    let mut scene = Scene::new(mesh, uniform(2.1e11, 0.3)).with_load(Load::body([0.0, 0.0, -7.8e4]));
+    for k in 0..count {
+        let belt = Contact::rigid(tag(k, brick::Z_MIN)).with_friction(Friction::coulomb(0.3));
+        scene = scene.with_contact(belt.with_motion([way, 0.0, 0.0], History::ramp(2.0, 1.0).expect("ramp")));
+    }
+    for k in 1..count {
+        scene = scene.with_contact(Contact::between(tag(k, brick::X_MIN), tag(k - 1, brick::X_MAX)));
+    }
+    let wall = Contact::rigid(tag(count - 1, brick::X_MAX)).with_gap(gap);
+    let result = solve(
+        scene.with_contact(wall).with_analysis(Analysis::quasistatic(2.0, 1)),
+        Settings::default(),
+    );
+    assert!(result.report.counters.products <= 800, "{:?}", result.report);
+    assert!((result.summary.normal_force - 4.0 * 78.0).abs() < 1e-4);
+    assert!(result.displacement.iter().step_by(3).all(|u| (u - way).abs() < 1e-8));
+}

@@ -86,6 +86,7 @@ fn histories_that_are_zero_at_all_steps_are_told() {
     let moved = |history| Support::fixed(brick::X_MAX).with_motion([1e-4, 0.0, 0.0], history);
     let swing = |waves: f64| History::function(move |t| (std::f64::consts::TAU * waves * t).sin());
     let hat = table(&[(0.0, 0.0), (0.2, 1.0), (0.4, 0.0)]);
+    let at_end = scene().mesh().nodes_on(brick::X_MAX)[0];
     for (scene, part, says) in [
         (scene().with_load(load(hat.clone())), Part::Load(2), "it is 1 at 0.2 s"),
         (scene().with_load(load(swing(2.0))), Part::Load(2), "it is 0.92977"),
@@ -108,9 +109,14 @@ fn histories_that_are_zero_at_all_steps_are_told() {
             scene().with_coupling(
                 plate()
                     .with_held([true; 6])
-                    .with_motion([1e-4, 0.0, 0.0, 0.0, 0.0, 0.0], hat),
+                    .with_motion([1e-4, 0.0, 0.0, 0.0, 0.0, 0.0], hat.clone()),
             ),
             Part::Coupling(0),
+            "it is 1 at 0.2 s",
+        ),
+        (
+            scene().with_equation(Equation::new([(at_end, [1.0, 0.0, 0.0])]).with_value(1e-4, hat)),
+            Part::Equation(0),
             "it is 1 at 0.2 s",
         ),
     ] {

@@ -16,6 +16,32 @@ fn plug(coefficient: f64, steps: usize) -> Scene {
         .with_analysis(Analysis::quasistatic(3.0, steps))
 }
 
+/// A wedge in a rigid V, friction next to what locks it. Active sets ran in circles in the step without load, and it was
+/// said not to be held: without forces nothing has to be.
+#[test]
+fn next_to_locking_nothing_is_left_of_a_wedge() {
+    let slope = 0.1_f64;
+    let widen = |[x, y, z]: [f64; 3]| [(2.0 * x - 1.0) * (0.5 + slope.tan() * z), y, z];
+    for cells in [1, 2, 3] {
+        let mesh = block([1.0; 3], [cells; 3]).map_points(widen).expect("mesh");
+        let side = |tag, towards: f64| {
+            let normal = [-slope.cos() * towards, 0.0, slope.sin()];
+            Contact::half_space(tag, [0.5 * towards, 0.0, 0.0], normal).with_friction(Friction::coulomb(0.1))
+        };
+        let push = History::table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)]).expect("history");
+        let scene = Scene::new(mesh, uniform(1e9, 0.3))
+            .with_support(Support::components(brick::Y_MIN, [false, true, false]))
+            .with_load(Load::pressure(brick::Z_MAX, 1e6).with_history(push))
+            .with_contact(side(brick::X_MAX, 1.0))
+            .with_contact(side(brick::X_MIN, -1.0))
+            .with_analysis(Analysis::quasistatic(2.0, 8));
+        let (_, results) = run(scene, Settings::default());
+        let last = &results[7];
+        assert_eq!(last.summary.normal_force, 0.0, "{cells}");
+        assert!(last.displacement.iter().all(|u| u.abs() < 1e-9), "{cells}");
+    }
+}
+
 /// With friction above the slope of its sides it stays, pressed by next to all that pressed it; below, all comes back.
 #[test]
 fn friction_above_the_slope_locks_a_plug() {

@@ -82,6 +82,17 @@ fn bodies_with_something_between_them_are_not_told() {
             .with_contact(Contact::between(upper(), LOWER).with_start(1.0))
             .with_analysis(Analysis::quasistatic(2.0, 2)),
         lower.iter().zip(&higher).fold(scene(), equal),
+        // by a point each that both bodies have an equation with
+        lower
+            .iter()
+            .zip(&higher)
+            .enumerate()
+            .fold(scene(), |scene, (k, (a, b))| {
+                let along = |node| Equation::new([(node, [0.0, 0.0, 1.0])]).with_point(k, [0.0, 0.0, -1.0]);
+                let place = scene.mesh().points()[*a as usize];
+                let scene = scene.with_coupling(Coupling::point(place));
+                scene.with_equation(along(*a)).with_equation(along(*b))
+            }),
         scene().with_coupling(Coupling::rigid(all.clone(), [0.5, 0.5, 1.0])),
         scene().with_support(Support::components(all, [false, false, true])),
         // they rest on a thin plate, from both sides

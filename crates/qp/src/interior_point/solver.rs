@@ -11,8 +11,8 @@ use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
 use crate::problem::{ConvexSet, DenseOperator, ProductSet, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    CENTRED, DEPTHS, FALLS, INTERIOR_STEPS, MORE_STEPS, PUSHES, ROUGH, ROUNDS, SETTLED_STEPS, SHORT_OF_BOUNDARY,
-    SOLVED, STUCK,
+    CENTRED, CONTRADICTING, DEPTHS, FALLS, INTERIOR_STEPS, MORE_STEPS, PUSHES, ROUGH, ROUNDS, SETTLED_STEPS,
+    SHORT_OF_BOUNDARY, SOLVED, STUCK,
 };
 use crate::vector;
 
@@ -184,6 +184,10 @@ impl Run<'_> {
     /// How large the components that go `inwards` are in the solution without bounds.
     fn without_bounds(&mut self, inwards: &[f64]) -> f64 {
         self.system.set(self.matrix.entries());
+        // rows that depend on one another may contradict each other
+        for (i, weight) in self.weights.iter().enumerate() {
+            self.system.add(i, i, CONTRADICTING * weight.powi(-2));
+        }
         self.system.factor();
         let mut whole = self.linear.to_vec();
         self.system.solve(&mut whole);

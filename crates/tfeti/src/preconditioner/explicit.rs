@@ -1,9 +1,10 @@
 //! The inverse of `F` on an active set, for systems of so few contact rows that `F` can be formed.
 //!
-//! Each subdomain adds what it answers to its rows. `H = F + w Gᵀ G` is definite; with a large `w` its inverse is that of `F` where
-//! `G x = 0`. Rows that share no subdomain have a zero in it: those that no active set takes away, most of all the gluing, are
-//! eliminated once by a sparse factor. The Schur complement of the contact rows is factored on each set. A body that bends far more easily than it is pressed in (a plate on a floor) leaves no other
-//! choice: on part of its contact rows the stiffness of their nodes is nowhere near an inverse.
+//! Each subdomain adds what it answers to its rows. `H = F + w Gᵀ G` is definite; with a large `w` its inverse is that of
+//! `F` where `G x = 0`. Rows that share no subdomain have a zero in it: those that no active set takes away, most of all
+//! the gluing, are eliminated once by a sparse factor. The Schur complement of the contact rows is factored on each set. A
+//! body that bends far more easily than it is pressed in (a plate on a floor) leaves no other choice: on part of its
+//! contact rows the stiffness of their nodes is nowhere near an inverse.
 
 use crate::coarse::space::Coarse;
 use crate::dual::part::RowPart;

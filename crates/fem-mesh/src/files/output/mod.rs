@@ -98,7 +98,7 @@ errors! {
             "line {line} of {} is {found:?}, but {expected} is needed; only lists written by PvdSeries under their \
             name can be continued, so restore the file or start a new series with PvdSeries::create", path.display();
         Read { path: PathBuf, source: std::io::Error } =
-            "cannot read {}: {source}; make it readable, or start a new series with PvdSeries::create", path.display();
+            "cannot read {}: {source}; make it readable, or begin anew under another name", path.display();
         ShortFile { path: PathBuf } =
             "{} is cut short; put a copy of it back, remove it, or continue from a time before it", path.display();
         Io { path: PathBuf, source: std::io::Error } =
