@@ -43,11 +43,15 @@ impl StepStatus {
         match self {
             Self::Converged => "",
             Self::IterationLimit => "raise max_fallback_products or the limits of the method, or take smaller steps",
-            Self::Stagnated => "take smaller steps; with Accuracy::Relative a looser target",
+            Self::Stagnated => {
+                "take smaller steps, or Settings::with_step_halving; with Accuracy::Relative a looser target"
+            }
             Self::NotContractive => {
                 "the Coulomb problem may have no solution here: take a smaller coefficient or smaller steps"
             }
-            Self::NotHeld => "press the body more, take a larger coefficient, or hold it by a support",
+            Self::NotHeld => {
+                "press the body more, take a larger coefficient, hold it by a support, or take smaller steps"
+            }
             Self::NotCertified => {
                 "take better shaped cells, Poisson's ratio further from 1/2, springs less soft beside the body, smaller \
                 steps, or Method::paper()"

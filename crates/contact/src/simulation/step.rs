@@ -13,7 +13,7 @@ use crate::settings::{Accuracy, Method};
 use crate::solve::{Attempt, Iterate, Task};
 use crate::state::{Kept, Peak, State};
 use crate::status::StepStatus;
-use crate::step::StepProblem;
+use crate::step::{Acting, StepProblem};
 use crate::tolerances::CERTIFIED;
 use signorini_qp::vector;
 use signorini_tfeti::internal::{of_length, zeros};
@@ -80,7 +80,7 @@ impl Simulation {
             self.model.scene.check_histories(increment.end)?;
         }
         self.controller = state.controller;
-        Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, 0.0)?;
+        Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, Acting::All)?;
         // the line through the last two steps leads on where the loads have stopped, and astray where friction has turned
         // round: there is another start
         let rests = |last| self.problem.rests(&self.model.scene, last);
@@ -91,8 +91,12 @@ impl Simulation {
         // with a formula of more steps the rate is yet to fall; estimates judge what was solved
         let is_one_step = (self.problem.formula).is_some_and(|formula| formula.is_one_step());
         let stands = rests && is_one_step && self.settings.accuracy == Accuracy::Tolerance;
+        let effects = &self.model.plan.effects;
+        let moves = effects.history && (effects.motion || effects.moving_obstacle);
+        let settles = falls_back && state.step() == 0 && moves && !self.model.loose_motions()?.is_empty();
         let starts = match (two_starts, falls_back) {
-            (false, _) => &[(line, Attempt::Whole)][..],
+            (false, _) if settles => &[(line, Attempt::First), (line, Attempt::Settled)][..],
+            (false, _) => &[(line, Attempt::Whole)],
             (true, false) => &[(line, Attempt::First), (!line, Attempt::Whole)],
             (true, true) => &[
                 (line, Attempt::Rest),
@@ -151,6 +155,9 @@ impl Simulation {
             self.controller = state.controller;
             if !std::mem::take(&mut sets_out) {
                 self.start(state, way, line, attempt);
+                if attempt == Attempt::Settled {
+                    report = report.resumed(self.settle(state, way, line)?);
+                }
             }
             let (next, found) = self.solve()?;
             (report, recovered) = (report.resumed(next), found);
@@ -164,6 +171,24 @@ impl Simulation {
             }
         }
         Ok((report, recovered))
+    }
+
+    /// From a start to where loads bring bodies that nothing moves yet: what moves may carry them far along, with forces that
+    /// friction decides once they are pressed.
+    fn settle(&mut self, state: &State, way: &Way, line: bool) -> Result<StepReport, ContactError> {
+        let prepare = |own: &mut Self, acting| {
+            Arc::make_mut(&mut own.problem).prepare(&own.model, state, way.increment(), acting)
+        };
+        prepare(self, Acting::Unmoved)?;
+        self.iterate.attempt = Attempt::First;
+        let (report, recovered) = self.solve()?;
+        (self.spare, self.controller) = (recovered, state.controller);
+        prepare(self, Acting::All)?;
+        if !report.status.converged() {
+            self.start(state, way, line, Attempt::Settled);
+        }
+        (self.iterate.attempt, self.iterate.offered) = (Attempt::Settled, false);
+        Ok(report)
     }
 
     /// One run of the solver from the present iterate, and what is recovered from it.

@@ -9,7 +9,7 @@ use crate::report::StepReport;
 use crate::result::{ContactState, Recovered};
 use crate::solve::Attempt;
 use crate::state::State;
-use crate::step::entry_or_zero;
+use crate::step::{Acting, entry_or_zero};
 use crate::tolerances::{LOCKED, NULL_RANK, PARTS_LEFT, ROUNDING, VANISHING};
 use nalgebra::{DMatrix, DVector};
 use signorini_qp::vector;
@@ -54,7 +54,7 @@ impl Simulation {
         let mut gone = vec![false; self.model.bodies.count().max(1)];
         let mut last = std::mem::take(&mut self.spare);
         for left in PARTS_LEFT {
-            Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, left)?;
+            Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, Acting::More(left))?;
             self.spare = last;
             let (next, recovered) = self.solve()?;
             (report, last) = (report.resumed(next), recovered);
@@ -81,7 +81,7 @@ impl Simulation {
                 vector::scale(PARTS_LEFT[1] / PARTS_LEFT[0], of_forces);
             }
         }
-        Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, 0.0)?;
+        Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, Acting::All)?;
         let model = &self.model;
         let vanish = |point: &&ConstrainedPoint| gone[model.bodies.of_row(point.row)];
         let points = self.touching(&last).filter(vanish);

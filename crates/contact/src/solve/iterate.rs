@@ -50,6 +50,8 @@ pub(crate) enum Attempt {
     /// From that start, or the only one, by active sets and then by the paper's method.
     #[default]
     Whole,
+    /// The same from where loads alone bring bodies that contact holds, before anything moves.
+    Settled,
     /// From the first start, by the paper's method.
     Fallback,
 }

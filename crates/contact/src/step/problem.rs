@@ -54,17 +54,35 @@ pub(crate) struct StepProblem {
     pub(crate) units: Vec<f64>,
 }
 
+/// What acts at the end of an increment.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Acting {
+    /// What the scene tells.
+    All,
+    /// This part of the loads at its start, too.
+    More(f64),
+    /// The same loads, but what moves is where it was at its start.
+    Unmoved,
+}
+
 impl StepProblem {
-    /// Computes the data of an increment from the model and the state before it, with this part of the loads at its start
-    /// beside those at its end.
+    /// Computes the data of an increment from the model and the state before it.
     pub(crate) fn prepare(
         &mut self,
         model: &Model,
         state: &State,
         increment: Increment,
-        left: f64,
+        acting: Acting,
     ) -> Result<(), ContactError> {
         let time = increment.end;
+        let moved = match acting {
+            Acting::Unmoved => increment.start,
+            _ => Some(time),
+        };
+        let left = match acting {
+            Acting::More(left) => left,
+            _ => 0.0,
+        };
         self.index = increment.index;
         self.time = time;
         self.step = increment.length;
@@ -87,7 +105,7 @@ impl StepProblem {
             vector::axpy(*factor, lambda, &mut self.handed_on);
         }
         let histories = model.discrete.supports.motions.iter();
-        let cases: Vec<(usize, f64)> = histories.map(|h| h.value(time)).enumerate().collect();
+        let cases: Vec<(usize, f64)> = histories.map(|h| h.value(moved.unwrap_or(0.0))).enumerate().collect();
         self.offset = model.tfeti.prescribed_offsets(take(&mut self.offset), &cases);
         self.part_ties(model);
         self.prescribed_force = model.prescribed_force(&self.offset, &self.factors);
@@ -101,7 +119,7 @@ impl StepProblem {
                 self.prescribed[row] = self.offset[row];
             }
         }
-        self.find_obstacles(model, increment.start);
+        self.find_obstacles(model, [moved, increment.start]);
         self.add_offsets(model, state)?;
         self.linear.resize(rows, 0.0);
         vector::difference(&self.offset, &self.load, &mut self.linear);
@@ -183,7 +201,7 @@ impl StepProblem {
     }
 
     /// Where the obstacles that move are, and the gaps that change.
-    fn find_obstacles(&mut self, model: &Model, before: Option<f64>) {
+    fn find_obstacles(&mut self, model: &Model, times: [Option<f64>; 2]) {
         let effects = &model.plan.effects;
         if !effects.moving_obstacle && !effects.gap_history {
             return;
@@ -202,7 +220,7 @@ impl StepProblem {
                 model.scene.contacts[contact].poses(&times).pop()
             })
         };
-        self.obstacles = [Some(self.time), before].map(|time| {
+        self.obstacles = times.map(|time| {
             let contacts = model.scene.contacts.iter().enumerate();
             let pose = |(k, contact): (usize, &Contact)| {
                 let known = time.and_then(|time| at(time, k));

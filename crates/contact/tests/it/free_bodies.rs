@@ -360,31 +360,52 @@ fn bodies_that_go_together_are_all_named() {
     assert!(body == 1 && !alone.contains("together"), "{alone}");
 }
 
-/// Bricks that ride on a belt, with gaps to each other. An iterate lifts them, and they were said to slide away, into the
-/// belt, for want of friction.
+/// The tag of a side of brick `k`.
+fn of_brick(k: u32, tag: FacetTag) -> FacetTag {
+    FacetTag(100 + 20 * k + tag.0)
+}
+
+/// Four bricks of 78 N in a row, apart by a gap, each on a floor of its own; they may touch.
+fn row_of_bricks(cells: usize, gap: f64, floor: impl Fn(Contact) -> Contact) -> Scene {
+    let brick = |k: u32| {
+        let moved = block([0.1; 3], [cells; 3]).map_points(|[x, y, z]| [x + f64::from(k) * (0.1 + gap), y, z]);
+        moved.expect("moved").map_tags(|tag| of_brick(k, tag))
+    };
+    let mesh = (1..4).fold(brick(0), |all, k| all.append(&brick(k)).expect("bodies"));
+    let scene = Scene::new(mesh, uniform(2.1e11, 0.3)).with_load(Load::body([0.0, 0.0, -7.8e4]));
+    let rough = |k| Contact::rigid(of_brick(k, brick::Z_MIN)).with_friction(Friction::coulomb(0.3));
+    let scene = (0..4).fold(scene, |scene, k| scene.with_contact(floor(rough(k))));
+    let pair = |k| Contact::between(of_brick(k, brick::X_MIN), of_brick(k - 1, brick::X_MAX));
+    (1..4).fold(scene, |scene, k| scene.with_contact(pair(k)))
+}
+
+/// An iterate lifts them off the belt, and they were said to slide away, into it, for want of friction.
 #[test]
 fn bricks_ride_on_a_belt() {
-    let (count, gap, way) = (4, 2e-3, 1e-3);
-    let tag = |k: u32, tag: FacetTag| FacetTag(100 + 20 * k + tag.0);
-    let brick = |k: u32| {
-        let moved = block([0.1; 3], [2; 3]).map_points(|[x, y, z]| [x + f64::from(k) * (0.1 + gap), y, z]);
-        moved.expect("moved").map_tags(|t| tag(k, t))
-    };
-    let mesh = (1..count).fold(brick(0), |all, k| all.append(&brick(k)).expect("bodies"));
-    let mut scene = Scene::new(mesh, uniform(2.1e11, 0.3)).with_load(Load::body([0.0, 0.0, -7.8e4]));
-    for k in 0..count {
-        let belt = Contact::rigid(tag(k, brick::Z_MIN)).with_friction(Friction::coulomb(0.3));
-        scene = scene.with_contact(belt.with_motion([way, 0.0, 0.0], History::ramp(2.0, 1.0).expect("ramp")));
-    }
-    for k in 1..count {
-        scene = scene.with_contact(Contact::between(tag(k, brick::X_MIN), tag(k - 1, brick::X_MAX)));
-    }
-    let wall = Contact::rigid(tag(count - 1, brick::X_MAX)).with_gap(gap);
-    let result = solve(
-        scene.with_contact(wall).with_analysis(Analysis::quasistatic(2.0, 1)),
-        Settings::default(),
-    );
+    let (gap, way) = (2e-3, 1e-3);
+    let ramp = || History::ramp(2.0, 1.0).expect("ramp");
+    let scene = row_of_bricks(2, gap, |belt| belt.with_motion([way, 0.0, 0.0], ramp()))
+        .with_contact(Contact::rigid(of_brick(3, brick::X_MAX)).with_gap(gap))
+        .with_analysis(Analysis::quasistatic(2.0, 1));
+    let result = solve(scene, Settings::default());
     assert!(result.report.counters.products <= 800, "{:?}", result.report);
     assert!((result.summary.normal_force - 4.0 * 78.0).abs() < 1e-4);
     assert!(result.displacement.iter().step_by(3).all(|u| (u - way).abs() < 1e-8));
+}
+
+/// The first one is moved, short of the next: the step begins again from where weight alone presses them.
+#[test]
+fn the_first_brick_of_a_row_is_pushed() {
+    let ramp = History::ramp(1.0, 1.0).expect("ramp");
+    let push = Support::components(of_brick(0, brick::X_MIN), [true, false, false]);
+    let scene = row_of_bricks(4, 1e-3, |floor| floor)
+        .with_support(push.with_motion([5e-4, 0.0, 0.0], ramp))
+        .with_analysis(Analysis::quasistatic(1.0, 1));
+    let (simulation, results) = run(scene, Settings::default());
+    let result = &results[0];
+    assert!(result.report.counters.products <= 400, "{:?}", result.report);
+    let pushed = simulation.result().expect("a result").reactions().supports[0]
+        .resultant
+        .force[0];
+    assert!((pushed / (0.3 * 78.0) - 1.0).abs() < 1e-6, "{pushed}");
 }
