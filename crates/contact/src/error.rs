@@ -1,5 +1,6 @@
 //! What can be wrong with a scene.
 
+use crate::part::Part;
 use crate::status::FreeCoupling;
 use signorini_fem_mesh as fem;
 use signorini_fem_mesh::internal::{number, place};
@@ -91,8 +92,8 @@ signorini_fem_mesh::errors! {
         UnequalSteps { step: usize, length: f64, first: f64 } =
             "step {step}: its length is {length} s, but that of the first is {first} s; the three-step formula needs \
             equal steps, backward Euler does not";
-        UnknownTag { what: &'static str, index: usize, tag: u32, known: String } =
-            "{what} {index}: no facet has the tag {tag}; the mesh has {known}";
+        UnknownTag { part: Part, tag: u32, known: String } =
+            "{part}: no facet has the tag {tag}; the mesh has {known}";
         Spring { spring: usize, reason: &'static str } = "spring {spring}: {reason}";
         SpringStiffness { spring: usize, value: f64 } =
             "spring {spring}: its stiffness is {}; it must be finite and not negative, and some component \
@@ -173,13 +174,13 @@ signorini_fem_mesh::errors! {
             "contact: at node {node} surfaces {first} and {second} have one direction, but their obstacles move \
             differently, give way differently or bring other gaps, so that either may become the nearer one; leave the \
             facets around it out of one of the surfaces, or give both the same motion, compliance and gap";
-        HistoryValue { what: &'static str, index: usize, time: f64, value: f64 } =
-            "{what} {index}: its history gives {} at time {time} s", number(*value);
-        Span { what: &'static str, index: usize, start: f64, end: f64 } =
-            "{what} {index}: it is to act from {start} s to {end} s; give finite times, not negative, the end later than \
+        HistoryValue { part: Part, time: f64, value: f64 } =
+            "{part}: its history gives {} at time {time} s", number(*value);
+        Span { part: Part, start: f64, end: f64 } =
+            "{part}: it is to act from {start} s to {end} s; give finite times, not negative, the end later than \
             the start";
-        Idle { what: &'static str, index: usize, setting: &'static str, needs: &'static str } =
-            "{what} {index}: {setting} says nothing without {needs}; give both, or leave it out";
+        Idle { part: Part, setting: &'static str, needs: &'static str } =
+            "{part}: {setting} says nothing without {needs}; give both, or leave it out";
         TwoGaps { contact: usize } =
             "contact {contact}: with_gap and with_gap_field each give its gap, and only one can count; leave one out, \
             or let the field contain the constant";
@@ -187,7 +188,7 @@ signorini_fem_mesh::errors! {
             "pairs are looked for where the boundary has no tags, and that of {bodies} bodies has some everywhere but \
             on one body at most; take the tags off the sides that may touch (TetMesh::tag_boundary), or name them \
             (Contact::between)";
-        TooLarge { part: crate::part::Part, place: String, value: f64, unit: &'static str, most: f64 } =
+        TooLarge { part: Part, place: String, value: f64, unit: &'static str, most: f64 } =
             "{part}{place}: {value:e} {unit} are too much, squares of what follows from it would overflow (at most {most:e}); check \
             its units and its history";
         Stiffness { region: u32, value: f64, least: f64, most: f64 } =

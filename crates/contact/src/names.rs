@@ -107,10 +107,6 @@ impl ContactError {
             Self::Time { step, .. } | Self::UnequalSteps { step, .. } | Self::UnconvergedHistory { step } => {
                 vec![Part::Step(*step)]
             }
-            Self::UnknownTag { what, index, .. }
-            | Self::HistoryValue { what, index, .. }
-            | Self::Idle { what, index, .. }
-            | Self::Span { what, index, .. } => Part::of_scene(what, *index).into_iter().collect(),
             Self::Coupling { coupling, node, .. } => {
                 let coupling = [Part::Coupling(*coupling)].into_iter();
                 coupling.chain(node.map(Part::Node)).collect()
@@ -125,7 +121,11 @@ impl ContactError {
             Self::OnAxis { support, node } | Self::MotionNotHeld { support, node, .. } => {
                 vec![Part::Support(*support), Part::Node(*node)]
             }
-            Self::TooLarge { part, .. } => vec![*part],
+            Self::UnknownTag { part, .. }
+            | Self::HistoryValue { part, .. }
+            | Self::Idle { part, .. }
+            | Self::Span { part, .. }
+            | Self::TooLarge { part, .. } => vec![*part],
             Self::Stiffness { region, .. } => vec![Part::Region(*region)],
             Self::NotConverged(failure) => {
                 let others = |s: &Slide| s.others.into_iter().flatten().map(|(_, node)| node);

@@ -30,21 +30,6 @@ pub enum Part {
     Step(usize),
 }
 
-impl Part {
-    /// What a scene has several of, by the word for it.
-    pub(crate) fn of_scene(what: &str, index: usize) -> Option<Self> {
-        Some(match what {
-            "contact" => Self::Contact(index),
-            "support" => Self::Support(index),
-            "spring" => Self::Spring(index),
-            "coupling" => Self::Coupling(index),
-            "equation" => Self::Equation(index),
-            "load" => Self::Load(index),
-            _ => return None,
-        })
-    }
-}
-
 impl std::fmt::Display for Part {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         match self {

@@ -4,6 +4,7 @@ use super::free_points::{check_point, idle, sizes};
 use super::points::ContactPoint;
 use super::supports::Supports;
 use crate::error::ContactError;
+use crate::part::Part;
 use crate::scene::{Coupled, Coupling, CouplingLoad, Place, Scene};
 use crate::tolerances::{ALONG, FAR};
 use signorini_fem_mesh::decomposition::Rigid;
@@ -181,7 +182,7 @@ impl Couplings {
         let refuse = |node, reason| ContactError::coupling(coupling, node, reason);
         match &scene.couplings[coupling].coupled {
             Coupled::Nodes(Place::Tag(tag)) => match scene.mesh.nodes_on(*tag) {
-                nodes if nodes.is_empty() => Err(scene.unknown_tag("coupling", coupling, *tag)),
+                nodes if nodes.is_empty() => Err(scene.unknown_tag(Part::Coupling(coupling), *tag)),
                 nodes => Ok(nodes),
             },
             Coupled::Nodes(Place::Nodes(nodes)) => match nodes.iter().find(|n| **n as usize >= count) {

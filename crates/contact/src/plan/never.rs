@@ -15,15 +15,11 @@ const BETWEEN: [f64; 2] = [0.31, 0.5];
 pub(super) fn between_steps(scene: &Scene) -> Option<Warning> {
     let times = scene.analysis.times();
     let last = *times.last()?;
-    let supports = scene.supports.iter().map(|s| s.span).enumerate();
-    let contacts = scene.contacts.iter().map(|c| c.span).enumerate();
     let locks = scene.couplings.iter().enumerate().filter_map(|(k, coupling)| {
         let (start, end) = (Some(coupling.lockable()?.1), None);
         Some((Part::Coupling(k), Span { start, end }))
     });
-    let all =
-        (supports.map(|(k, span)| (Part::Support(k), span))).chain(contacts.map(|(k, span)| (Part::Contact(k), span)));
-    let mut all = all.chain(locks).filter(|(_, span)| span.start != Some(last));
+    let mut all = scene.spans().chain(locks).filter(|(_, span)| span.start != Some(last));
     let (part, span) = all.find(|(_, span)| !times.iter().any(|&end| span.has(end)))?;
     Some(Warning::BetweenSteps {
         part,

@@ -2,6 +2,7 @@
 
 use super::scene::Scene;
 use super::span::{Span, is_past};
+use crate::part::Part;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
@@ -25,7 +26,7 @@ impl Scene {
         let first = |time: f64| times.partition_point(|&step| !is_past(time, step));
         let firsts: BTreeSet<usize> = self
             .spans()
-            .flat_map(|span| span.times())
+            .flat_map(|(_, span)| span.times())
             .chain(locks)
             .map(first)
             .collect();
@@ -48,7 +49,7 @@ impl Scene {
 
     /// Whether supports or contacts start or end between steps.
     pub(crate) fn has_spans(&self) -> bool {
-        self.spans().any(|span| span != Span::default())
+        self.spans().any(|(_, span)| span != Span::default())
     }
 
     /// Whether supports start after the stage that the scene is set up for, where its steps leave their nodes.
@@ -58,9 +59,11 @@ impl Scene {
         self.supports.iter().filter_map(|s| s.span.start).any(later)
     }
 
-    fn spans(&self) -> impl Iterator<Item = Span> {
-        let supports = self.supports.iter().map(|s| s.span);
-        supports.chain(self.contacts.iter().map(|c| c.span))
+    /// When supports and contacts act.
+    pub(crate) fn spans(&self) -> impl Iterator<Item = (Part, Span)> {
+        let supports = self.supports.iter().map(|s| s.span).enumerate();
+        let contacts = self.contacts.iter().map(|c| c.span).enumerate();
+        (supports.map(|(k, span)| (Part::Support(k), span))).chain(contacts.map(|(k, span)| (Part::Contact(k), span)))
     }
 
     /// Whether what has this span acts in the stage that the scene is set up for.

@@ -8,6 +8,7 @@ use super::pose::Rotation;
 use super::scene::Scene;
 use super::support::Place;
 use crate::error::ContactError;
+use crate::part::Part;
 use signorini_fem_mesh::internal::tag_list;
 use signorini_fem_mesh::vec3::{is_finite, norm};
 use signorini_fem_mesh::{FacetTag, History};
@@ -19,7 +20,7 @@ impl Scene {
         let own = &self.supports[support];
         let nodes = own.place.nodes(&self.mesh);
         if let (Place::Tag(tag), []) = (&own.place, &nodes[..]) {
-            return Err(self.unknown_tag("support", support, *tag));
+            return Err(self.unknown_tag(Part::Support(support), *tag));
         }
         if let Some(&node) = nodes.iter().find(|&&n| n as usize >= count) {
             return Err(ContactError::UnknownNode {
@@ -39,10 +40,9 @@ impl Scene {
         Ok(nodes)
     }
 
-    pub(crate) fn unknown_tag(&self, what: &'static str, index: usize, tag: FacetTag) -> ContactError {
+    pub(crate) fn unknown_tag(&self, part: Part, tag: FacetTag) -> ContactError {
         ContactError::UnknownTag {
-            what,
-            index,
+            part,
             tag: tag.0,
             known: tag_list(&self.mesh.tags()),
         }
@@ -56,25 +56,16 @@ impl Scene {
         for (index, contact) in self.contacts.iter().enumerate() {
             // what it is at rest, too
             let value = contact.gap_history.as_ref().map_or(0.0, |h| h.value(0.0));
-            check_value(("contact", index), 0.0, value)?;
+            check_value(Part::Contact(index), 0.0, value)?;
         }
-        let supports = self.supports.iter().map(|s| s.span).enumerate();
-        let contacts = self.contacts.iter().map(|c| c.span).enumerate();
-        let mut spans = supports.map(|s| ("support", s)).chain(contacts.map(|c| ("contact", c)));
-        if let Some((what, (index, span))) = spans.find(|(_, (_, span))| !span.is_good()) {
+        if let Some((part, span)) = self.spans().find(|(_, span)| !span.is_good()) {
             let (start, end) = (span.start.unwrap_or(0.0), span.end.unwrap_or(f64::INFINITY));
-            return Err(ContactError::Span {
-                what,
-                index,
-                start,
-                end,
-            });
+            return Err(ContactError::Span { part, start, end });
         }
         let mut supports = self.supports.iter();
         if let Some(index) = supports.position(|s| s.fading.is_some() && s.span.start.is_none()) {
             return Err(ContactError::Idle {
-                what: "support",
-                index,
+                part: Part::Support(index),
                 setting: "with_fading",
                 needs: "with_start",
             });
@@ -84,7 +75,7 @@ impl Scene {
             if let Place::Tag(tag) = spring.place
                 && self.mesh.nodes_on(tag).is_empty()
             {
-                return Err(self.unknown_tag("spring", index, tag));
+                return Err(self.unknown_tag(Part::Spring(index), tag));
             }
         }
         let mut contacts = self.contacts.iter().enumerate();
@@ -112,35 +103,35 @@ impl Scene {
     /// Checks that all histories have a value at a time.
     pub(crate) fn check_histories(&self, time: f64) -> Result<(), ContactError> {
         self.histories()
-            .try_for_each(|(what, index, history)| check_value((what, index), time, history.value(time)))
+            .try_for_each(|(part, history)| check_value(part, time, history.value(time)))
     }
 
-    /// All that acts, with its history: what it is, its number, and how it goes.
-    pub(crate) fn histories(&self) -> impl Iterator<Item = (&'static str, usize, &History)> {
+    /// All that acts, with its history.
+    pub(crate) fn histories(&self) -> impl Iterator<Item = (Part, &History)> {
         let loads = self.loads.iter().enumerate();
         let supports = self.supports.iter().enumerate();
         let contacts = self.contacts.iter().enumerate();
         let couplings = self.couplings.iter().enumerate();
-        let couplings = couplings.flat_map(|(k, c)| c.motions.iter().map(move |(_, h)| ("coupling", k, h)));
+        let couplings = couplings.flat_map(|(k, c)| c.motions.iter().map(move |(_, h)| (Part::Coupling(k), h)));
         let equations = self.equations.iter().enumerate();
-        (loads.map(|(k, l)| ("load", k, &l.history)))
+        (loads.map(|(k, l)| (Part::Load(k), &l.history)))
             .chain(supports.flat_map(|(k, s)| {
                 let motion = s.motion.as_ref().map(|(_, history)| history);
-                motion.into_iter().chain(&s.fading).map(move |h| ("support", k, h))
+                motion.into_iter().chain(&s.fading).map(move |h| (Part::Support(k), h))
             }))
             .chain(contacts.flat_map(|(k, c)| {
                 let motions = c.motions.iter().map(|(_, history)| history);
                 let turn = c.rotation.as_ref().map(|rotation| &rotation.angle);
-                (motions.chain(turn).chain(&c.gap_history)).map(move |h| ("contact", k, h))
+                (motions.chain(turn).chain(&c.gap_history)).map(move |h| (Part::Contact(k), h))
             }))
             .chain(couplings)
-            .chain(equations.filter_map(|(k, e)| Some(("equation", k, &e.value.as_ref()?.1))))
+            .chain(equations.filter_map(|(k, e)| Some((Part::Equation(k), &e.value.as_ref()?.1))))
     }
 
     fn check(&self, index: usize, contact: &Contact) -> Result<(), ContactError> {
         for &tag in contact.tags.iter().chain(&contact.partner) {
             if self.mesh.nodes_on(tag).is_empty() {
-                return Err(self.unknown_tag("contact", index, tag));
+                return Err(self.unknown_tag(Part::Contact(index), tag));
             }
         }
         if let ContactNormal::Fixed(normal) = contact.normal {
@@ -187,8 +178,7 @@ impl Scene {
         let measured = matches!(contact.gap, Gap::Measured) && !contact.tied;
         if contact.closing == Closing::Nothing && !measured && !matches!(contact.gap, Gap::Obstacle) {
             return Err(ContactError::Idle {
-                what: "contact",
-                index,
+                part: Part::Contact(index),
                 setting: "with_measured_overlaps",
                 needs: "a gap that is measured between bodies or from a shape",
             });
@@ -209,8 +199,7 @@ impl Scene {
         }
         if contact.friction_axis.is_some() && !contact.law_given {
             return Err(ContactError::Idle {
-                what: "contact",
-                index,
+                part: Part::Contact(index),
                 setting: "with_friction_axis",
                 needs: "with_friction",
             });
@@ -227,13 +216,8 @@ impl Scene {
     }
 }
 
-/// Refuses a value of a history that is none; of what, and its position in the scene.
-fn check_value((what, index): (&'static str, usize), time: f64, value: f64) -> Result<(), ContactError> {
-    let error = ContactError::HistoryValue {
-        what,
-        index,
-        time,
-        value,
-    };
+/// Refuses a value of a history that is none.
+fn check_value(part: Part, time: f64, value: f64) -> Result<(), ContactError> {
+    let error = ContactError::HistoryValue { part, time, value };
     value.is_finite().then_some(()).ok_or(error)
 }

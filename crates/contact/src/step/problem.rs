@@ -160,7 +160,7 @@ impl StepProblem {
     /// Whether nothing that acts has changed since a time.
     pub(crate) fn rests(&self, scene: &Scene, since: f64) -> bool {
         let stays = |history: &History| history.value(since) == history.value(self.time);
-        scene.histories().all(|(.., history)| stays(history))
+        scene.histories().all(|(_, history)| stays(history))
     }
 
     /// Adds to the offsets of contact rows what is theirs: gap, position of rest, way of the obstacle.

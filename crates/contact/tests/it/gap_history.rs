@@ -157,7 +157,7 @@ fn gaps_that_have_no_value_or_change_places_are_refused() {
         let bad = History::function(move |t| if t == hole { f64::NAN } else { 1.0 });
         let error = refused(column(fit(bad)));
         assert!(
-            matches!(error, ContactError::HistoryValue { what: "contact", index: 0, time, .. } if time == hole),
+            matches!(error, ContactError::HistoryValue { part: Part::Contact(0), time, .. } if time == hole),
             "{error}"
         );
     }

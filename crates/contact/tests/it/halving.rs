@@ -221,8 +221,7 @@ fn a_history_without_a_value_between_is_named_and_changes_nothing() {
         matches!(
             error,
             ContactError::HistoryValue {
-                what: "load",
-                index: 2,
+                part: Part::Load(2),
                 ..
             }
         ),

@@ -9,12 +9,7 @@ fn floor() -> Contact {
 /// What is refused of a part: a setting without another one.
 fn assert_idle(scene: &Scene, part: Part, words: [&str; 2]) {
     let error = refused(scene);
-    let (of, number) = match part {
-        Part::Support(index) => ("support", index),
-        Part::Contact(index) => ("contact", index),
-        _ => panic!("{part:?}"),
-    };
-    let is_such = matches!(error, ContactError::Idle { what, index, .. } if what == of && index == number);
+    let is_such = matches!(error, ContactError::Idle { part: own, .. } if own == part);
     assert!(is_such, "{error}");
     assert_eq!(error.parts(), [part]);
     let text = error.to_string();

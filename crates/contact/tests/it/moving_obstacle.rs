@@ -169,7 +169,13 @@ fn obstacles_that_move_are_checked() {
     assert!(matches!(bad, Some(ContactError::ContactValue { .. })));
     let wild = History::function(|t| 1.0 / (t - 0.5));
     let bad = refused(up.with_motion([0.0, 0.0, -0.1], wild), x());
-    assert!(matches!(bad, Some(ContactError::HistoryValue { what: "contact", .. })));
+    assert!(matches!(
+        bad,
+        Some(ContactError::HistoryValue {
+            part: Part::Contact(_),
+            ..
+        })
+    ));
 }
 
 /// Traces are relative to the obstacle, and its place follows from the time: a run goes on from a state bit for bit.

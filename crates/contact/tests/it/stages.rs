@@ -147,8 +147,7 @@ fn a_scene_that_falls_apart_is_refused_beforehand() {
             matches!(
                 error,
                 ContactError::Span {
-                    what: "support",
-                    index: 2,
+                    part: Part::Support(2),
                     ..
                 }
             ),

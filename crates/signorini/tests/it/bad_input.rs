@@ -1,5 +1,6 @@
 //! Ways to be wrong: each is a typed error that names the place. Nothing panics.
 
+use signorini::contact::Part;
 use signorini::fem_mesh::brick::BrickError;
 use signorini::fem_mesh::{
     DecompositionError, Facet, HistoryError, HookeError, LoadError, MaterialError, MeshError, SurfaceError,
@@ -194,7 +195,7 @@ fn decompositions_supports_and_loads() {
         ) => Error::Tfeti(TfetiError::BadMotion { support: 1, .. }), "support 1";
         "a support history that is infinite": attempt(
             good().with_support(Support::fixed(brick::X_MAX).with_motion([1.0; 3], History::function(|_| f64::INFINITY)))
-        ) => Error::Contact(ContactError::HistoryValue { what: "support", index: 1, .. }), "support 1";
+        ) => Error::Contact(ContactError::HistoryValue { part: Part::Support(1), .. }), "support 1";
         "a load on an unknown tag": attempt(good().with_load(Load::pressure(FacetTag(42), 1.0))) => Error::Contact(ContactError::Load { index: 1, source: LoadError::UnknownTag { .. } }), "load 1", "42", "the tags 1, 2, 3";
         "a load that is NaN": attempt(good().with_load(Load::body([0.0, nan, 0.0]))) => Error::Contact(ContactError::Load { index: 1, source: LoadError::NotFinite { .. } }), "load 1", "finite";
         "a load field that is infinite": attempt(
@@ -205,7 +206,7 @@ fn decompositions_supports_and_loads() {
         ) => Error::Contact(ContactError::Load { index: 1, source: LoadError::UnknownNode { node: 77, .. } }), "node 77";
         "a load history that is NaN": attempt(
             good().with_load(Load::body([1.0; 3]).with_history(History::function(|t| (t - 2.0).sqrt())))
-        ) => Error::Contact(ContactError::HistoryValue { what: "load", index: 1, .. }), "load 1", "time 1";
+        ) => Error::Contact(ContactError::HistoryValue { part: Part::Load(1), .. }), "load 1", "time 1";
         "a history without points": made(History::table(Vec::new())) => Error::History(HistoryError::Empty), "no points";
         "a history that goes back": made(History::table(vec![(0.0, 0.0), (1.0, 1.0), (0.5, 2.0)])) => Error::History(HistoryError::NotIncreasing { index: 2, .. }), "point 2";
         "a ramp of no duration": made(History::ramp(0.0, 1.0)) => Error::History(HistoryError::NotIncreasing { .. }), "point 1";
