@@ -2,8 +2,8 @@
 //!
 //! Prints what the deck asks for and does not get, the plan, a line a step, and the reactions at the end; progress and
 //! warnings on standard error. Normal and friction forces of the lines are sums of their lengths at all points.
-//! With `--out` series for ParaView and a table are written. With `--states` the run is stored in that folder every five
-//! minutes, and the same command goes on from there. Ctrl-C ends it after the step, a second one at once.
+//! With `--out` series for ParaView and a table are written. With `--states` the run is stored in that folder every
+//! five minutes, and the same command goes on from there. Ctrl-C ends it after the step, a second one at once.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -119,8 +119,8 @@ fn run(part: &Path, out: Option<&Path>, states: Option<&Path>, stop: Arc<AtomicB
     Ok(report.stopped)
 }
 
-/// The forces that hold the body at the end, by the sets of the deck, with the numbers of their supports in the table, and
-/// those of its contacts.
+/// The forces that hold the body at the end, by the sets of the deck, with the numbers of their supports in the table,
+/// and those of its contacts.
 fn print_reactions(deck: &Deck, step: &StepResult) {
     let reactions = step.reactions();
     let names = deck.support_names();

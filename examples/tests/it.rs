@@ -34,7 +34,8 @@ fn the_readme_shows_the_first_program() {
     assert!(program.lines().count() <= 40);
 }
 
-/// Slip is that without friction under what friction leaves of the shear: 0.7 of it at first, then 0.5, -0.7, -0.7, 0.7.
+/// Slip is that without friction under what friction leaves of the shear: 0.7 of it at first, then 0.5, -0.7, -0.7,
+/// 0.7.
 #[test]
 fn the_crack_slides_as_the_formula_says() {
     let slips = crack::slips(4).expect("crack");

@@ -12,7 +12,8 @@ pub(crate) const ROUNDING: f64 = 1e-12;
 /// rounding errors, 1e-16 of that product.
 pub(crate) const FORCE_ROUNDING: f64 = 1e-8;
 
-/// Rounding of forces over displacement times stiffness, below which no solver gets: what it is asked for is not smaller.
+/// Rounding of forces over displacement times stiffness, below which no solver gets: what it is asked for is not
+/// smaller.
 pub(crate) const REACHED: f64 = 1e-14;
 
 /// Part of the earlier sizes that a vanishing quantity is measured against.
@@ -36,8 +37,8 @@ pub(crate) const LARGEST: f64 = 1e70;
 /// Cosine to the outward normal below which a direction counts as along the surface.
 pub(crate) const ALONG: f64 = 1e-9;
 
-/// Distance of the reference point of a coupling over that of its nodes from one another up to which its motions are told
-/// apart: what rounding leaves of a rotation is 1e-10 there.
+/// Distance of the reference point of a coupling over that of its nodes from one another up to which its motions are
+/// told apart: what rounding leaves of a rotation is 1e-10 there.
 pub(crate) const FAR: f64 = 1e6;
 
 /// Coefficient of a point in an equation over those of nodes up to which, and over which, the displacement of the point
@@ -65,8 +66,8 @@ pub(crate) const SHARP: f64 = 0.9;
 /// Cosine between a direction and the way to an obstacle of a function below which the place is taken to be beside it.
 pub(crate) const SIDEWAYS: f64 = 0.9;
 
-/// What the mean of a gap that is given goes beyond its values at the nodes, and what it is off the value in the middle, over
-/// the range of the former, from which on the gap jumps between nodes.
+/// What the mean of a gap that is given goes beyond its values at the nodes, and what it is off the value in the
+/// middle, over the range of the former, from which on the gap jumps between nodes.
 pub(crate) const OVERSHOT: f64 = 0.02;
 pub(crate) const JUMP: f64 = 0.25;
 
@@ -88,8 +89,8 @@ pub(crate) const GRADIENT: f64 = 1e-3;
 /// interpolated, or nearly one, it is a little; squares, multiples and other units are not near.
 pub(crate) const DISTANCE: f64 = 0.1;
 
-/// That way, over the root of the area of the contact: less than a facet, and much more than the errors of distances that
-/// are found by iteration.
+/// That way, over the root of the area of the contact: less than a facet, and much more than the errors of distances
+/// that are found by iteration.
 pub(crate) const DISTANCE_WAY: f64 = 1e-3;
 
 /// What a step along a distance leaves of the part that the one before left, at most, if they are Newton's: a half at
@@ -119,12 +120,12 @@ pub(crate) const FACING: f64 = 0.1;
 /// Mean area of the facets of a side over that of the other from which on it is the coarser one.
 pub(crate) const COARSER: f64 = 1.1;
 
-/// The same from which on a flat side leaves the points to the other where it reaches beyond that: forces at its outer nodes
-/// had moments about that by up to a facet.
+/// The same from which on a flat side leaves the points to the other where it reaches beyond that: forces at its outer
+/// nodes had moments about that by up to a facet.
 pub(crate) const MUCH_COARSER: f64 = 2.0;
 
-/// Shear modulus of a body over that of the other from which on it leaves the points to the other where it reaches beyond
-/// that: thousands of products otherwise.
+/// Shear modulus of a body over that of the other from which on it leaves the points to the other where it reaches
+/// beyond that: thousands of products otherwise.
 pub(crate) const HARDER: f64 = 10.0;
 
 /// Part of the area of a facet or node below which what covers it counts as nothing.
@@ -159,8 +160,8 @@ pub(crate) const LEFT_OFF: f64 = 1e-3;
 /// What is left of a direction that other supports hold already.
 pub(crate) const HELD_ALREADY: f64 = 1e-8;
 
-/// Motion in a direction that a support does not hold, over its largest one, that is no mistake but what is left of turned
-/// axes.
+/// Motion in a direction that a support does not hold, over its largest one, that is no mistake but what is left of
+/// turned axes.
 pub(crate) const NOT_MOVED: f64 = 1e-9;
 
 // ---- equilibrium of free bodies (model) ----
@@ -182,8 +183,8 @@ pub(crate) const WRENCH_RESIDUAL: f64 = 1e-8;
 /// relative to the motion, which is found to [`LEVERAGE`].
 pub(crate) const SLIDING: f64 = 1e-3;
 
-/// Least length that is left of a motion of length one when its opening part is taken out, or of forces that lack for balance
-/// when pressure is: a shorter rest does not tell where the body slides.
+/// Least length that is left of a motion of length one when its opening part is taken out, or of forces that lack for
+/// balance when pressure is: a shorter rest does not tell where the body slides.
 pub(crate) const SLIDES: f64 = 0.5;
 
 /// Singular values below this part of the largest count as zero where contact forces are found.
@@ -282,7 +283,8 @@ pub(crate) const LINEAR_SLACK: f64 = 15.0;
 /// The most that it may be: beyond, nothing is solved.
 pub(crate) const LINEAR_AT_MOST: f64 = 0.5;
 
-/// Products of a step that never count as effort: with the inverse of a formed F a step with hard contact takes as many.
+/// Products of a step that never count as effort: with the inverse of a formed F a step with hard contact takes as
+/// many.
 pub(crate) const EASY: usize = 200;
 /// Products beyond those for which forming F does not pay, however small it is.
 pub(crate) const LITTLE: usize = 300;
@@ -291,8 +293,8 @@ pub(crate) const LITTLE: usize = 300;
 pub(crate) const INSIDE: f64 = 1e-18;
 /// What forming F and a step with its inverse may cost, in products, to be tried as soon as predictions run in circles.
 pub(crate) const AT_ONCE: usize = 3000;
-/// Active sets without progress from which on predictions run in circles, and from which on, with that inverse, interior points
-/// look for another start.
+/// Active sets without progress from which on predictions run in circles, and from which on, with that inverse,
+/// interior points look for another start.
 pub(crate) const CIRCLES: usize = 12;
 pub(crate) const BEFORE_INSIDE: usize = 3;
 /// Products of a step with that inverse after which it does not help: a set takes two or three.
@@ -302,8 +304,8 @@ pub(crate) const EXPLICIT_PRODUCTS: usize = 1000;
 /// this multiple of the latter. In well shaped, compressible bodies it is 1 to 4; a natural map that is much too stiff
 /// predicts active sets from gradients alone.
 pub(crate) const STIFF_ROWS: f64 = 5.0;
-/// The same in a linear mesh that is strongly graded along all axes: above 3 active sets ran in circles there, from 1 to
-/// 3 products are much the same.
+/// The same in a linear mesh that is strongly graded along all axes: above 3 active sets ran in circles there, from 1
+/// to 3 products are much the same.
 pub(crate) const STIFF_GRADED: f64 = 2.5;
 /// The same in a mesh of order 2, where points are means that share nodes and move one another. From 1 to 2.5 products
 /// are much the same on equal cells; on graded ones they grow with it.
@@ -350,9 +352,9 @@ pub(crate) const LOCKED: f64 = 0.5;
 /// What no target of a place determines counts as determined this little, over what they determine best.
 pub(crate) const WEAKLY_PLACED: f64 = 1e-4;
 
-/// Products of the fall-back between two looks at the balance of bodies that friction does not seem to hold; what may be
-/// left after two of the imbalance before them to go on. Where other normal forces hold them 1e-4 of the loads is left
-/// after the first, where none do 0.01 to 0.7 in the end.
+/// Products of the fall-back between two looks at the balance of bodies that friction does not seem to hold; what may
+/// be left after two of the imbalance before them to go on. Where other normal forces hold them 1e-4 of the loads is
+/// left after the first, where none do 0.01 to 0.7 in the end.
 pub(crate) const BALANCING: usize = 200;
 pub(crate) const IMBALANCE_FALLS: f64 = 0.9;
 /// Imbalance over the loads below which forces hold the bodies.
@@ -378,8 +380,8 @@ pub(crate) const LEAST_SHARE: f64 = 0.25;
 /// Displacement over the longest side of the box around the body from which on it is not small.
 pub(crate) const LARGE_DISPLACEMENT: f64 = 0.1;
 
-/// Rotation of a body, radians, from which on it is not small: forces keep directions that turn by it, and lengths err by
-/// half its square. A shaft of 60 cells around rolls so far until the next nodes touch.
+/// Rotation of a body, radians, from which on it is not small: forces keep directions that turn by it, and lengths err
+/// by half its square. A shaft of 60 cells around rolls so far until the next nodes touch.
 pub(crate) const LARGE_TURN: f64 = 0.05;
 
 /// Strain from which on it is not small: what is left out is its square, 0.25 %, and more where bodies turn.
@@ -395,14 +397,15 @@ pub(crate) const LARGE_GAP: f64 = 1.0;
 /// Overlaps over [`ROUNDING`] that coordinates written with eleven digits make; they are closed without a word.
 pub(crate) const DIGITS: f64 = 30.0;
 
-/// Distance of facets from the curve that they stand for, over an overlap measured between them, above which that is not
-/// known: with a tenth a ring of 40 on a shaft of 60 cells around has 4 % too much pressure, and up to 70 % at points.
+/// Distance of facets from the curve that they stand for, over an overlap measured between them, above which that is
+/// not known: with a tenth a ring of 40 on a shaft of 60 cells around has 4 % too much pressure, and up to 70 % at
+/// points.
 pub(crate) const FACETED: f64 = 0.1;
 
-/// How far sides may be inside one another in the mean, over what facets of a hollow side make of their gaps, so that they
-/// touch but for these; and how deep the deepest point may be over that at the worst place. Of 72 touching rings of cells
-/// uneven by 10 to 30 % 70 are closed, and so are bores, cones, tori and sockets as Gmsh meshes them; round fits press from
-/// a quarter of a sagitta on.
+/// How far sides may be inside one another in the mean, over what facets of a hollow side make of their gaps, so that
+/// they touch but for these; and how deep the deepest point may be over that at the worst place. Of 72 touching rings
+/// of cells uneven by 10 to 30 % 70 are closed, and so are bores, cones, tori and sockets as Gmsh meshes them; round
+/// fits press from a quarter of a sagitta on.
 pub(crate) const TOUCHING: f64 = 0.35;
 pub(crate) const DEEP: f64 = 3.0;
 /// Tilt of the normal at one end of an edge over that at the other end, below which the edge is between flat sides.

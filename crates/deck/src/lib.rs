@@ -140,16 +140,16 @@
 //! equivalent: if the surface is flat, if all nodes of the first surface lie above it, and if the body does not
 //! turn. Any other one becomes a triangulated obstacle
 //! ([`Contact::obstacle`](signorini_contact::Contact::obstacle)), with triangles between neighbouring nodes, on curved
-//! faces of quadratic elements more of them, at most eight an edge; nodes that do not face it touch nothing. Elements of
-//! rigid bodies are not part of the mesh and need no section.
+//! faces of quadratic elements more of them, at most eight an edge; nodes that do not face it touch nothing. Elements
+//! of rigid bodies are not part of the mesh and need no section.
 //!
-//! The reference node has six components: rotations and moments are 4 to 6, or the components 1 to 3 of the rotation node
-//! (the same if both; CalculiX knows those of the rotation node only), `ENCASTRE` is all. Nodes of elastic elements in a
-//! rigid body, by its `NSET` or by elements that share them, become supports with the displacement of the body, for small
-//! rotations, if all are held or moved. If some are free or loaded, or nodes are held by themselves, too, as on planes of
-//! symmetry, or it turns and its components have different histories, they become a
-//! [rigid coupling](signorini_contact::Coupling), and solid elements of its `ELSET` are elastic ones with a section,
-//! coupled. The rotation of an obstacle has one history. An obstacle of facets that is free or loaded is refused.
+//! The reference node has six components: rotations and moments are 4 to 6, or the components 1 to 3 of the rotation
+//! node (the same if both; CalculiX knows those of the rotation node only), `ENCASTRE` is all. Nodes of elastic
+//! elements in a rigid body, by its `NSET` or by elements that share them, become supports with the displacement of the
+//! body, for small rotations, if all are held or moved. If some are free or loaded, or nodes are held by themselves,
+//! too, as on planes of symmetry, or it turns and its components have different histories, they become a [rigid
+//! coupling](signorini_contact::Coupling), and solid elements of its `ELSET` are elastic ones with a section, coupled.
+//! The rotation of an obstacle has one history. An obstacle of facets that is free or loaded is refused.
 //!
 //! # Parts and instances
 //!

@@ -1,14 +1,15 @@
 //! The numerical judgements of the crate, in one table: what each is relative to, and why.
 
-/// Difference of increments, over the period, that is rounding; and deviation from a plane, and of a node from the rim of
-/// a surface, over its size.
+/// Difference of increments, over the period, that is rounding; and deviation from a plane, and of a node from the rim
+/// of a surface, over its size.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
-/// Difference of unit vectors, and of places over their distance from the origin, that is rounding of what a deck writes.
+/// Difference of unit vectors, and of places over their distance from the origin, that is rounding of what a deck
+/// writes.
 pub(crate) const TURNED: f64 = 1e-5;
 
-/// What cut edges of rigid faces may be off the curved ones, over their lengths before; the most parts of one, and the most
-/// squares of them on a surface, of which each is two triangles in a tree of 0.3 kB each.
+/// What cut edges of rigid faces may be off the curved ones, over their lengths before; the most parts of one, and the
+/// most squares of them on a surface, of which each is two triangles in a tree of 0.3 kB each.
 pub(crate) const SAGITTA: f64 = 5e-4;
 pub(crate) const MOST_PARTS: f64 = 8.0;
 pub(crate) const MOST_SQUARES: f64 = 3e5;
@@ -16,8 +17,8 @@ pub(crate) const MOST_SQUARES: f64 = 3e5;
 /// Part of the area of a face that is none.
 pub(crate) const NO_AREA: f64 = 1e-12;
 
-/// The tolerance of a tie where a deck has none, over the mean radius of the circles in the faces of the second surface:
-/// what CalculiX takes for its 2.5 % of a typical element size, to within 15 %.
+/// The tolerance of a tie where a deck has none, over the mean radius of the circles in the faces of the second
+/// surface: what CalculiX takes for its 2.5 % of a typical element size, to within 15 %.
 pub(crate) const TIE: f64 = 0.025;
 
 /// Smaller tolerances of ties are none, as in CalculiX.

@@ -52,14 +52,14 @@ pub(crate) const GRADED: f64 = 2.5;
 /// parts are flat, too, and take ten times the iterations.
 pub(crate) const STRONGLY: f64 = 10.0;
 pub(crate) const LARGER: usize = 6;
-/// How many times as long as thick a rod is that is cut in lengths. Beams on floors, clamped and pulled, of 35, 20, 15 and
-/// 7 take 1/10, 1/10, 1/7 and 1/3 of the products in lengths of one and a half to two, plates hardly fewer.
+/// How many times as long as thick a rod is that is cut in lengths. Beams on floors, clamped and pulled, of 35, 20, 15
+/// and 7 take 1/10, 1/10, 1/7 and 1/3 of the products in lengths of one and a half to two, plates hardly fewer.
 pub(crate) const ROD: f64 = 8.0;
 /// Tetrahedra that lengths of rods have at least, linear and quadratic ones.
 pub(crate) const ROD_TETS: usize = 30;
 pub(crate) const ROD_QUADRATIC: usize = 10;
-/// Volume of a rod over the square of its thickness and the longest edge of its box up to which it is one, for bent rods,
-/// oblique ones, and such as are wider than thick. Rings have three; to cut them gains nothing.
+/// Volume of a rod over the square of its thickness and the longest edge of its box up to which it is one, for bent
+/// rods, oblique ones, and such as are wider than thick. Rings have three; to cut them gains nothing.
 pub(crate) const ROD_BEND: f64 = 2.5;
 /// Part of a slab by which its end may move to a plane between layers of graded cells: a ragged cut through long cells
 /// costs more than parts of unequal size.
@@ -70,18 +70,19 @@ pub(crate) const PLANE: f64 = 0.5;
 /// Most tables of local numbers, each as long as the mesh has nodes: useful threads.
 pub(crate) const TABLES: usize = 16;
 
-/// Cosine of the angle, with the sign turned, from which normals of facets face each other, as on both sides of a crack. A
-/// bend of a thin body has less.
+/// Cosine of the angle, with the sign turned, from which normals of facets face each other, as on both sides of a
+/// crack. A bend of a thin body has less.
 pub(crate) const FACING: f64 = 0.7;
-/// Distance of facets that face each other, over the size of a facet, up to which they are a crack: a slot as thin as that
-/// makes a neck as well.
+/// Distance of facets that face each other, over the size of a facet, up to which they are a crack: a slot as thin as
+/// that makes a neck as well.
 pub(crate) const CRACK: f64 = 0.5;
 /// The same behind a facet, where rounding may put the other one.
 pub(crate) const BEHIND: f64 = 1e-6;
 /// Tetrahedra of a piece over those of its part up to which it joins a neighbour.
 pub(crate) const SMALL_PIECE: f64 = 0.1;
-/// Area of a crack within a part, over that of the neck around its tip, from which the part is split. A penny-shaped crack
-/// in a block of 1 to 100 parts: with 0.1 to 0.25 34 to 88 products, never split 621 in 27 parts, always split 48 in one.
+/// Area of a crack within a part, over that of the neck around its tip, from which the part is split. A penny-shaped
+/// crack in a block of 1 to 100 parts: with 0.1 to 0.25 34 to 88 products, never split 621 in 27 parts, always split 48
+/// in one.
 pub(crate) const NECK: f64 = 0.2;
 
 // Means on surfaces

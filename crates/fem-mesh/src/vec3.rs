@@ -44,8 +44,8 @@ pub fn is_finite(a: Vec3) -> bool {
     a.iter().all(|x| x.is_finite())
 }
 
-/// The first two of these vectors whose scalar product is not that of unit vectors at right angles, within an error, and
-/// the product.
+/// The first two of these vectors whose scalar product is not that of unit vectors at right angles, within an error,
+/// and the product.
 pub fn skewed(axes: [Vec3; 3], within: f64) -> Option<(usize, usize, f64)> {
     let pairs = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
     let mut products = pairs.into_iter().map(|(i, j)| (i, j, dot(axes[i], axes[j])));

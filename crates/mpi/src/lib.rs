@@ -25,7 +25,8 @@
 //! ```
 //!
 //! `mpirun -n 2 PROGRAM` then solves with two ranks: each holds and applies the matrices of its subdomains, and one
-//! gather per product combines the results. On processors of one kind, results are bit-identical for any number of ranks.
+//! gather per product combines the results. On processors of one kind, results are bit-identical for any number of
+//! ranks.
 //!
 //! This package is outside the workspace because it needs MPI and libclang to build.
 

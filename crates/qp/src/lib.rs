@@ -4,7 +4,8 @@
 //! orthonormal rows of `C`.
 //!
 //! `A` is only needed in products with vectors. The dual problems of T-FETI with contact and friction have this form
-//! (bounds for normal forces, discs for tangential forces, equilibrium as equality), but the crate contains no mechanics.
+//! (bounds for normal forces, discs for tangential forces, equilibrium as equality), but the crate contains no
+//! mechanics.
 //!
 //! # Methods
 //!
@@ -18,9 +19,9 @@
 //! | [`kkt::check`] | set, equality | independent check, shares no code with the solvers | 2, for the call |
 //!
 //! Solvers take the start in `x` and return the result there. They report counts by cause, and keep all vectors in a
-//! workspace that is created once: iterations of conjugate gradients allocate nothing. A tolerance that is not reached is
-//! a [`Status`] in an `Ok` report; errors are invalid input or a breakdown ([`QpError`]). [`successive_approximations`] solves problems
-//! whose set depends on the solution.
+//! workspace that is created once: iterations of conjugate gradients allocate nothing. A tolerance that is not reached
+//! is a [`Status`] in an `Ok` report; errors are invalid input or a breakdown ([`QpError`]).
+//! [`successive_approximations`] solves problems whose set depends on the solution.
 //!
 //! # Parts of a problem
 //!

@@ -6,8 +6,8 @@
 pub enum Status {
     /// The tolerance was reached.
     Converged,
-    /// The allowed number of operator products or outer steps was spent. SMALSE ends so where no point of the set satisfies
-    /// the equality.
+    /// The allowed number of operator products or outer steps was spent. SMALSE ends so where no point of the set
+    /// satisfies the equality.
     IterationLimit,
     /// No further progress: the gradient is at the level of rounding errors, above the tolerance. The active-set method
     /// ends so where no point of a fixed set satisfies the equality.

@@ -103,8 +103,8 @@ pub(crate) const NEGLIGIBLE: f64 = 0.03;
 
 /// Most steps: where more are needed, rounding has taken over or the set is not worth it.
 pub(crate) const MOST_STEPS: usize = 500;
-/// The same on the path of compliant constraints: its problems are badly conditioned, and need not be solved well. And with a
-/// preconditioner that is nearly an inverse: where a few steps do not do, radii that follow lead astray.
+/// The same on the path of compliant constraints: its problems are badly conditioned, and need not be solved well. And
+/// with a preconditioner that is nearly an inverse: where a few steps do not do, radii that follow lead astray.
 pub(crate) const FEW_STEPS: usize = 50;
 /// Error over that at the start of a set from which on steps may lead away for good, and the longest step then, over
 /// `|x|`. Small enough that the rest of the set still tells something.
@@ -244,8 +244,8 @@ pub(crate) const ROUNDS: usize = 6;
 pub(crate) const DEPTHS: usize = 20;
 /// A point on a circle is put this much of the radius from its centre: rounding of radii leaves it on the circle then.
 pub(crate) const BEYOND: f64 = 1.0 + 1e-13;
-/// Most steps; part of the least complementarity so far that a step leaves at most, so many in a row that fail to and end
-/// it, and complementarity up to which that is rounding.
+/// Most steps; part of the least complementarity so far that a step leaves at most, so many in a row that fail to and
+/// end it, and complementarity up to which that is rounding.
 pub(crate) const INTERIOR_STEPS: usize = 100;
 pub(crate) const FALLS: f64 = 0.9;
 pub(crate) const ROUGH: f64 = 1e-9;

@@ -19,13 +19,13 @@ pub(crate) const HELD: f64 = 0.25;
 pub(crate) const HELD_MEANS: f64 = 0.2;
 /// Prescribed displacements in one direction: relative difference that supports may have.
 pub(crate) const AGREEING: f64 = 1e-7;
-/// Nodes of a rigid subdomain: largest distance from a line, relative to its length, on which they lie. At 3e-6 loads about
-/// the line took all products allowed, from 1e-5 on they were solved.
+/// Nodes of a rigid subdomain: largest distance from a line, relative to its length, on which they lie. At 3e-6 loads
+/// about the line took all products allowed, from 1e-5 on they were solved.
 pub(crate) const ON_A_LINE: f64 = 1e-5;
 /// Largest coefficient of an equation: beyond, forces over coefficients leave the range of numbers.
 pub(crate) const COEFFICIENTS: [f64; 2] = [1e-200, 1e200];
-/// Linear equations: part of the coefficients of one that others leave which is too little to be meant, where it is more
-/// than rounding: decks have six or seven digits.
+/// Linear equations: part of the coefficients of one that others leave which is too little to be meant, where it is
+/// more than rounding: decks have six or seven digits.
 pub(crate) const ALMOST: f64 = 1e-6;
 /// Entry of an equation over its largest up to which others may be taken out by it.
 pub(crate) const PIVOTAL: f64 = 0.1;
@@ -33,9 +33,9 @@ pub(crate) const PIVOTAL: f64 = 0.1;
 pub(crate) const ANGLE: f64 = 1e-6;
 /// Pivots and eigenvalues of small matrices, relative to the largest.
 pub(crate) const PIVOT: f64 = 1e-13;
-/// Smallest pivot of a stiffness over the largest, and over the diagonal entry that it was, up to which it means a motion
-/// without strain beside the rigid ones. Rounding left less than that in quadratic tetrahedra at Poisson's ratios from
-/// 0.49 to 0.4999; of 3,300 random bodies solved right none had less than 9e-10 and 1e-9.
+/// Smallest pivot of a stiffness over the largest, and over the diagonal entry that it was, up to which it means a
+/// motion without strain beside the rigid ones. Rounding left less than that in quadratic tetrahedra at Poisson's
+/// ratios from 0.49 to 0.4999; of 3,300 random bodies solved right none had less than 9e-10 and 1e-9.
 pub(crate) const FURTHER_MOTION: f64 = 1e-12;
 pub(crate) const LEFT_OF_IT: f64 = 1e-10;
 /// Pivots of coarse factors and of matrices from which directions are taken out, relative to the largest diagonal
@@ -49,8 +49,8 @@ pub(crate) const FREE: f64 = 1e-11;
 pub(crate) const NO_ACTION: f64 = 1e-20;
 /// Layers of a grid: largest difference of positions within one, relative to the extent.
 pub(crate) const LAYER: f64 = 1e-6;
-/// The same of springs where supports hold a subdomain, from which on a motion is held: eigenvalues between the two make
-/// no matrix that is safe to invert.
+/// The same of springs where supports hold a subdomain, from which on a motion is held: eigenvalues between the two
+/// make no matrix that is safe to invert.
 pub(crate) const HELD_MOTION: f64 = 1e-3;
 /// Components of a free motion that is described, relative to its length.
 pub(crate) const MOVING: f64 = 1e-9;
@@ -63,25 +63,25 @@ pub(crate) const SUPPORTED: f64 = 0.01;
 /// Error in the equality of a solve with a factor in single precision with which steps are projected, relative.
 pub(crate) const ROUNDED_STEP: f64 = 1e-4;
 /// Rows of the equality from which on such a factor is read instead of the exact one: a smaller one takes no time worth
-/// mentioning, and where conjugate gradients are long its rounding lets directions forget one another. From there on rows
-/// also weigh one where nothing but the shape of a mesh tells them apart.
+/// mentioning, and where conjugate gradients are long its rounding lets directions forget one another. From there on
+/// rows also weigh one where nothing but the shape of a mesh tells them apart.
 pub(crate) const SHORT_ROWS: usize = 500;
 /// Stiffness of a copy over that of another one of its node up to which all count alike: 1 where boxes cut a regular
 /// mesh, 2.5 where its nodes are displaced by 0.15 of a cell, 17 and more in cuts that follow no plane of the mesh.
 pub(crate) const ALIKE: f64 = 4.0;
-/// Stiffness of a copy in a rigid subdomain over that of the other copies of its node, and squared length of the rows that
-/// hold it: the mean of a node follows it, and products are those of a support. With 1e6 the best certificates were
-/// 1e-10.
+/// Stiffness of a copy in a rigid subdomain over that of the other copies of its node, and squared length of the rows
+/// that hold it: the mean of a node follows it, and products are those of a support. With 1e6 the best certificates
+/// were 1e-10.
 pub const RIGID: f64 = 1e3;
-/// Largest weight of the rows of a body over that of another one down to which both are told apart. Beyond, what rounding
-/// leaves of the soft body in the coarse problem was seen, from 1e-4 on by thousands of products where bodies touch, at
-/// 1e-8 by certificates of 1e-4 where they do not.
+/// Largest weight of the rows of a body over that of another one down to which both are told apart. Beyond, what
+/// rounding leaves of the soft body in the coarse problem was seen, from 1e-4 on by thousands of products where bodies
+/// touch, at 1e-8 by certificates of 1e-4 where they do not.
 pub(crate) const SOFT_BODY: f64 = 1e-3;
 /// Added to the matrix of a group whose rows may depend on one another, relative. Vectors of its null space come out
 /// large, but `B^T` takes them to zero.
 pub(crate) const DEPENDENT: f64 = 0.3;
-/// Weight of `Gᵀ G` beside `F`, by their traces: the inverse of the sum is that of `F` on the kernel of `G` to about its
-/// inverse.
+/// Weight of `Gᵀ G` beside `F`, by their traces: the inverse of the sum is that of `F` on the kernel of `G` to about
+/// its inverse.
 pub(crate) const EXPLICIT_WEIGHT: f64 = 1e4;
 /// Most solves with it until `G x = e`, and what may be left of that beside `x`.
 pub(crate) const BALANCES: usize = 12;
@@ -94,7 +94,8 @@ pub(crate) const SECANT: f64 = 1e-3;
 pub(crate) const LEFT_OF_ROW: f64 = 1e-11;
 /// Added to the diagonal of a matrix until it can be factored, relative to its largest entry.
 pub(crate) const SHIFTS: [f64; 4] = [1e-13, 1e-9, 1e-6, 1e-4];
-/// Rows up to which a group has few: a node in a corner of three rough obstacles has nine, and the gluing of its copies.
+/// Rows up to which a group has few: a node in a corner of three rough obstacles has nine, and the gluing of its
+/// copies.
 pub(crate) const DEPENDENT_FEW: usize = 30;
 /// The same in a group of many rows, where contact points share nodes: on few is there a null space, and what is added
 /// makes long waves along a thin body stiff.
@@ -114,16 +115,17 @@ pub(crate) const HELD_ROWS: f64 = 1e8;
 
 /// Share of the nodes of a subdomain that supports hold in one or two directions, from which on it is thin between
 /// planes; the nodes that it has at least, for random bodies of fewer gain and lose alike; and stiffness of its springs
-/// there over that of the node. Slices of cylinders on blocks, of one to ten layers of cells, take a half to an eighth of
-/// the products; with 0.25 a slice held on one side takes thrice as many, with springs of 10 a third more, of 0.1 the same.
+/// there over that of the node. Slices of cylinders on blocks, of one to ten layers of cells, take a half to an eighth
+/// of the products; with 0.25 a slice held on one side takes thrice as many, with springs of 10 a third more, of 0.1
+/// the same.
 pub(crate) const THIN: f64 = 0.2;
 pub(crate) const THIN_NODES: usize = 30;
 pub(crate) const PLANE_SPRINGS: f64 = 1.0;
 /// Shear modulus over that of softer subdomains from which on conjugate gradients suit those first: of an error there
 /// is a thirtieth of the energy.
 pub(crate) const STIFFER: f64 = 30.0;
-/// Steps of Lanczos' method for the largest eigenvalue that a lumped block leaves: it is 1 % short at most on boxes of 4
-/// to 12 cells.
+/// Steps of Lanczos' method for the largest eigenvalue that a lumped block leaves: it is 1 % short at most on boxes of
+/// 4 to 12 cells.
 pub(crate) const LANCZOS: usize = 8;
 
 // ---- what is worth a table, a cut or a thread; seconds are those of one core ----
@@ -146,8 +148,8 @@ pub(crate) const EXPLICIT_CONTACT: usize = 4000;
 pub(crate) const INTERIOR_FACTORS: f64 = 100.0;
 pub(crate) const EXPLICIT_SETS: f64 = 20.0;
 /// Time of an operation of a product with `F` over that of a dense factor, and operations of such a factor in the time
-/// that a solve takes for a row beside that product: 3 to 4 ms a product of 5700 to 8300 rows, where dense factors run at
-/// 3.4e10 a second.
+/// that a solve takes for a row beside that product: 3 to 4 ms a product of 5700 to 8300 rows, where dense factors run
+/// at 3.4e10 a second.
 pub(crate) const STREAMED: f64 = 8.0;
 pub(crate) const ROW_OPERATIONS: f64 = 20_000.0;
 /// Columns solved at once when a dense block is formed, at least six.
@@ -163,8 +165,8 @@ pub(crate) const OPERATIONS: f64 = 3e5;
 pub(crate) const LARGE_FRONT: f64 = 1e8;
 pub(crate) const LARGE_UPDATE: usize = 1_000_000;
 pub(crate) const PART: usize = 192;
-/// Most parts of a loop over subdomains: bounds work memory and useful threads. Blocks, motions of subdomains and entries of a
-/// part.
+/// Most parts of a loop over subdomains: bounds work memory and useful threads. Blocks, motions of subdomains and
+/// entries of a part.
 pub(crate) const PARTS: usize = 64;
 pub(crate) const BLOCKS: usize = 2048;
 pub(crate) const MOTIONS: usize = 512;
@@ -196,8 +198,8 @@ pub(crate) const RELAXED: f64 = 0.9;
 pub(crate) const SUBDOMAINS: usize = 16;
 /// Most branches of a coarse factor on a rank.
 pub(crate) const BRANCHES: usize = 4;
-/// Equal regions of a coarse factor from which on they are solved together: fewer take as long one by one, and of several
-/// processes, each with some of them, less.
+/// Equal regions of a coarse factor from which on they are solved together: fewer take as long one by one, and of
+/// several processes, each with some of them, less.
 pub(crate) const ALIKE_REGIONS: usize = 5;
 /// Cuts of a grid of blocks stand in every fourth layer, so that the pieces between them are equal.
 pub(crate) const PERIOD: u32 = 4;

@@ -1,4 +1,5 @@
-//! A beam of cells of all kinds under a pressure: what elements are worth in CalculiX, and what this library makes of them.
+//! A beam of cells of all kinds under a pressure: what elements are worth in CalculiX, and what this library makes of
+//! them.
 
 #[path = "../../../crates/fem-mesh/tests/it/grid.rs"]
 mod grid;

@@ -70,7 +70,8 @@ pub struct Law {
     /// Pressure over penetration, and friction stress over slip below the limit, in Young's moduli a metre; `None` is
     /// exact.
     pub slopes: [Option<f64>; 2],
-    /// Who runs it: this library (soft contact with linear elements only), CalculiX with linear, with quadratic elements.
+    /// Who runs it: this library (soft contact with linear elements only), CalculiX with linear, with quadratic
+    /// elements.
     runs: [bool; 3],
 }
 

@@ -1,9 +1,9 @@
 //! The patch test on a curved interface: a tube in a tube of the same material under pressure from everywhere.
 //!
-//! The stress is `-p I`, so that a traction `p` acts on any surface, and without friction the pressure of contact is `p`
-//! at every point. On a flat interface it is so to rounding. Here facets of length `h` on a radius `r` are apart by up to
-//! `h^2 / (8 r)` where they do not match, and turned against each other by up to `h / r`. Where they match forces are
-//! exact, and their sum over the area of a node misses `p` by `1 - cos(h / 2r)`, about `h^2 / (8 r^2)`.
+//! The stress is `-p I`, so that a traction `p` acts on any surface, and without friction the pressure of contact is
+//! `p` at every point. On a flat interface it is so to rounding. Here facets of length `h` on a radius `r` are apart by
+//! up to `h^2 / (8 r)` where they do not match, and turned against each other by up to `h / r`. Where they match forces
+//! are exact, and their sum over the area of a node misses `p` by `1 - cos(h / 2r)`, about `h^2 / (8 r^2)`.
 
 use super::press_fit::quarter;
 use super::{Failure, Finding, RunFacts, second, solve};

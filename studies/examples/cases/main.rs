@@ -33,7 +33,8 @@ use signorini_studies::{Failure, aligned, exit, save};
     about = "Published problems with known answers, on meshes that do not match"
 )]
 pub struct CasesOptions {
-    /// Only these: blocks, curved, plate, press-fit, wedge, dovetail, orthotropic, crack, punch, spheres, mindlin, rigid-sphere.
+    /// Only these: blocks, curved, plate, press-fit, wedge, dovetail, orthotropic, crack, punch, spheres, mindlin,
+    /// rigid-sphere.
     #[arg(long, value_delimiter = ',')]
     pub case: Vec<String>,
     /// Coarse meshes: seconds in place of minutes, and larger errors.

@@ -22,7 +22,8 @@ fn sliver(quality: f64) -> Result<Setup, Failure> {
     block.setup_on(mesh, materials)
 }
 
-/// A plate of 50 times its thickness, clamped along one edge, that a load presses on the floor below, and one drags along.
+/// A plate of 50 times its thickness, clamped along one edge, that a load presses on the floor below, and one drags
+/// along.
 fn plate() -> Result<Setup, Failure> {
     let mesh = Brick::new([1.0, 1.0, 0.02], [32, 32, 1]).build()?;
     let loads = vec![

@@ -124,7 +124,8 @@ fn a_scene_without_contact_takes_no_more_than_its_tolerance_asks() {
     }
 }
 
-/// Everything at once, from nothing: a linear problem takes 12 products at most. A set on the way to the contact takes one.
+/// Everything at once, from nothing: a linear problem takes 12 products at most. A set on the way to the contact takes
+/// one.
 #[test]
 fn a_static_step_costs_hardly_more_than_a_linear_problem_twice() {
     for n in 1..=5 {
@@ -160,8 +161,8 @@ fn a_static_step_does_not_grow_with_the_mesh() {
     assert!(m.products <= 29 && m.fallbacks == 0, "{}", m.products);
 }
 
-/// A sheet 300 times as long as thick lies on the floor. It bends so easily that on the first sets the error is hundreds
-/// of times the forces; sets predicted from it led far away (3,925 and 7,077 products).
+/// A sheet 300 times as long as thick lies on the floor. It bends so easily that on the first sets the error is
+/// hundreds of times the forces; sets predicted from it led far away (3,925 and 7,077 products).
 #[test]
 fn a_sheet_that_bends_easily_is_solved_before_it_tells_the_next_set() {
     for (friction, most) in [(Friction::None, 2000), (Friction::coulomb(0.3), 4200)] {

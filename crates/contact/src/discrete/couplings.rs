@@ -273,8 +273,8 @@ impl Couplings {
     }
 
     /// Refuses ties whose sides supports hold both where their relative motion is not held at zero: no row would say
-    /// what it is there. Likewise where both sides rub on obstacles from the start: how they share the normal force is not
-    /// determined, nor then their friction. The points are those of the first constraints.
+    /// what it is there. Likewise where both sides rub on obstacles from the start: how they share the normal force is
+    /// not determined, nor then their friction. The points are those of the first constraints.
     pub(super) fn check_ties(
         &self,
         scene: &Scene,
@@ -370,8 +370,8 @@ fn axes(coupling: &Coupling) -> Option<[Vec3; 3]> {
     Some([normal, t1, t2])
 }
 
-/// Whether what is held of a coupling, whose nodes are so far from one another, holds a node, too, where a support does,
-/// and neither moves it there.
+/// Whether what is held of a coupling, whose nodes are so far from one another, holds a node, too, where a support
+/// does, and neither moves it there.
 fn says_the_same(
     scene: &Scene,
     coupling: (&Coupling, &[Vec3; 3]),

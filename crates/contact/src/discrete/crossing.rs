@@ -1,7 +1,7 @@
 //! Contacts that cross: nodes of a contact between bodies that another contact has, too.
 //!
-//! With conditions of both, rows along a surface nearly depend on one another where meshes do not match, and active sets
-//! run in circles. Flush sides hand theirs on to the neighbours (`mortar`).
+//! With conditions of both, rows along a surface nearly depend on one another where meshes do not match, and active
+//! sets run in circles. Flush sides hand theirs on to the neighbours (`mortar`).
 
 use crate::mortar::MortarNode;
 use crate::scene::{Contact, Gap, Scene};

@@ -51,8 +51,8 @@ impl Extents {
         }
     }
 
-    /// The length of the longest subdomain with one of some nodes over its thickness: the longest side of the box around
-    /// it, and its hydraulic diameter, four times volume over surface.
+    /// The length of the longest subdomain with one of some nodes over its thickness: the longest side of the box
+    /// around it, and its hydraulic diameter, four times volume over surface.
     pub(crate) fn slenderness(mesh: &TetMesh, decomposition: &Decomposition, nodes: impl Iterator<Item = u32>) -> f64 {
         let sizes = volumes_and_surfaces(mesh, decomposition.parts());
         let copies = nodes.flat_map(|node| decomposition.copies(node as usize));

@@ -1,9 +1,9 @@
 //! Overlaps of bodies that touch each other or an obstacle, which are there because straight facets stand for a curve.
 //!
-//! Nodes are on the curve, facets of a hollow side before it, those of a convex side behind it, and with them mid-nodes on
-//! straight edges; an obstacle has no facets. What they make of gaps is known in the mean over a facet: a third of the sum of
-//! the arcs over its edges, for any curve of second degree. Taken from the measured gaps, in the mean over all contact of
-//! two bodies, it tells whether they touch or are pressed together.
+//! Nodes are on the curve, facets of a hollow side before it, those of a convex side behind it, and with them mid-nodes
+//! on straight edges; an obstacle has no facets. What they make of gaps is known in the mean over a facet: a third of
+//! the sum of the arcs over its edges, for any curve of second degree. Taken from the measured gaps, in the mean over
+//! all contact of two bodies, it tells whether they touch or are pressed together.
 
 use super::creases::area_vector;
 use super::means::edges;

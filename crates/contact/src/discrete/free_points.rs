@@ -26,8 +26,8 @@ pub(super) fn check_point(scene: &Scene, index: usize) -> Result<(), ContactErro
     }
 }
 
-/// How much nodes move per displacement of each point, by the equation in which it counts most, a power of two; of points
-/// that equations join to other points only, by these.
+/// How much nodes move per displacement of each point, by the equation in which it counts most, a power of two; of
+/// points that equations join to other points only, by these.
 pub(super) fn sizes(scene: &Scene) -> Vec<f64> {
     let length = |sum: f64, vector: Vec3| vector.into_iter().fold(sum, f64::hypot);
     let count = scene.couplings.len();

@@ -129,8 +129,8 @@ pub(super) struct MatchingMid {
     pub(super) ends: [u32; 2],
 }
 
-/// The gap of a side along a normal, m: the mean over its nodes, at which `measured` says what coordinates do. Beyond the
-/// end of an obstacle that of its centre, where nothing is met.
+/// The gap of a side along a normal, m: the mean over its nodes, at which `measured` says what coordinates do. Beyond
+/// the end of an obstacle that of its centre, where nothing is met.
 pub(super) fn mean_gap(
     mesh: &TetMesh,
     (index, contact): (usize, &Contact),
@@ -147,7 +147,8 @@ pub(super) fn mean_gap(
     })
 }
 
-/// The mean over the nodes of a side of what is at each; where a gap that is given jumps between them, what is at the centre.
+/// The mean over the nodes of a side of what is at each; where a gap that is given jumps between them, what is at the
+/// centre.
 pub(super) fn mean(
     mesh: &TetMesh,
     contact: &Contact,

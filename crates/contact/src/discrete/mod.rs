@@ -4,8 +4,8 @@
 //! `creases`, `normals`; the scene says the gap) or a node of another body (`partners`, with the gap); in a mesh of
 //! order 2 it is a mean around the node (`means`); bodies that overlap only because their facets are straight touch
 //! (`faceted`), and where contacts cross one of them may hand its conditions on (`crossing`). Scenes that make no sense
-//! are refused here, before any stiffness is assembled (`scene`, `overflow`, `penetration`, `turn`). `side` has the nodes
-//! and weights of a contact point.
+//! are refused here, before any stiffness is assembled (`scene`, `overflow`, `penetration`, `turn`). `side` has the
+//! nodes and weights of a contact point.
 //!
 //! Rigid couplings are subdomains of their own (`couplings`); `equations` may have some that are points.
 //!

@@ -120,8 +120,9 @@ fn check_along(
     Ok(())
 }
 
-/// The frame at each node of a contact with the normals of its obstacle, none where the body does not face it or the side
-/// of the obstacle that it faces has ended, in all `poses`; empty for all others. `place` is where the force of a node acts.
+/// The frame at each node of a contact with the normals of its obstacle, none where the body does not face it or the
+/// side of the obstacle that it faces has ended, in all `poses`; empty for all others. `place` is where the force of a
+/// node acts.
 pub(super) fn shape_frames(
     (index, contact): (usize, &Contact),
     surface: &Surface,

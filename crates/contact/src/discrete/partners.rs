@@ -60,12 +60,13 @@ impl Paired {
         matches!(self.partners, Partners::Mortar(_))
     }
 
-    /// Finds the sides of a contact. Where meshes match the first side has the points, else the coarser one, of sides with
-    /// facets of one size that with fewer points: rows are farther from depending on one another, and pressures smoother.
-    /// But a curved side that hardly changes its volume has them, in meshes of order 2: between points of larger facets
-    /// it gives way, and loses its pressure. Linear tetrahedra are too stiff to. And a flat one that reaches beyond has none
-    /// if it is much coarser, as its points beyond would hold the other side from tipping over its edge, or if its body is
-    /// much harder (linear meshes): a rim of the softer one would be all that several of them press.
+    /// Finds the sides of a contact. Where meshes match the first side has the points, else the coarser one, of sides
+    /// with facets of one size that with fewer points: rows are farther from depending on one another, and pressures
+    /// smoother. But a curved side that hardly changes its volume has them, in meshes of order 2: between points of
+    /// larger facets it gives way, and loses its pressure. Linear tetrahedra are too stiff to. And a flat one that
+    /// reaches beyond has none if it is much coarser, as its points beyond would hold the other side from tipping over
+    /// its edge, or if its body is much harder (linear meshes): a rim of the softer one would be all that several of
+    /// them press.
     pub(super) fn new(
         mesh: &TetMesh,
         materials: &Materials,
@@ -220,8 +221,8 @@ fn nodes(
         .and_then(|found| match_facets(mesh, surface, found, &other.surface)))
 }
 
-/// Refuses bodies that lie in each other deeper than the facets of a node and its partner, unless the gap is given: tied
-/// sides may be apart, not one within the other. `size` is the root of the area of the node, m.
+/// Refuses bodies that lie in each other deeper than the facets of a node and its partner, unless the gap is given:
+/// tied sides may be apart, not one within the other. `size` is the root of the area of the node, m.
 pub(super) fn check_overlap(
     index: usize,
     contact: &Contact,
@@ -253,8 +254,8 @@ fn differ_in_place(mesh: &TetMesh, surface: &Surface, found: &[Partner], roundin
 }
 
 /// The partners, if those of each facet are a facet of the other side. Other diagonals, or a node within, give nodes
-/// other areas: forces at nodes would be right in sum only. Of several nodes in one place, where cuts cross, the partner
-/// is that of the facets.
+/// other areas: forces at nodes would be right in sum only. Of several nodes in one place, where cuts cross, the
+/// partner is that of the facets.
 fn match_facets(mesh: &TetMesh, surface: &Surface, mut found: Vec<Partner>, other: &Surface) -> Option<Vec<Partner>> {
     let mut first_in: HashMap<[u64; 3], u32> = HashMap::new();
     let mut first = |node: u32| {

@@ -63,8 +63,8 @@ pub(super) fn check_penetration(
     Ok(())
 }
 
-/// How deep a point is because an earlier step left it there, m, as far as solvers do; `None` where that step is not solved
-/// yet.
+/// How deep a point is because an earlier step left it there, m, as far as solvers do; `None` where that step is not
+/// solved yet.
 fn slack(
     scene: &Scene,
     points: &[ContactPoint],

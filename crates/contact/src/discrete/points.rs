@@ -96,8 +96,8 @@ pub(crate) fn of_contact(conditions: &[ContactPoint], contact: usize) -> Range<u
     first..end
 }
 
-/// What the contacts of a scene say, with the poses of their obstacles: each of their nodes with each of its normals. Contact
-/// by contact, nodes ascending.
+/// What the contacts of a scene say, with the poses of their obstacles: each of their nodes with each of its normals.
+/// Contact by contact, nodes ascending.
 pub(super) fn conditions(
     scene: &Scene,
     (paired, poses): (&[Paired], &[Vec<Pose>]),
@@ -304,8 +304,8 @@ fn mortar_gap(
     Ok(gap)
 }
 
-/// The contact points: of the conditions of a node those with one normal are one, in the place of the first. Beside them
-/// for each condition the point that stands for it.
+/// The contact points: of the conditions of a node those with one normal are one, in the place of the first. Beside
+/// them for each condition the point that stands for it.
 pub(super) fn points(
     scene: &Scene,
     conditions: &[ContactPoint],

@@ -127,8 +127,8 @@ pub(crate) fn turned(scene: &Scene, point: &ContactPoint, pose: &Pose, place: &[
     now.map_or(0.0, |now| angle(now.gradient, normal.map(|c| -c)))
 }
 
-/// The same of a node of a contact that does not face the obstacle, with the normal of the body: by how much that of the
-/// obstacle has turned where it does; zero elsewhere.
+/// The same of a node of a contact that does not face the obstacle, with the normal of the body: by how much that of
+/// the obstacle has turned where it does; zero elsewhere.
 pub(crate) fn turned_to(
     scene: &Scene,
     (contact, node, normal): (usize, u32, [f64; 3]),

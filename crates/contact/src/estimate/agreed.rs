@@ -3,8 +3,8 @@
 //!
 //! Both sides of a tie may touch, and stick; so may a node in an edge between two contacts. The solver lets ties,
 //! supports and gaps err by its tolerance, and so would the positions at which friction sticks: in the next step no
-//! displacement would be in all of them, and friction would work against the rest. So what they are off is taken out: of
-//! ties by the smallest change in a norm weighted by stiffness, of rows that depend on one another by that of the
+//! displacement would be in all of them, and friction would work against the rest. So what they are off is taken out:
+//! of ties by the smallest change in a norm weighted by stiffness, of rows that depend on one another by that of the
 //! positions themselves.
 
 use super::dependent::Agreement;

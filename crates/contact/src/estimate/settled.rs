@@ -1,9 +1,9 @@
 //! The best places of points that share too few nodes, as beside couplings: a contact problem of its own.
 //!
-//! Of all displacements that do not penetrate, that with the smallest gap, with the diagonal of the stiffness in the place
-//! of the stiffness: `1/2 |v - v0|²` and what the forces `lambda` of the points leave where they are open or slip. It is
-//! `v0 + C P^T (y - lambda)` with the contact forces `y`, within the slip bounds of the step, of a problem with the matrix
-//! `P C P^T`. Where the step is solved it is `v0`.
+//! Of all displacements that do not penetrate, that with the smallest gap, with the diagonal of the stiffness in the
+//! place of the stiffness: `1/2 |v - v0|²` and what the forces `lambda` of the points leave where they are open or
+//! slip. It is `v0 + C P^T (y - lambda)` with the contact forces `y`, within the slip bounds of the step, of a problem
+//! with the matrix `P C P^T`. Where the step is solved it is `v0`.
 
 use super::shared::{SharedNodes, Target};
 use crate::tolerances::{SETTLE_STOP, SHARED_MOVES};
@@ -14,8 +14,9 @@ use signorini_qp::{
 };
 
 impl SharedNodes {
-    /// Moves the displacement `v` there. `forces` of the points, along the normal and along the surface, with slip bounds,
-    /// N; `touching` is what their rows measure where they touch and stick, m. Comes back with what to hold there.
+    /// Moves the displacement `v` there. `forces` of the points, along the normal and along the surface, with slip
+    /// bounds, N; `touching` is what their rows measure where they touch and stick, m. Comes back with what to hold
+    /// there.
     pub(crate) fn settle(
         &self,
         forces: Vec<([f64; 3], f64)>,

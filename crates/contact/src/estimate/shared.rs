@@ -34,8 +34,8 @@ pub(crate) enum Target {
 #[derive(Debug)]
 pub(crate) struct SharedNodes {
     /// Coefficients of each row on the displacement of the nodes, in metres: the normal row of each point and those
-    /// along the surface, point by point, then fixed rows. Displacements of couplings that are points stand behind those of
-    /// nodes, along the axes of the coupling.
+    /// along the surface, point by point, then fixed rows. Displacements of couplings that are points stand behind
+    /// those of nodes, along the axes of the coupling.
     pub(super) rows: Vec<Row>,
     /// The numbers of the rows of ties and equations, and of supports along which rows of points move their nodes.
     pub(super) fixed: Vec<usize>,

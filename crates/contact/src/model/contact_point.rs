@@ -35,7 +35,8 @@ impl ConstrainedPoint {
     /// Mesh nodes with weights: the displacement relative to the obstacle or the partner is their weighted sum, and a
     /// force on the point acts on each of them with its weight. Those of the partner are last, with negative weights
     /// (but for dual shape functions, of either sign) that sum to minus one. Where the sides touch and their places are
-    /// apart, as facets of curved sides are, [`forces`](Self::forces) add a couple on the partner, and its rotation counts.
+    /// apart, as facets of curved sides are, [`forces`](Self::forces) add a couple on the partner, and its rotation
+    /// counts.
     pub fn nodes(&self) -> impl Iterator<Item = (u32, f64)> {
         self.contact.sides.nodes()
     }

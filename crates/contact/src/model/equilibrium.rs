@@ -40,8 +40,8 @@ pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
     worst.map_or(Ok(()), |escape| Err(escape.error))
 }
 
-/// The body that slides away where multipliers are not in balance with the right side `e` of a step; `None` if they are,
-/// or if supports hold all bodies.
+/// The body that slides away where multipliers are not in balance with the right side `e` of a step; `None` if they
+/// are, or if supports hold all bodies.
 pub(crate) fn slides(model: &Model, e: &[f64], lambda: &[f64]) -> Result<Option<Slide>, ContactError> {
     let coarse = model.tfeti.coarse();
     let mut missing = vec![0.0; e.len()];
@@ -57,9 +57,9 @@ pub(crate) fn slides(model: &Model, e: &[f64], lambda: &[f64]) -> Result<Option<
     Ok((length > 0.0).then_some(Slide { force: length, ..slide }))
 }
 
-/// Whether friction within the slip bounds of the points, in units of force of their bodies, could balance the loads `e` with
-/// the normal forces among multipliers and any that come to them, or pressure most of what is missing. Where it could, it
-/// is other forces that are not found yet.
+/// Whether friction within the slip bounds of the points, in units of force of their bodies, could balance the loads
+/// `e` with the normal forces among multipliers and any that come to them, or pressure most of what is missing. Where
+/// it could, it is other forces that are not found yet.
 pub(crate) fn friction_could_hold(
     model: &Model,
     e: &[f64],

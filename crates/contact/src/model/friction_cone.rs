@@ -171,7 +171,7 @@ impl WrenchCone {
     pub(crate) fn exceeded(&mut self, b: &[f64]) -> Option<Separation> {
         let size = norm(b);
         // what friction of any size cannot hold: friction much larger than the loads would take many steps to tell
-        if let Some(motion) = self.separated(&scaled(b, size), true) {
+        if let Found::Apart(motion) = self.closest(&scaled(b, size), true) {
             return Some(Separation { motion, tresca: 0.0 });
         }
         // loads mostly follow one another
@@ -212,17 +212,13 @@ impl WrenchCone {
     /// A unit vector on which `b` (of length 1) works and against which no force of the cone can; `None` if `b` lies
     /// in the cone, or if that remains open.
     pub(crate) fn separates(&self, b: &[f64]) -> Option<Vec<f64>> {
-        self.separated(b, false)
-    }
-
-    /// The same; with `unbounded`, Tresca friction may be as large as it likes.
-    fn separated(&self, b: &[f64], unbounded: bool) -> Option<Vec<f64>> {
-        match self.closest(b, unbounded) {
+        match self.closest(b, false) {
             Found::Apart(motion) => Some(motion),
             Found::Inside | Found::Open => None,
         }
     }
 
+    /// Where `b` is; with `unbounded`, Tresca friction may be as large as it likes.
     fn closest(&self, b: &[f64], unbounded: bool) -> Found {
         let mut used: Vec<Vec<f64>> = Vec::new();
         let mut factors: Vec<f64> = Vec::new();

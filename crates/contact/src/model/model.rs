@@ -44,8 +44,6 @@ pub(crate) struct Model {
     pub(crate) set: ProductSet,
     /// Stiffness of the rows of supports, ties, equations and couplings that move.
     moved_stiffness: OnceLock<Vec<f64>>,
-    /// Stiffness of the copies of each node, made with the first certificate.
-    copies: OnceLock<CopyStiffness>,
     /// Rows that depend on one another.
     dependencies: OnceLock<Vec<Dependency>>,
     /// Rigid motions that supports leave to the bodies.
@@ -54,8 +52,8 @@ pub(crate) struct Model {
 
 impl Model {
     /// What prescribed displacements in `offset` (row units), and eigenstrains with these `factors` of the loads, would
-    /// do to their nodes with all others held: for each body the norm of these forces, N. Empty if no support, no tie and
-    /// no coupling moves, and where there is no eigenstrain.
+    /// do to their nodes with all others held: for each body the norm of these forces, N. Empty if no support, no tie
+    /// and no coupling moves, and where there is no eigenstrain.
     pub(crate) fn prescribed_force(&self, offset: &[f64], factors: &[f64]) -> Vec<f64> {
         let ranges = self.tfeti.gluing().ranges();
         let supports = (!self.discrete.supports.motions.is_empty()).then(|| ranges.dirichlet.clone());
@@ -96,8 +94,8 @@ impl Model {
         out
     }
 
-    /// What the motions that rows of couplings hold do to the nodes, over the values of the rows, N/m: these reach three
-    /// places of a subdomain without stiffness.
+    /// What the motions that rows of couplings hold do to the nodes, over the values of the rows, N/m: these reach
+    /// three places of a subdomain without stiffness.
     fn coupling_stiffness(&self, out: &mut [f64]) {
         let (gluing, couplings) = (self.tfeti.gluing(), &self.discrete.couplings);
         let subdomains = self.discrete.decomposition.subdomains();
@@ -161,7 +159,7 @@ impl Model {
     /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales
     /// certificates.
     pub(crate) fn copies(&self) -> &CopyStiffness {
-        self.copies.get_or_init(|| self.tfeti.all_copy_stiffness())
+        self.tfeti.all_copy_stiffness()
     }
 
     /// The rigid motions that supports leave to the bodies.
@@ -255,7 +253,6 @@ impl Model {
             points,
             set,
             moved_stiffness: OnceLock::new(),
-            copies: OnceLock::new(),
             dependencies: OnceLock::new(),
             loose_motions: OnceLock::new(),
         })

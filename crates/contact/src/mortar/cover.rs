@@ -3,8 +3,9 @@
 //!
 //! With `P` the L2 projection on linear functions on the covered part `C` of a facet with corners `x_j`, a multiplier
 //! takes of a function `f` the integral `int_C psi_j f = d_j (P f)(x_j)`, `d_j = int_C l_j` (docs/theory.md, section 5;
-//! A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34, 2012). On quadratic facets it is half the sum
-//! of that and of the shape function of the corner; edges that are bent in the plane, as at the rim of a disc, count.
+//! A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34, 2012). On quadratic facets it is half the
+//! sum of that and of the shape function of the corner; edges that are bent in the plane, as at the rim of a disc,
+//! count.
 
 use crate::tolerances::{BENT_STEPS, COVERED, NO_EXTENT};
 use signorini_fem_mesh::internal::{facet_shape, triangle};
@@ -46,8 +47,8 @@ impl Laid {
     }
 }
 
-/// The way from a triangle that is not in the plane of the facet to the facet, and what a displacement changes on it: as in
-/// the tetrahedron behind the triangle, linearly.
+/// The way from a triangle that is not in the plane of the facet to the facet, and what a displacement changes on it:
+/// as in the tetrahedron behind the triangle, linearly.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Way {
     /// The other nodes of the tetrahedron: the one opposite, in a mesh of order 2 the mid-nodes of its edges, too.
@@ -119,8 +120,8 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// The part of a triangle inside a facet (corners counter-clockwise); `None` if they do not overlap. `heights` are the
-    /// distances of its corners, m.
+    /// The part of a triangle inside a facet (corners counter-clockwise); `None` if they do not overlap. `heights` are
+    /// the distances of its corners, m.
     pub(super) fn new(facet: &[Point; 3], laid: Laid, heights: [f64; 3]) -> Option<Self> {
         let mut polygon = laid.corners.to_vec();
         let whole = area(facet);
@@ -154,8 +155,8 @@ impl Piece {
         [0, 1].map(|c| self.polygon.iter().map(|p| p[c]).sum::<f64>() / count)
     }
 
-    /// Calls `f` at the points of a rule for triangles, or without one of that of the middles of edges, which is exact for
-    /// squares, with their weights, m².
+    /// Calls `f` at the points of a rule for triangles, or without one of that of the middles of edges, which is exact
+    /// for squares, with their weights, m².
     fn integrate(&self, rule: Option<&[([f64; 3], f64)]>, mut f: impl FnMut(Point, f64)) {
         let first = self.polygon[0];
         for pair in self.polygon[1..].windows(2) {

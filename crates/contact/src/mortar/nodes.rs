@@ -26,8 +26,8 @@ pub(crate) struct MortarNode {
     pub(crate) nearest: f64,
     /// Integral of the dual shape function of the node over what is covered: `D_jj`, m².
     pub(crate) area: f64,
-    /// Normal of the covered facets, out of the first side, and tangents: of curved ones the mean that displacements of its
-    /// side have.
+    /// Normal of the covered facets, out of the first side, and tangents: of curved ones the mean that displacements of
+    /// its side have.
     pub(crate) frame: SurfaceFrame,
     /// Whether it has no condition, because another contact has one, and other nodes have its shape function.
     pub(crate) is_handed_on: bool,
@@ -45,10 +45,10 @@ impl MortarNode {
     }
 }
 
-/// Of the nodes of a surface that other contacts `cross` those without a condition of this one, as at crosspoints of mortar
-/// methods: with conditions of both, rows along a surface nearly depend on one another, and active sets run in circles.
-/// The corners that have their shape functions instead must have facets of their own, else forces in a narrow strip
-/// would have no moment.
+/// Of the nodes of a surface that other contacts `cross` those without a condition of this one, as at crosspoints of
+/// mortar methods: with conditions of both, rows along a surface nearly depend on one another, and active sets run in
+/// circles. The corners that have their shape functions instead must have facets of their own, else forces in a narrow
+/// strip would have no moment.
 fn handed_on(surface: &Surface, other: &Surface, crossing: &HashSet<u32>) -> HashSet<u32> {
     let nodes = |triangle: &[u32; 3]| triangle.map(|local| surface.nodes()[local as usize]);
     let mut out: HashSet<u32> = surface
@@ -72,8 +72,8 @@ fn handed_on(surface: &Surface, other: &Surface, crossing: &HashSet<u32>) -> Has
     out
 }
 
-/// For each node of a surface what it sees of the other one; `None` where that is nothing, and at nodes on both sides, as
-/// the tip of a crack: their shape functions are shared out to the other corners of each facet. So are, as far as
+/// For each node of a surface what it sees of the other one; `None` where that is nothing, and at nodes on both sides,
+/// as the tip of a crack: their shape functions are shared out to the other corners of each facet. So are, as far as
 /// [they may be](handed_on), those of the nodes that `crossing` tells from what all see.
 ///
 /// Where sides that are `tied` are apart, as facets of curved sides are, displacements of the other side go on to the

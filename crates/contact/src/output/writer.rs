@@ -19,8 +19,8 @@ use std::path::PathBuf;
 /// begin at time 0, undeformed. All files are complete at any moment. If writing fails, the run ends with the error
 /// after the step; existing files stay. The first two lines of the table begin with `#`; columns are `contact_0_fx` to
 /// `contact_0_mz` for each contact surface, support and coupling (force on the body and its moment about the origin;
-/// [`Reactions::contacts`](crate::result::Reactions::contacts)), `coupling_0_ux` to `coupling_0_rz` for motions of couplings,
-/// then `node_7_ux` for probes.
+/// [`Reactions::contacts`](crate::result::Reactions::contacts)), `coupling_0_ux` to `coupling_0_rz` for motions of
+/// couplings, then `node_7_ux` for probes.
 ///
 /// A resumed run continues its files: files and rows of steps before its first one are kept, later ones are replaced.
 #[derive(Debug)]

@@ -2,9 +2,9 @@
 //!
 //! What decides are edges, rims and bending, and all of them scale with the thickness of a body. So the error is taken
 //! as a constant of the order times a power of the cells over the thickness, `2 V / S` with the volume and the surface:
-//! within a factor of two and a half on the studies' parts, where equal numbers of tetrahedra leave 16 % and 48 %. Of 132
-//! random assemblies 104 were within a factor of 3, 128 of 5: small spots of contact on balls and rollers leave more, thin
-//! quadratic leaves and bolted plates less.
+//! within a factor of two and a half on the studies' parts, where equal numbers of tetrahedra leave 16 % and 48 %. Of
+//! 132 random assemblies 104 were within a factor of 3, 128 of 5: small spots of contact on balls and rollers leave
+//! more, thin quadratic leaves and bolted plates less.
 
 use crate::discrete::DiscreteScene;
 use crate::report::Warning;

@@ -29,8 +29,8 @@ pub(super) fn between_steps(scene: &Scene) -> Option<Warning> {
     })
 }
 
-/// The first load, motion of a support, an obstacle or a coupling, or value of an equation whose history is zero at the end of each step but
-/// not at all times.
+/// The first load, motion of a support, an obstacle or a coupling, or value of an equation whose history is zero at the
+/// end of each step but not at all times.
 pub(super) fn zero_at_steps(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
     let loads = scene.loads.iter().zip(&discrete.loads).enumerate();
     let loads = loads.filter(|(_, (_, forces))| forces.iter().flatten().any(|f| *f != 0.0));

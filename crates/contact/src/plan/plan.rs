@@ -132,7 +132,8 @@ impl Plan {
         &self.warnings
     }
 
-    /// All rows that are solved for: n_d of full rank, but for nodes with several normals or that supports hold in part.
+    /// All rows that are solved for: n_d of full rank, but for nodes with several normals or that supports hold in
+    /// part.
     pub fn dual(&self) -> usize {
         self.normal_rows
             + self.tangential_rows

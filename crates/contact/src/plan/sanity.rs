@@ -111,7 +111,8 @@ fn large_gap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
     })
 }
 
-/// Overlaps about as deep as facets are beside the curve that they stand for: those that are closed, and those that press.
+/// Overlaps about as deep as facets are beside the curve that they stand for: those that are closed, and those that
+/// press.
 fn faceted_overlaps(discrete: &DiscreteScene) -> [Option<Warning>; 2] {
     let FacetedOverlaps { pressing, closed } = &discrete.faceted;
     let closed = closed.map(|(deepest, [points, contacts])| Warning::ClosedOverlaps {

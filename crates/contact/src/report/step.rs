@@ -24,8 +24,8 @@ pub struct StepReport {
     pub fallback: bool,
     /// Products with F that SMALSE took for that, included in the counters.
     pub fallback_products: usize,
-    /// Which body slides away, if friction [does not hold](StepStatus::NotHeld) it; where no balance was found what may,
-    /// if nothing is violated more than equilibrium.
+    /// Which body slides away, if friction [does not hold](StepStatus::NotHeld) it; where no balance was found what
+    /// may, if nothing is violated more than equilibrium.
     pub slide: Option<Slide>,
     /// Estimates of the step's errors; only with an [`Accuracy`](crate::Accuracy) that needs them.
     pub accuracy: Option<AccuracyReport>,

@@ -16,11 +16,11 @@ signorini_fem_mesh::errors! {
     /// [plain](Self::plain) one.
     ///
     /// The thresholds are a tenth of the body for displacements, 0.05 for its rotation, 5 % for strains, an edge of a
-    /// facet for slips, 0.1 for the turn of normals, the body for gaps, a tenth of an overlap for the distance of facets
-    /// from their curve, 3 for coefficients, 0.45 for Poisson's ratios of linear tetrahedra and 10 % for the error of the
-    /// mesh. A body is as long as the longest side of the box around it; its rotation is that which fits the displacements
-    /// of its nodes best. Strain is measured per tetrahedron by the Frobenius norm; at clamped edges the strain of linear
-    /// theory grows without bound as the mesh is refined.
+    /// facet for slips, 0.1 for the turn of normals, the body for gaps, a tenth of an overlap for the distance of
+    /// facets from their curve, 3 for coefficients, 0.45 for Poisson's ratios of linear tetrahedra and 10 % for the
+    /// error of the mesh. A body is as long as the longest side of the box around it; its rotation is that which fits
+    /// the displacements of its nodes best. Strain is measured per tetrahedron by the Frobenius norm; at clamped edges
+    /// the strain of linear theory grows without bound as the mesh is refined.
     ///
     /// Fields: `step` from 0; `node`, `tet`, `contact` and `region` are numbers in mesh and scene; `place` and lengths
     /// in m (of a tetrahedron its centroid), `turn` in degrees, other figures relative. `extent` is the length of the
@@ -31,7 +31,7 @@ signorini_fem_mesh::errors! {
         LargeDisplacement { step: usize, node: u32, place: [f64; 3], displacement: f64, extent: f64 } =
             "step {step}: the displacement of node {node} at {} is {displacement:.3e}, the body is {extent:.3e} long; \
             displacements count as small here, so from a tenth of the body on shapes and forces are wrong, unless it only moves \
-            along what it touches: look at the units of loads, material and gaps, and at the supports", told(place);
+            along flat sides: look at the units of loads, material and gaps, and at the supports", told(place);
         LargeRotation { step: usize, node: u32, place: [f64; 3], turn: f64 } =
             "step {step}: the body of node {node} at {} turns by {turn:.1} degrees; rotations count as small here, so that \
             normals, places of contact and lengths are those of the start: support the body against it, or reduce the \

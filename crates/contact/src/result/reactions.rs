@@ -96,8 +96,8 @@ pub struct Reactions {
     pub supports: Vec<SupportReaction>,
     /// Reactions of the [elastic foundations](crate::Spring), in the order of the scene.
     pub springs: Vec<SupportReaction>,
-    /// Reactions of what holds the [couplings](crate::Coupling), in the order of the scene; zero of relative ones, whose
-    /// forces are those of their contacts.
+    /// Reactions of what holds the [couplings](crate::Coupling), in the order of the scene; zero of relative ones,
+    /// whose forces are those of their contacts.
     pub couplings: Vec<Resultant>,
     /// Forces of the [linear equations](crate::Equation), in the order of the scene, on nodes and points.
     pub equations: Vec<EquationForce>,

@@ -205,7 +205,8 @@ fn long_slip(model: &Model, lengths: &Lengths, recovered: &Recovered, step: usiz
     })
 }
 
-/// Looked at where contacts have handed conditions on: from a point that has them on, gaps are as displacements make them.
+/// Looked at where contacts have handed conditions on: from a point that has them on, gaps are as displacements make
+/// them.
 fn edge_overlap(model: &Model, recovered: &Recovered, u: &[f64], step: usize) -> Option<Warning> {
     let (scene, discrete) = (&model.scene, &model.discrete);
     if discrete.handed_on.is_empty() {

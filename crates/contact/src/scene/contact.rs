@@ -119,11 +119,11 @@ impl Contact {
     ///
     /// Where the meshes match, a node of the first side is a contact point, and its partner is the node of the other
     /// side on its normal, to within a fiftieth of the size of its facets, and a little more across a gap. Where they
-    /// do not, the side with the larger facets has the points, whichever is named first (in meshes of order 2 the curved
-    /// side of a Poisson's ratio above 0.45, if the other's is below), and the partner of each is a weighted mean of
-    /// nodes (mortar method with dual multipliers): uniform pressure is transferred exactly, for any ratio of mesh sizes
-    /// and for sides that overlap only in part. Nodes with nothing opposite have no point. Put flat sides that meet at an
-    /// edge into separate contacts.
+    /// do not, the side with the larger facets has the points, whichever is named first (in meshes of order 2 the
+    /// curved side of a Poisson's ratio above 0.45, if the other's is below), and the partner of each is a weighted
+    /// mean of nodes (mortar method with dual multipliers): uniform pressure is transferred exactly, for any ratio of
+    /// mesh sizes and for sides that overlap only in part. Nodes with nothing opposite have no point. Put flat sides
+    /// that meet at an edge into separate contacts.
     ///
     /// All quantities of a contact point are those of the body of its [node](crate::result::PointState::node): the
     /// outward normal, the force on it, its displacement *relative* to the partner; sums over a contact are those of
@@ -140,10 +140,11 @@ impl Contact {
     }
 
     /// Bonds two bodies, or two parts of one with non-matching meshes: both sides have the same displacement where they
-    /// face each other, exactly where their nodes are the same, else in the mean of facets. A distance between them, or between facets of curved sides, is bridged by linear extrapolation,
-    /// so that rigid rotations stay free. [`with_motion`](Self::with_motion) prescribes a jump,
-    /// [`Coupling::relative`](crate::Coupling::relative) any rigid motion between the sides: bolts, hinges. Sides that
-    /// penetrate each other by more than a facet size are refused.
+    /// face each other, exactly where their nodes are the same, else in the mean of facets. A distance between them, or
+    /// between facets of curved sides, is bridged by linear extrapolation, so that rigid rotations stay free.
+    /// [`with_motion`](Self::with_motion) prescribes a jump, [`Coupling::relative`](crate::Coupling::relative) any
+    /// rigid motion between the sides: bolts, hinges. Sides that penetrate each other by more than a facet size are
+    /// refused.
     pub fn tied(tag: FacetTag, partner: FacetTag) -> Self {
         Self {
             partner: vec![partner],
@@ -370,16 +371,16 @@ impl Contact {
         self
     }
 
-    /// It acts at steps that end later than a time, s; before, there is nothing that could be touched. Friction then acts
-    /// against displacements from where the sides were at the last step without it. What has moved into each other is
-    /// pressed apart at once, and [tied](Self::tied) sides are drawn together.
+    /// It acts at steps that end later than a time, s; before, there is nothing that could be touched. Friction then
+    /// acts against displacements from where the sides were at the last step without it. What has moved into each other
+    /// is pressed apart at once, and [tied](Self::tied) sides are drawn together.
     pub fn with_start(mut self, time: f64) -> Self {
         self.span.start = Some(time);
         self
     }
 
-    /// It acts at steps until a time, s; its forces are gone at once, as those of a [support](crate::Support::with_end).
-    /// For one that comes back add another that [starts](Self::with_start) later.
+    /// It acts at steps until a time, s; its forces are gone at once, as those of a
+    /// [support](crate::Support::with_end). For one that comes back add another that [starts](Self::with_start) later.
     pub fn with_end(mut self, time: f64) -> Self {
         self.span.end = Some(time);
         self

@@ -3,17 +3,17 @@
 use super::support::Place;
 use signorini_fem_mesh::History;
 
-/// A rigid coupling: nodes that move together as a rigid body, for small rotations, with a reference point, which need not
-/// be in the mesh. The point is free, or some of its motions are held or moved; [`Load::on_coupling`](crate::Load::on_coupling)
-/// loads it. A stiff plate under a press, a hub on its bore, the far end of a part that is not modelled.
-/// [`relative`](Self::relative) couples the sides of a cut: bolts, hinges.
+/// A rigid coupling: nodes that move together as a rigid body, for small rotations, with a reference point, which need
+/// not be in the mesh. The point is free, or some of its motions are held or moved;
+/// [`Load::on_coupling`](crate::Load::on_coupling) loads it. A stiff plate under a press, a hub on its bore, the far
+/// end of a part that is not modelled. [`relative`](Self::relative) couples the sides of a cut: bolts, hinges.
 ///
 /// Elsewhere: kinematic coupling and `*RIGID BODY` (CalculiX, Abaqus), RBE2 (Nastran).
 ///
-/// Nodes must not all lie on a line. They can be in one coupling only. Supports of them must say what the coupling holds,
-/// as on planes of symmetry; their reaction is then that of the coupling. They cannot touch what is rigid, too; they may
-/// touch other bodies. What the coupling does not say of its motion is found: by loads, the stiffness of the body, other
-/// contacts.
+/// Nodes must not all lie on a line. They can be in one coupling only. Supports of them must say what the coupling
+/// holds, as on planes of symmetry; their reaction is then that of the coupling. They cannot touch what is rigid, too;
+/// they may touch other bodies. What the coupling does not say of its motion is found: by loads, the stiffness of the
+/// body, other contacts.
 ///
 /// ```
 /// use signorini_contact::{Coupling, Load, Scene, Settings, Simulation, Support};
@@ -65,12 +65,12 @@ impl Coupling {
     }
 
     /// How the first side of a [tied](crate::Contact::tied) contact, by its number in the scene, moves relative to the
-    /// other: nothing but a rigid motion about the reference point, m, which loads push or turn with the opposite on the
-    /// other side. The forces that the sides transfer are those of the contact.
+    /// other: nothing but a rigid motion about the reference point, m, which loads push or turn with the opposite on
+    /// the other side. The forces that the sides transfer are those of the contact.
     ///
-    /// A bolt that is cut across, and tightened: the sides may move towards each other along its axis, and are pulled by
-    /// the preload along the outward normal of the first. Without rotations that are held it is a ball joint, with one
-    /// that is free a hinge. Elsewhere: pretension section, connector, joint.
+    /// A bolt that is cut across, and tightened: the sides may move towards each other along its axis, and are pulled
+    /// by the preload along the outward normal of the first. Without rotations that are held it is a ball joint, with
+    /// one that is free a hinge. Elsewhere: pretension section, connector, joint.
     ///
     /// ```
     /// use signorini_contact::{Contact, Coupling, Load, Scene, Settings, Simulation, Support};
@@ -130,16 +130,16 @@ impl Coupling {
         self
     }
 
-    /// Those that are held, and only these, follow `history(t) * motion` instead of staying at zero: displacements in m, rotations in
-    /// radians. Several such motions add up.
+    /// Those that are held, and only these, follow `history(t) * motion` instead of staying at zero: displacements in
+    /// m, rotations in radians. Several such motions add up.
     pub fn with_motion(mut self, motion: [f64; 6], history: History) -> Self {
         self.motions.push((motion, history));
         self
     }
 
-    /// These of its motions are free, or loaded, at steps until a time, s, and from then on held as they are at the last of
-    /// these, or at zero: a bolt is tightened by a force, and then keeps its length. Loads in their directions act on
-    /// nothing then. Between the two steps the scene is set up anew.
+    /// These of its motions are free, or loaded, at steps until a time, s, and from then on held as they are at the
+    /// last of these, or at zero: a bolt is tightened by a force, and then keeps its length. Loads in their directions
+    /// act on nothing then. Between the two steps the scene is set up anew.
     pub fn with_lock(mut self, locked: [bool; 6], time: f64) -> Self {
         self.lock = Some((locked, time));
         self

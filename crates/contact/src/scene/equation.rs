@@ -11,8 +11,8 @@ use signorini_fem_mesh::History;
 /// displacement is that of many others.
 ///
 /// Equations may say what others, or supports, say already: such a one has no force. Contradictions are refused, and
-/// equations that name nodes of rigid couplings, or say what ties or contact say of the same nodes. What equations leave
-/// free needs supports, as without them.
+/// equations that name nodes of rigid couplings, or say what ties or contact say of the same nodes. What equations
+/// leave free needs supports, as without them.
 ///
 /// ```
 /// use signorini_contact::{Coupling, Equation, Load, Scene, Settings, Simulation, Support};

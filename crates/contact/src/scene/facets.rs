@@ -176,8 +176,8 @@ impl Facets {
         }
     }
 
-    /// Of all combinations of the normals around a place, and of another vector, with factors that are not negative, the
-    /// unit vector that is most opposite to a direction.
+    /// Of all combinations of the normals around a place, and of another vector, with factors that are not negative,
+    /// the unit vector that is most opposite to a direction.
     fn opposite(
         &self,
         (place, within): ([f64; 3], f64),

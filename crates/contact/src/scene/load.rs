@@ -85,7 +85,8 @@ impl Load {
         Self::new(LoadDensity::body(value))
     }
 
-    /// A force, N, and a moment, N m, on the reference point of a [coupling](crate::Coupling), by its number in the scene.
+    /// A force, N, and a moment, N m, on the reference point of a [coupling](crate::Coupling), by its number in the
+    /// scene.
     pub fn on_coupling(coupling: usize, force: [f64; 3], moment: [f64; 3]) -> Self {
         Self::of(Kind::Coupling(CouplingLoad {
             coupling,

@@ -134,8 +134,8 @@ impl Obstacle {
         (seen.distance, seen.gradient)
     }
 
-    /// The same; on edges and corners of surfaces, and beyond sharp ones and the rim, with the gradient that is most opposite
-    /// to a direction.
+    /// The same; on edges and corners of surfaces, and beyond sharp ones and the rim, with the gradient that is most
+    /// opposite to a direction.
     pub(crate) fn see(&self, place: [f64; 3], against: [f64; 3]) -> Seen {
         let seen = (self.field)(place, self.side, Some(against));
         let along = -dot(seen.gradient, against);
@@ -174,8 +174,8 @@ impl Obstacle {
         (!slopes.iter().any(is_good) && !ends()).then_some(slopes[0])
     }
 
-    /// The way along a direction from a place to the obstacle, m, negative inside. Where that direction does not lead there
-    /// the way to the continuation of a side that has ended before, or the shortest distance.
+    /// The way along a direction from a place to the obstacle, m, negative inside. Where that direction does not lead
+    /// there the way to the continuation of a side that has ended before, or the shortest distance.
     pub(super) fn along(&self, place: [f64; 3], direction: [f64; 3]) -> f64 {
         self.reach(place, direction).unwrap_or_else(|start| {
             let seen = self.see(place, direction);

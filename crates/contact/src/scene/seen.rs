@@ -8,8 +8,8 @@ pub(crate) struct Seen {
     /// Signed distance, m.
     pub(crate) distance: f64,
     pub(crate) gradient: [f64; 3],
-    /// Where a side has ended before the place, the signed distance to its continuation across the gradient, m; elsewhere
-    /// the distance.
+    /// Where a side has ended before the place, the signed distance to its continuation across the gradient, m;
+    /// elsewhere the distance.
     pub(crate) level: f64,
     /// Whether a side has ended before the place, with the gradient that is most opposite to a direction.
     pub(crate) ends: bool,

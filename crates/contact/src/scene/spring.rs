@@ -10,9 +10,10 @@ use signorini_fem_mesh::{FacetTag, vec3};
 /// ground. They resist rigid motions like supports.
 ///
 /// Stiffness of a foundation is in N/m³: stress (Pa) over displacement (m). A layer of thickness `t` without lateral
-/// expansion has `E (1 - nu) / ((1 + nu) (1 - 2 nu) t)` along the normal. At a node it acts with a third of the areas of
-/// its facets, in a mesh of order 2 at mid-nodes only. If a support fixes a direction of a node, the spring acts at right angles to
-/// it. Contact nodes may have springs (at edges); springs much softer or stiffer than the body then cost many products.
+/// expansion has `E (1 - nu) / ((1 + nu) (1 - 2 nu) t)` along the normal. At a node it acts with a third of the areas
+/// of its facets, in a mesh of order 2 at mid-nodes only. If a support fixes a direction of a node, the spring acts at
+/// right angles to it. Contact nodes may have springs (at edges); springs much softer or stiffer than the body then
+/// cost many products.
 #[derive(Debug, Clone, PartialEq)]
 #[must_use]
 pub struct Spring {
@@ -46,8 +47,8 @@ impl Spring {
         }
     }
 
-    /// A spring to the ground at each of some nodes, along a direction; several at one node act together. Stiffness is in
-    /// N/m. A node that is listed twice has two.
+    /// A spring to the ground at each of some nodes, along a direction; several at one node act together. Stiffness is
+    /// in N/m. A node that is listed twice has two.
     ///
     /// ```
     /// use signorini_contact::{Load, Scene, Settings, Simulation, Spring, Support};

@@ -123,8 +123,8 @@ impl Support {
     /// A support that prescribes the normal displacement of a contact node must keep it outside the obstacle at all
     /// times, since no contact force could; otherwise the scene is refused.
     ///
-    /// It replaces a motion that was told before. Another course along x than along z is that of two supports of the same
-    /// nodes, of [components](Self::components) of their own.
+    /// It replaces a motion that was told before. Another course along x than along z is that of two supports of the
+    /// same nodes, of [components](Self::components) of their own.
     ///
     /// Supports that share nodes must prescribe the same motion: equal displacements with equal histories, that is
     /// equal tables or clones of one function.
@@ -133,8 +133,8 @@ impl Support {
         self
     }
 
-    /// The same with one displacement per node, in the order of the nodes (ascending for a tag). It replaces a motion that was
-    /// told before, too.
+    /// The same with one displacement per node, in the order of the nodes (ascending for a tag). It replaces a motion
+    /// that was told before, too.
     pub fn with_motions(mut self, displacements: Vec<[f64; 3]>, history: History) -> Self {
         self.motion = Some((displacements, history));
         self
@@ -161,9 +161,10 @@ impl Support {
         self
     }
 
-    /// It holds at steps until a time, s, and from then on its nodes are free: a clamp is released. The reaction is gone
-    /// at once, at the first step that ends later, however short that is. Between the two steps the scene is set up anew.
-    /// That what is left holds the loads is checked beforehand, which takes one more set-up for each such time.
+    /// It holds at steps until a time, s, and from then on its nodes are free: a clamp is released. The reaction is
+    /// gone at once, at the first step that ends later, however short that is. Between the two steps the scene is set
+    /// up anew. That what is left holds the loads is checked beforehand, which takes one more set-up for each such
+    /// time.
     ///
     /// ```
     /// use signorini_contact::{Analysis, Scene, Settings, Simulation, Support};
@@ -190,10 +191,10 @@ impl Support {
     }
 
     /// It holds at steps that end later than a time, s; before, its nodes are free. It holds them where they are at the
-    /// last step before, and displacements of a [motion](Self::with_motion) are added to that: let its history begin with
-    /// zero there. Let the time be the end of a step, or halved steps hold them elsewhere. Directions of nodes that other
-    /// supports hold, or have held for longer, stay with these until they end. Nodes that are held along the normal of a
-    /// contact neither press nor rub there.
+    /// last step before, and displacements of a [motion](Self::with_motion) are added to that: let its history begin
+    /// with zero there. Let the time be the end of a step, or halved steps hold them elsewhere. Directions of nodes
+    /// that other supports hold, or have held for longer, stay with these until they end. Nodes that are held along the
+    /// normal of a contact neither press nor rub there.
     ///
     /// ```
     /// use signorini_contact::{Analysis, Load, Scene, Settings, Simulation, Support};

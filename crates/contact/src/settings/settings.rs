@@ -39,8 +39,8 @@ signorini_qp::settings! {
         tolerance, with_tolerance: f64 = 1e-6, in "[1e-12, 0.1]";
         /// Whether a step ends at that tolerance or by an estimate of its error.
         accuracy, with_accuracy: Accuracy = Accuracy::Tolerance;
-        /// Whether a step starts from a linear extrapolation of the last two, or from the last one. Where nothing that acts
-        /// has changed since the last one, it starts from that.
+        /// Whether a step starts from a linear extrapolation of the last two, or from the last one. Where nothing that
+        /// acts has changed since the last one, it starts from that.
         extrapolate, with_extrapolation: bool = true;
         /// Whether equal subdomains share factors.
         share_translates, with_share_translates: bool = true;

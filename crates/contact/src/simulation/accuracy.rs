@@ -12,8 +12,8 @@ use crate::status::StepStatus;
 use crate::tolerances::{CERTIFIED, LEAST_TOLERANCE, NEXT_AIM, NEXT_TOLERANCE, ROUNDS};
 
 /// Ends the rounds of a step by its certificate, which has the last word: where it is above the tolerance, the solver
-/// goes on once or twice with a smaller one; where it stays far above (thin bodies, whose displacement magnifies errors of
-/// the forces), with ever smaller ones.
+/// goes on once or twice with a smaller one; where it stays far above (thin bodies, whose displacement magnifies errors
+/// of the forces), with ever smaller ones.
 struct ByCertificate {
     tolerance: f64,
     /// What is wanted of the certificate, and what is accepted.

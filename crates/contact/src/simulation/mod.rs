@@ -2,8 +2,8 @@
 //!
 //! `step` is one step, `accuracy` solves it until certificate or estimates are satisfied, `run` takes all steps,
 //! `halving` repeats a failed step in halves, `stages` sets up anew where supports and contacts start or end, `resume`
-//! continues from a stored state, `checkpoints` (feature `checkpoint`) keeps states in a folder, `result` is what the user
-//! sees, `step_doubling` estimates errors in time, `unloaded` leaves bodies where loads that vanish leave them.
+//! continues from a stored state, `checkpoints` (feature `checkpoint`) keeps states in a folder, `result` is what the
+//! user sees, `step_doubling` estimates errors in time, `unloaded` leaves bodies where loads that vanish leave them.
 //!
 //! Uses: everything below.
 //! In: a scene and settings. Out: a [`StepResult`] per step.

@@ -12,9 +12,9 @@ impl Simulation {
     /// These must be the same: mesh, decomposition, nodes and directions of supports, contact points with their normals
     /// and areas, difference formula, and the times of the steps already solved. Loads, motions of supports, materials,
     /// gaps, coefficients of friction, future times, settings and method may change; the changed scene then continues
-    /// from the state. What starts, ends or is locked may have other times later on; what has started is held where it was
-    /// then. To start from the state of a different scene on purpose, call [`State::without_origin`]; sizes
-    /// must match in any case.
+    /// from the state. What starts, ends or is locked may have other times later on; what has started is held where it
+    /// was then. To start from the state of a different scene on purpose, call [`State::without_origin`]; sizes must
+    /// match in any case.
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the state does not fit; it says which part differs.

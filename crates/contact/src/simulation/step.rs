@@ -81,8 +81,8 @@ impl Simulation {
         }
         self.controller = state.controller;
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, Acting::All)?;
-        // the line through the last two steps leads on where the loads have stopped, and astray where friction has turned
-        // round: there is another start
+        // the line through the last two steps leads on where the loads have stopped, and astray where friction has
+        // turned round: there is another start
         let rests = |last| self.problem.rests(&self.model.scene, last);
         let rests = self.settings.extrapolate && increment.start.is_some_and(rests);
         let line = self.settings.extrapolate && !rests;
@@ -138,8 +138,8 @@ impl Simulation {
         })
     }
 
-    /// Solves from one start after another as long as the step is lost; from the iterate of what was tried before, if that
-    /// converged, in place of the first one.
+    /// Solves from one start after another as long as the step is lost; from the iterate of what was tried before, if
+    /// that converged, in place of the first one.
     fn solve_from(
         &mut self,
         starts: &[(bool, Attempt)],
@@ -165,7 +165,7 @@ impl Simulation {
                 break;
             }
             // friction that nearly locks bodies lets active sets run in circles where forces vanish, too
-            if unloads && let Some(left) = self.without_forces(state, told)? {
+            if unloads && let Some(left) = self.without_forces(state, told, &mut report)? {
                 report.status = StepStatus::Converged;
                 return Ok((report, left));
             }
@@ -173,8 +173,8 @@ impl Simulation {
         Ok((report, recovered))
     }
 
-    /// From a start to where loads bring bodies that nothing moves yet: what moves may carry them far along, with forces that
-    /// friction decides once they are pressed.
+    /// From a start to where loads bring bodies that nothing moves yet: what moves may carry them far along, with
+    /// forces that friction decides once they are pressed.
     fn settle(&mut self, state: &State, way: &Way, line: bool) -> Result<StepReport, ContactError> {
         let prepare = |own: &mut Self, acting| {
             Arc::make_mut(&mut own.problem).prepare(&own.model, state, way.increment(), acting)

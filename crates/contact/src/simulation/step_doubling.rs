@@ -1,8 +1,9 @@
 //! Estimate of the error of the time steps by step doubling.
 //!
 //! Every step is taken once, as two half steps and as four quarter steps, each run going on from its own last state
-//! (docs/theory.md, section 11). Both difference formulas are of first order where sliding begins, ends and turns, better
-//! where nothing changes, and without order where another step leads to another sequence of sticking and sliding.
+//! (docs/theory.md, section 11). Both difference formulas are of first order where sliding begins, ends and turns,
+//! better where nothing changes, and without order where another step leads to another sequence of sticking and
+//! sliding.
 
 use super::result::StepResult;
 use super::simulation::Simulation;

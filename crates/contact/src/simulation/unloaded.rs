@@ -1,5 +1,5 @@
-//! Bodies that nothing presses any more: where all forces on a loose body vanish, none determines its rigid motions, and
-//! it stays where it stood.
+//! Bodies that nothing presses any more: where all forces on a loose body vanish, none determines its rigid motions,
+//! and it stays where it stood.
 
 use super::halving::Way;
 use super::simulation::Simulation;
@@ -32,11 +32,12 @@ pub(super) type Targets = Vec<(usize, f64)>;
 
 impl Simulation {
     /// The result of an increment at whose end no load acts that acted at its start, if forces vanish with the loads;
-    /// else where bodies stand whose own forces do; and the report of the solves that tell, from whose iterate an ordinary
-    /// one sets out.
+    /// else where bodies stand whose own forces do; and the report of the solves that tell, from whose iterate an
+    /// ordinary one sets out.
     ///
-    /// Without loads nothing gives forces a size, and active sets run in circles. A small part of the last loads does, and
-    /// leaves the bodies where they stand without it. If a smaller part leaves more of the forces, friction locks them.
+    /// Without loads nothing gives forces a size, and active sets run in circles. A small part of the last loads does,
+    /// and leaves the bodies where they stand without it. If a smaller part leaves more of the forces, friction locks
+    /// them.
     pub(super) fn unload(
         &mut self,
         state: &State,
@@ -90,8 +91,7 @@ impl Simulation {
         if gone.contains(&false) {
             return Ok((report, None, targets));
         }
-        let unloaded = self.without_forces(state, &targets)?;
-        report.counters.products += usize::from(unloaded.is_some());
+        let unloaded = self.without_forces(state, &targets, &mut report)?;
         Ok((report, unloaded, targets))
     }
 
@@ -103,12 +103,13 @@ impl Simulation {
         Ok(loose && way.increment().start.is_some_and(unloaded))
     }
 
-    /// The result without any forces, with bodies where rows are closest to their targets, or those of the points that were
-    /// pressed in the last state; `None` if that is no solution.
+    /// The result without any forces, with bodies where rows are closest to their targets, or those of the points that
+    /// were pressed in the last state; `None` if that is no solution.
     pub(super) fn without_forces(
         &mut self,
         state: &State,
         targets: &Targets,
+        report: &mut StepReport,
     ) -> Result<Option<Recovered>, ContactError> {
         let pressed = |point: &&ConstrainedPoint| was_pressed(state, point);
         let before = || self.model.points.iter().filter(pressed).flat_map(rows);
@@ -124,6 +125,7 @@ impl Simulation {
             torn: &[],
         };
         let placed = self.placed(state, self.model.loose_motions()?, &from, targets)?;
+        report.counters.products += usize::from(placed.is_some());
         let certified = placed.filter(|(_, placed)| placed.certificate.largest() <= self.settings.tolerance);
         Ok(certified.map(|(alpha, placed)| {
             self.iterate.alpha = alpha;

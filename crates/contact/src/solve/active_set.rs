@@ -2,8 +2,8 @@
 //! forces.
 //!
 //! Where the active-set method makes no progress, the paper's method solves the step: from the last iterate where a
-//! limit was reached, from the start of the step where the active-set method stagnated. Its steps lower a cost, and with
-//! [`Expansion::FixedStep`](signorini_qp::Expansion) it is proved to solve every Tresca problem.
+//! limit was reached, from the start of the step where the active-set method stagnated. Its steps lower a cost, and
+//! with [`Expansion::FixedStep`](signorini_qp::Expansion) it is proved to solve every Tresca problem.
 
 use super::coarse::not_determined;
 use super::iterate::{Attempt, Iterate, Task, is_coulomb, step_status};
@@ -190,8 +190,8 @@ impl ActiveSetSolver {
         Ok(report)
     }
 
-    /// Active sets with the preconditioner of the settings, and where that takes more products than forming F is worth, or
-    /// stagnates, with the inverse of F.
+    /// Active sets with the preconditioner of the settings, and where that takes more products than forming F is worth,
+    /// or stagnates, with the inverse of F.
     fn active_sets_or_explicit(
         &mut self,
         task: Task<'_>,
@@ -252,7 +252,8 @@ impl ActiveSetSolver {
                     if is_open(status)
                         && let Some(inside) = inside
                     {
-                        // where all of a body's friction is spent active sets hardly hold it, and lead away: the certificate judges
+                        // where all of a body's friction is spent active sets hardly hold it, and lead away: the
+                        // certificate judges
                         (iterate.lambda, iterate.alpha) = (inside.lambda, inside.alpha);
                         iterate.known = false;
                         return Ok(Status::Converged);

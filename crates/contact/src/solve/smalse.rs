@@ -26,8 +26,8 @@ const MAX_TIGHTENINGS: usize = 3;
 /// Most evaluations of the Coulomb map in a step.
 const MAX_EVALUATIONS: usize = 200;
 
-/// Looks at which forces were no nearer to balance, while friction could hold the bodies, in all, before a step is given
-/// up.
+/// Looks at which forces were no nearer to balance, while friction could hold the bodies, in all, before a step is
+/// given up.
 const MAX_STALLS: usize = 3;
 
 pub(crate) struct SmalseSolver {
@@ -82,8 +82,8 @@ impl SmalseSolver {
 
     /// The same for bodies that friction does not seem to hold: when products no longer bring the forces nearer to
     /// balance, it ends as [`StepStatus::NotHeld`] where friction within the slip bounds of the normal forces could not
-    /// either, and where it could, after some such looks, as [`StepStatus::Stagnated`]. Slip bounds follow normal forces
-    /// the sooner the fewer products there are between two looks.
+    /// either, and where it could, after some such looks, as [`StepStatus::Stagnated`]. Slip bounds follow normal
+    /// forces the sooner the fewer products there are between two looks.
     pub(crate) fn solve_while_balancing(
         &mut self,
         limit: usize,

@@ -1,8 +1,8 @@
 //! The state between two steps: what one step hands to the next, and what its numbers refer to.
 //!
 //! Multipliers, their products, old tangential displacements, the tolerance that estimates have chosen. With feature
-//! `checkpoint` also as bytes. `fingerprint` tells whether a stored state belongs to a scene, `carry` takes it to another
-//! stage.
+//! `checkpoint` also as bytes. `fingerprint` tells whether a stored state belongs to a scene, `carry` takes it to
+//! another stage.
 //!
 //! Uses: `model`, `report`, `scene`, `settings`.
 //! In: the result of a step. Out: a [`State`] from which a run goes on bit for bit.

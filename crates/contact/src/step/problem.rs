@@ -126,8 +126,8 @@ impl StepProblem {
         self.find_friction(model, state)
     }
 
-    /// How far the loads have grown along themselves since a time, over what they were then: 0 if they stayed, infinite if
-    /// nothing tells.
+    /// How far the loads have grown along themselves since a time, over what they were then: 0 if they stayed, infinite
+    /// if nothing tells.
     pub(crate) fn growth(&self, model: &Model, time: f64) -> f64 {
         let mut before = vec![0.0; self.rhs.len()];
         let (mut along, mut square) = (0.0, 0.0);

@@ -1,8 +1,9 @@
 //! The shoe of a drum brake: a rigid shoe that turns about a pivot, with a lining that gives way, pressed to a drum.
 //!
-//! A turn about the pivot presses each point by its moment arm, so that moments about the pivot give the torque in closed
-//! form (as of internal shoes in textbooks on machine elements). Friction on the trailing shoe takes pressure away, the more the larger it is: with a moment larger than that of
-//! the pressure, slip bounds that follow pressures that follow slip bounds swing ever wider.
+//! A turn about the pivot presses each point by its moment arm, so that moments about the pivot give the torque in
+//! closed form (as of internal shoes in textbooks on machine elements). Friction on the trailing shoe takes pressure
+//! away, the more the larger it is: with a moment larger than that of the pressure, slip bounds that follow pressures
+//! that follow slip bounds swing ever wider.
 
 use crate::common::*;
 
@@ -79,8 +80,8 @@ fn the_torque_of_a_shoe_whatever_friction_takes_away() {
     }
 }
 
-/// The drum turns from the third step on, and friction turns round with it: from there the line through the last two steps
-/// led to the end as not held, though it changes nothing any more.
+/// The drum turns from the third step on, and friction turns round with it: from there the line through the last two
+/// steps led to the end as not held, though it changes nothing any more.
 #[test]
 fn a_stiff_shoe_is_held_after_friction_has_turned_round() {
     let (_, results) = run(shoe((1e9, 12), 1.2, 0.5), Settings::default());

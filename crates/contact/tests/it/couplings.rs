@@ -85,7 +85,8 @@ pub(crate) fn moved() -> History {
     History::constant(1.0)
 }
 
-/// All motions prescribed: supports of its nodes say the same, and have the same resultant; whether alone or on a floor.
+/// All motions prescribed: supports of its nodes say the same, and have the same resultant; whether alone or on a
+/// floor.
 #[test]
 fn held_in_all_motions_it_is_a_support() {
     let with_floor: [fn(Scene) -> Scene; 2] = [|scene| scene, on_floor];
@@ -209,7 +210,8 @@ fn methods_agree() {
     assert_close(&found, &expected, 1e-4, "SMALSE");
 }
 
-/// One coupling holds two bodies together, of which only one has supports; and a body is lifted off a floor by its coupling.
+/// One coupling holds two bodies together, of which only one has supports; and a body is lifted off a floor by its
+/// coupling.
 #[test]
 fn bodies_hang_on_couplings() {
     let first = Brick::new([1.0; 3], [3; 3]).build().expect("brick");
@@ -319,8 +321,8 @@ fn states_know_their_couplings() {
     }
 }
 
-/// On planes of symmetry supports of its nodes say what the coupling says: a quarter of a block pressed by a rigid plate
-/// is the whole one.
+/// On planes of symmetry supports of its nodes say what the coupling says: a quarter of a block pressed by a rigid
+/// plate is the whole one.
 #[test]
 fn a_quarter_is_the_whole() {
     let scene = |size: f64, cells: usize| {
@@ -395,8 +397,8 @@ fn couplings_cost_no_products() {
     }
 }
 
-/// Two blocks meshed apart, the upper one pressed, drawn and turned by its rigid top: what holds it, as a load, makes the
-/// same state, its motion is that of its nodes, and the estimate bounds the energy that a loose tolerance leaves.
+/// Two blocks meshed apart, the upper one pressed, drawn and turned by its rigid top: what holds it, as a load, makes
+/// the same state, its motion is that of its nodes, and the estimate bounds the energy that a loose tolerance leaves.
 #[test]
 fn random_pairs_are_moved_by_couplings() {
     for seed in 0..12 {

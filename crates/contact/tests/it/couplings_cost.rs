@@ -90,8 +90,8 @@ fn beside(young: f64, place: impl Fn([f64; 3]) -> [f64; 3]) -> Scene {
         .with_subdomains(4)
 }
 
-/// Each of two blocks that do not touch is pressed by its plate, free or guided, or by a traction: products are those of
-/// a block alone, however much softer and smaller one is.
+/// Each of two blocks that do not touch is pressed by its plate, free or guided, or by a traction: products are those
+/// of a block alone, however much softer and smaller one is.
 #[test]
 fn plates_on_soft_blocks_cost_no_products() {
     let guided = [true, true, false, true, true, true];

@@ -113,8 +113,8 @@ fn faces_of_a_curved_crack_change_places() {
     }
 }
 
-/// A plate of 4 m x 0.25 m x 4 m about the origin in plane strain with a crack of 2 m in the middle, its outer faces moved
-/// by a uniform strain: `squeeze` across the crack, `shear` along it.
+/// A plate of 4 m x 0.25 m x 4 m about the origin in plane strain with a crack of 2 m in the middle, its outer faces
+/// moved by a uniform strain: `squeeze` across the crack, `shear` along it.
 fn plate(order: usize, contact: Option<Contact>, squeeze: History, shear: History) -> Scene {
     let whole = Brick::new([4.0, 0.25, 4.0], [16, 1, 16]).with_origin([-2.0, 0.0, -2.0]);
     let whole = whole.build().expect("brick");
@@ -180,8 +180,8 @@ fn an_open_crack_is_free() {
     }
 }
 
-/// A shear along the crack leaves the pressure `p` across it as it is, so that the faces slide as those without friction
-/// do under the shear stress that friction leaves: first above `mu p`, and on return above `2 mu p`.
+/// A shear along the crack leaves the pressure `p` across it as it is, so that the faces slide as those without
+/// friction do under the shear stress that friction leaves: first above `mu p`, and on return above `2 mu p`.
 #[test]
 fn a_closed_crack_slides_and_slides_back() {
     let lame = YOUNG * POISSON / ((1.0 + POISSON) * (1.0 - 2.0 * POISSON));
@@ -275,8 +275,8 @@ fn every_way_finds_the_same_crack() {
 
 const SEEDS: u64 = 40;
 
-/// Cracks of any outline in plane or bent layers, which end inside or at the boundary, under any load: in parts and in one
-/// piece they open, stick and slide alike.
+/// Cracks of any outline in plane or bent layers, which end inside or at the boundary, under any load: in parts and in
+/// one piece they open, stick and slide alike.
 #[test]
 fn random_cracks_do_not_feel_partitions() {
     let mut found = 0;

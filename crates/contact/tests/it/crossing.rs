@@ -146,8 +146,8 @@ fn pressure_goes_on_to_nodes_of_the_floor() {
     assert!(result.points().iter().filter(|p| p.surface == 2).count() < pressure.len());
 }
 
-/// Positions at which friction sticks came from rows that hold to the tolerance only: where they depend on one another no
-/// displacement was in all of them, the estimate had a floor, and a step took 42,000 products.
+/// Positions at which friction sticks came from rows that hold to the tolerance only: where they depend on one another
+/// no displacement was in all of them, the estimate had a floor, and a step took 42,000 products.
 #[test]
 fn estimates_see_no_contradiction_between_contacts() {
     // in a narrow strip nothing is handed on

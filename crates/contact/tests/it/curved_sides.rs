@@ -154,8 +154,9 @@ fn a_tied_sleeve_passes_its_torque_on() {
     }
 }
 
-/// A sleeve that is pressed on and turned: its facets are as large as those of the shaft, but finer around or along. With
-/// the points on the side that has more of them all of 5,561 (order 1) and 639 products (order 2) went round in circles.
+/// A sleeve that is pressed on and turned: its facets are as large as those of the shaft, but finer around or along.
+/// With the points on the side that has more of them all of 5,561 (order 1) and 639 products (order 2) went round in
+/// circles.
 #[test]
 fn a_sleeve_held_by_friction_turns_at_any_order_of_names() {
     for (order, most) in [(1, 100), (2, 200)] {
@@ -184,9 +185,9 @@ fn a_sleeve_held_by_friction_turns_at_any_order_of_names() {
     }
 }
 
-/// Forces on facets that touch and are apart have no moment together, where the gap is given and where a pressure closes
-/// what coordinates say: 0.9 and 1.6 % of the torque were lost, and with sides of equal facets all of it, for want of a
-/// circumference where normals of nodes and of facets differ.
+/// Forces on facets that touch and are apart have no moment together, where the gap is given and where a pressure
+/// closes what coordinates say: 0.9 and 1.6 % of the torque were lost, and with sides of equal facets all of it, for
+/// want of a circumference where normals of nodes and of facets differ.
 #[test]
 fn a_sleeve_held_by_friction_passes_its_torque_on() {
     let cases = [
@@ -223,8 +224,9 @@ fn a_sleeve_held_by_friction_passes_its_torque_on() {
     }
 }
 
-/// A bush of rubber, bonded to a shaft and pressed into a bore of steel: it can go nowhere, so that its pressure is Lame's
-/// only if its volume is: here up to 6 %. With the points on the larger facets of the bore, between which it bulged, 42 % were lost.
+/// A bush of rubber, bonded to a shaft and pressed into a bore of steel: it can go nowhere, so that its pressure is
+/// Lame's only if its volume is: here up to 6 %. With the points on the larger facets of the bore, between which it
+/// bulged, 42 % were lost.
 #[test]
 fn rubber_that_can_go_nowhere_keeps_its_pressure() {
     let [within, radius, outside] = [8.0, 10.0, 14.0];

@@ -250,7 +250,8 @@ fn the_nearer_obstacle_acts_at_nodes_that_two_contacts_share() {
 }
 
 /// A block on a plate of coarser cells, pressed and pushed at its top: it tips where the push times its height is the
-/// pressing force times half its width. Points on the plate, up to a cell beyond the block, held it up to 1.5 times that.
+/// pressing force times half its width. Points on the plate, up to a cell beyond the block, held it up to 1.5 times
+/// that.
 #[test]
 fn a_block_on_a_coarse_plate_tips_over_its_own_edge() {
     for order in [1, 2] {

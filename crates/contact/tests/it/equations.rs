@@ -184,8 +184,8 @@ pub(crate) fn periodic(mesh: &TetMesh) -> Vec<Equation> {
     out
 }
 
-/// A cell whose points are guided along their own direction, one node of which is held; `held` are their strains that are
-/// not free.
+/// A cell whose points are guided along their own direction, one node of which is held; `held` are their strains that
+/// are not free.
 pub(crate) fn cell(mesh: TetMesh, materials: Materials, held: [Option<f64>; 3]) -> Scene {
     let middle = mesh
         .points()

@@ -129,8 +129,8 @@ fn random_coupled(seed: u64) -> Scene {
     scene.loads().iter().cloned().fold(plain, Scene::with_load)
 }
 
-/// The same with the end held, and cut across beside the floor, where the sides move relative to each other as a coupling
-/// says.
+/// The same with the end held, and cut across beside the floor, where the sides move relative to each other as a
+/// coupling says.
 fn random_relative(seed: u64) -> Scene {
     let scene = random_coupled(seed);
     let mesh = scene.mesh();

@@ -29,8 +29,8 @@ fn stacked(edges: [usize; 2], order: usize, contact: &dyn Fn(Contact) -> Contact
         .with_subdomains(4)
 }
 
-/// Points whose own node is in a coupling, and their number may be above that of the nodes of the other side: the estimate
-/// is above the error, and not far.
+/// Points whose own node is in a coupling, and their number may be above that of the nodes of the other side: the
+/// estimate is above the error, and not far.
 #[test]
 fn coupled_surfaces_have_sharp_estimates() {
     let laws: [&dyn Fn(Contact) -> Contact; 4] = [

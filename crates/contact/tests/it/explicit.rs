@@ -1,5 +1,5 @@
-//! Contact that is hard for a few rows of F: F is formed, and its inverse on each active set leaves two products or three
-//! a set. The same bits after a restart, and on several processes.
+//! Contact that is hard for a few rows of F: F is formed, and its inverse on each active set leaves two products or
+//! three a set. The same bits after a restart, and on several processes.
 
 use crate::common::*;
 use signorini_fem_mesh::mesh::drop_unused_nodes;
@@ -18,7 +18,8 @@ fn costs(results: &[Solved]) -> ([Vec<usize>; 2], String) {
 }
 
 /// A quadratic plate of 50 times its thickness, held at an edge, that a load presses on a rough floor below and another
-/// one pulls along it. Most of it lifts off again: without a formed F two of the steps reach a limit of 30,000 products.
+/// one pulls along it. Most of it lifts off again: without a formed F two of the steps reach a limit of 30,000
+/// products.
 fn plate(boxes: usize) -> Scene {
     let mesh = block([1.0, 1.0, 0.02], [8, 8, 1]).raise_order().expect("quadratic");
     let floor = Contact::rigid(brick::Z_MIN).with_gap(1e-4);
@@ -50,8 +51,9 @@ fn a_plate_that_lies_down_and_slides_is_solved_on_few_products() {
     assert!(distance(whole, cut) <= 1e-5, "{}", distance(whole, cut));
 }
 
-/// The same plate on a floor that curves away, pulled by half of what friction holds, and held by nothing else. Without a
-/// formed F the first step took 9,700 products and then was called not held, the third ended at a limit: 53,000 in all.
+/// The same plate on a floor that curves away, pulled by half of what friction holds, and held by nothing else. Without
+/// a formed F the first step took 9,700 products and then was called not held, the third ended at a limit: 53,000 in
+/// all.
 #[test]
 fn a_plate_that_friction_alone_holds_is_solved_on_few_products() {
     let mesh = block([1.0, 1.0, 0.02], [8, 8, 1]).raise_order().expect("quadratic");
@@ -81,8 +83,8 @@ fn a_plate_that_friction_alone_holds_is_solved_on_few_products() {
     }
 }
 
-/// A sheet of 200 times its thickness that lies on a rough floor, is pressed on a patch in its middle, pulled and pushed
-/// back: all but the patch lifts off. Predictions of active sets run in circles, interior points do not.
+/// A sheet of 200 times its thickness that lies on a rough floor, is pressed on a patch in its middle, pulled and
+/// pushed back: all but the patch lifts off. Predictions of active sets run in circles, interior points do not.
 #[test]
 fn a_sheet_pressed_on_a_patch_is_solved_from_inside() {
     let mesh = block([100.0, 50.0, 0.5], [20, 10, 1]).map_points(|[x, y, z]| [x + 0.2 * y * (z - 0.2), y, z]);
@@ -144,8 +146,8 @@ fn what_is_hard_has_the_same_bits_on_several_processes() {
     }
 }
 
-/// A washer of a fiftieth of its width between a plate and the head of a bolt, meshed apart. The head presses and is pushed
-/// to and fro by more than half of what friction holds.
+/// A washer of a fiftieth of its width between a plate and the head of a bolt, meshed apart. The head presses and is
+/// pushed to and fro by more than half of what friction holds.
 #[test]
 fn a_washer_under_a_head_is_solved_from_inside() {
     let centred = |lengths: [f64; 3], cells, z: f64| {
@@ -197,8 +199,9 @@ fn around(cells: [usize; 3], z: f64, first: u32, is_inside: impl Fn([f64; 3]) ->
     mesh.tag_boundary(tag)
 }
 
-/// Two plates that a bolt with clearance presses together, drawn apart along their seam until all of it slides, under head
-/// and nut, too: by the same friction, so that hardly anything tells how far the bolt goes along. Active sets took 10,000 products a step.
+/// Two plates that a bolt with clearance presses together, drawn apart along their seam until all of it slides, under
+/// head and nut, too: by the same friction, so that hardly anything tells how far the bolt goes along. Active sets took
+/// 10,000 products a step.
 fn bolted_seam() -> Scene {
     let hole = |x: [f64; 3]| x[0].abs().max(x[1].abs()) > 4.0;
     let shank = |x: [f64; 3]| x[2].abs() > 4.0 || x[0].abs().max(x[1].abs()) < 2.0;

@@ -67,7 +67,8 @@ fn overlaps_of_facets_are_no_interference() {
     assert_eq!(plan([12, 20], 2, true, 0.02, false), []);
 }
 
-/// Force between a shaft of this radius and a sleeve of radius 10 that are held, and warnings, as `with` changes the contact.
+/// Force between a shaft of this radius and a sleeve of radius 10 that are held, and warnings, as `with` changes the
+/// contact.
 fn pressed(radius: f64, meshes: [TetMesh; 2], with: impl Fn(Contact) -> Contact) -> (f64, Vec<Warning>) {
     let [shaft, sleeve] = meshes;
     let shaft = shaft
@@ -134,9 +135,9 @@ fn flats_that_meet_in_a_kink_press() {
     }
 }
 
-/// Half a ring of straight quadratic elements around a rigid shaft of its radius, upon which nothing acts: mid-nodes lie
-/// within the shaft and pressed, without a warning, three times as hard as a fit of a thousandth of the radius. The shaft
-/// may turn, or move and press.
+/// Half a ring of straight quadratic elements around a rigid shaft of its radius, upon which nothing acts: mid-nodes
+/// lie within the shaft and pressed, without a warning, three times as hard as a fit of a thousandth of the radius. The
+/// shaft may turn, or move and press.
 #[test]
 fn straight_quadratic_elements_around_an_obstacle_press_nothing() {
     let pressed = |radius: f64, bent: bool, with: &dyn Fn(Contact) -> Contact| {

@@ -233,8 +233,9 @@ fn a_pull_beyond_friction_is_named() {
     }
 }
 
-/// Squeezed between two walls, a block is held by as much friction as it is pressed, which only the step can tell: where it
-/// goes, and what is missing. That took 4,700 products; the fall-back ends where it does not come nearer to balance.
+/// Squeezed between two walls, a block is held by as much friction as it is pressed, which only the step can tell:
+/// where it goes, and what is missing. That took 4,700 products; the fall-back ends where it does not come nearer to
+/// balance.
 #[test]
 fn a_block_pulled_out_of_a_clamp_is_not_held() {
     let pulled = |traction: f64| {

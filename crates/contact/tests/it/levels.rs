@@ -74,8 +74,8 @@ fn two_bodies_of_which_contact_alone_holds_one() {
     }
 }
 
-/// SMALSE and the linear solver run on the factor in which equal regions are stored once, are certified and find the same,
-/// where the default has two levels.
+/// SMALSE and the linear solver run on the factor in which equal regions are stored once, are certified and find the
+/// same, where the default has two levels.
 #[test]
 fn the_other_methods_find_the_same() {
     let bound = || scene(Friction::None).with_support(Support::fixed(second(brick::X_MIN)));

@@ -102,8 +102,8 @@ fn across(simulation: &mut Simulation) -> Vec<f64> {
     out
 }
 
-/// Steps that end later than the lock are locked, at what the last one before left; at zero before the first, where the own
-/// weight remains.
+/// Steps that end later than the lock are locked, at what the last one before left; at zero before the first, where the
+/// own weight remains.
 #[test]
 fn a_lock_holds_from_the_next_step_on() {
     for (lock, expected) in [

@@ -269,9 +269,9 @@ fn a_body_that_is_unloaded_again_converges_in_few_products() {
     }
 }
 
-/// A block that its upper side presses on a larger one, moves along it and lifts until it rests there without a force. On
-/// the way to rest circles grow from nothing; a set with their points free led astray: 507, 621 and 392 products in the last
-/// step.
+/// A block that its upper side presses on a larger one, moves along it and lifts until it rests there without a force.
+/// On the way to rest circles grow from nothing; a set with their points free led astray: 507, 621 and 392 products in
+/// the last step.
 #[test]
 fn a_block_lifted_to_rest_converges_in_few_products() {
     for (order, cells) in [
@@ -345,9 +345,9 @@ fn sheets_that_bend_down_touch_in_few_products() {
     }
 }
 
-/// A plate of 50 times its thickness that a load presses on the floor below it, most of it: forces that pull, cut off and
-/// back again on every set, took 8,000 products in a step, and more than 20,000 with quadratic elements. A load that stays
-/// changes nothing in later steps.
+/// A plate of 50 times its thickness that a load presses on the floor below it, most of it: forces that pull, cut off
+/// and back again on every set, took 8,000 products in a step, and more than 20,000 with quadratic elements. A load
+/// that stays changes nothing in later steps.
 #[test]
 fn plates_that_lie_down_are_solved_on_few_sets() {
     for (order, cells, mu, most) in [(1, 32, 0.0, 500), (2, 16, 0.0, 700), (2, 16, 0.3, 900)] {

@@ -37,8 +37,8 @@ fn planes_of_symmetry_cost_no_products() {
     }
 }
 
-/// A pad between plates of as many cells that reach beyond it: had the plates the points, several of them would press the
-/// rim of the pad alone, in 12,765 products, and it would not be held.
+/// A pad between plates of as many cells that reach beyond it: had the plates the points, several of them would press
+/// the rim of the pad alone, in 12,765 products, and it would not be held.
 #[test]
 fn a_soft_pad_between_plates_that_reach_beyond_costs_few_products() {
     let plate = |z: f64| {
@@ -78,9 +78,9 @@ fn a_soft_pad_between_plates_that_reach_beyond_costs_few_products() {
     assert!(products <= 130, "{products} products");
 }
 
-/// Quadratic cells between planes that hold them: no point has a row across, whatever share of its mean the planes hold,
-/// so that products grow like the root of length over thickness. With rows of half of the points they grew like that
-/// ratio, to the iteration limit.
+/// Quadratic cells between planes that hold them: no point has a row across, whatever share of its mean the planes
+/// hold, so that products grow like the root of length over thickness. With rows of half of the points they grew like
+/// that ratio, to the iteration limit.
 #[test]
 fn thin_quadratic_cells_between_planes_cost_few_products() {
     let solved = |thick: f64, tied: bool| {

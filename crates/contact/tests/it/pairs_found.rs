@@ -147,7 +147,8 @@ fn a_reach_is_a_length() {
     }
 }
 
-/// A bulge on a plate of other cells touches it and is nowhere inside; weights of means, in part negative, make it 0.013.
+/// A bulge on a plate of other cells touches it and is nowhere inside; weights of means, in part negative, make it
+/// 0.013.
 #[test]
 fn an_overlap_is_no_deeper_than_its_facets() {
     let plate = body([3.0, 1.2, 0.3], [6, 3, 1], [-1.5, -0.1, -0.3]);

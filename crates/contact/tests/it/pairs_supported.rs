@@ -165,8 +165,8 @@ fn the_algebraic_error_is_estimated() {
     }
 }
 
-/// Two leaves of a spring, clamped together at one end, of meshes that match nowhere else: where supports hold both sides
-/// no force belongs to contact.
+/// Two leaves of a spring, clamped together at one end, of meshes that match nowhere else: where supports hold both
+/// sides no force belongs to contact.
 #[test]
 fn leaves_clamped_together_press_on_each_other_only_where_they_move() {
     let leaf = |long: f64, cells| block([long, 10.0, 1.0], [cells, 3, 1]);

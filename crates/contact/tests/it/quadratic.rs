@@ -177,8 +177,8 @@ fn pressure_passes_between_quadratic_bodies() {
     }
 }
 
-/// Where nodes are the same a tie is exact, as a cut that is tied again shows: straight, bent, and two that cross. Tied in
-/// the mean of their facets the sides would be 1.2 to 1.6 % off.
+/// Where nodes are the same a tie is exact, as a cut that is tied again shows: straight, bent, and two that cross. Tied
+/// in the mean of their facets the sides would be 1.2 to 1.6 % off.
 #[test]
 fn tied_cuts_are_the_whole_body() {
     let straight = Brick::new([2.0, 1.0, 1.0], [6, 4, 3]).perturbed(0.1, 3).build();
@@ -395,7 +395,8 @@ fn corners_edges_and_slivers_pass_hydrostatic_pressure() {
     }
 }
 
-/// What a moving support does to mid-nodes beside a contact point is part of its slip, in the memory of the process, too.
+/// What a moving support does to mid-nodes beside a contact point is part of its slip, in the memory of the process,
+/// too.
 #[test]
 fn slip_beside_a_moving_support_is_that_of_the_displacement() {
     let pull = History::table(vec![(0.0, 0.0), (0.5, 1.0), (1.0, -0.5)]).expect("a table");
@@ -435,8 +436,8 @@ fn slip_beside_a_moving_support_is_that_of_the_displacement() {
     }
 }
 
-/// An obstacle that turns is, for each point, where it is for the nodes that the point is the mean of: gaps to a floor that
-/// tilts, the way past a disc.
+/// An obstacle that turns is, for each point, where it is for the nodes that the point is the mean of: gaps to a floor
+/// that tilts, the way past a disc.
 #[test]
 fn obstacles_turn_past_the_nodes_of_a_point() {
     let (angle, height) = (2e-3, 0.01);

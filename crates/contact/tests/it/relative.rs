@@ -78,8 +78,8 @@ fn held_in_all_motions_it_is_the_tie() {
     }
 }
 
-/// A half that is moved and nothing pulls at: forces are the rounding errors of its motion, which took 10,001 products at
-/// order 2 and stagnated at tolerances below 2e-8.
+/// A half that is moved and nothing pulls at: forces are the rounding errors of its motion, which took 10,001 products
+/// at order 2 and stagnated at tolerances below 2e-8.
 #[test]
 fn a_half_that_only_moves_takes_no_products() {
     for order in [1, 2] {

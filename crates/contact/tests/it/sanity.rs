@@ -188,7 +188,8 @@ fn bodies_are_measured_by_themselves() {
     assert!(mesh.points()[node as usize][2] >= 5.0 && extent == 0.5 && (displacement - 0.06).abs() < 1e-6);
 }
 
-/// A shaft in a vee that turns past its torque until the next nodes touch: 32 cells around, so half of one is 5.6 degrees.
+/// A shaft in a vee that turns past its torque until the next nodes touch: 32 cells around, so half of one is 5.6
+/// degrees.
 #[test]
 fn bodies_that_turn_far_are_named() {
     let shaft = |torque: f64| {
@@ -241,8 +242,8 @@ fn bodies_that_turn_far_are_named() {
     }
 }
 
-/// An obstacle is drawn by 0.8 m under a block whose facets have edges of 0.5 and 0.71 m, at once or in four steps. Where
-/// its shape gives the normals it tells whether they have turned.
+/// An obstacle is drawn by 0.8 m under a block whose facets have edges of 0.5 and 0.71 m, at once or in four steps.
+/// Where its shape gives the normals it tells whether they have turned.
 #[test]
 fn slips_past_a_facet_are_named() {
     let plane = Obstacle::half_space([0.0, 0.0, 1e-3], [0.0, 0.0, 1.0]);

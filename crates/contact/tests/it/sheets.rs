@@ -1,5 +1,5 @@
-//! A thin soft sheet between steel blocks, as a gasket is: friction alone holds it in its plane, and as it is squeezed out
-//! nearly all of it slides.
+//! A thin soft sheet between steel blocks, as a gasket is: friction alone holds it in its plane, and as it is squeezed
+//! out nearly all of it slides.
 
 use crate::common::*;
 
@@ -73,8 +73,8 @@ fn a_slippery_sheet_is_solved() {
     assert!(10 * results[1].summary.slip >= 9 * results[1].summary.active, "{what}");
 }
 
-/// A steel shim of 300 times its thickness between blocks, pressed at one corner: it is softer in bending than they are by
-/// the cube of that. It is cut into many subdomains, and where products do not help F is formed without its gluing.
+/// A steel shim of 300 times its thickness between blocks, pressed at one corner: it is softer in bending than they are
+/// by the cube of that. It is cut into many subdomains, and where products do not help F is formed without its gluing.
 #[test]
 fn a_shim_under_a_corner_is_solved_with_a_formed_f() {
     let lifted = |mesh: TetMesh, by: f64| mesh.map_points(|[x, y, z]| [x, y, z + by]).expect("lifted");
@@ -105,8 +105,8 @@ fn a_shim_under_a_corner_is_solved_with_a_formed_f() {
 }
 
 /// Half a seal of square section in a bore, squeezed between rough plates: rows of supports and contact depend on one
-/// another there, and nearly all points slide. Nearly incompressible it was not solved in any step, with 14,086 to 30,578
-/// products; else these were 18,221.
+/// another there, and nearly all points slide. Nearly incompressible it was not solved in any step, with 14,086 to
+/// 30,578 products; else these were 18,221.
 #[test]
 fn a_seal_between_rough_plates_is_solved() {
     let plate = |tag, z: f64, towards: f64| {

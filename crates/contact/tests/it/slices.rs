@@ -1,5 +1,5 @@
-//! Thin bodies that are not to bend as such: slices between planes, most of whose nodes supports hold in one direction, and
-//! rods.
+//! Thin bodies that are not to bend as such: slices between planes, most of whose nodes supports hold in one direction,
+//! and rods.
 
 use crate::common::*;
 

@@ -1,5 +1,5 @@
-//! Stages: supports that are released, contacts that start and end; beside scenes that never had them, across states and
-//! ranks.
+//! Stages: supports that are released, contacts that start and end; beside scenes that never had them, across states
+//! and ranks.
 
 use crate::common::*;
 use signorini_tfeti::internal::on_ranks;
@@ -160,7 +160,8 @@ fn a_scene_that_falls_apart_is_refused_beforehand() {
     assert_eq!(error.parts(), [Part::Contact(0)], "{error}");
 }
 
-/// A floor that comes later is one that was always there, and one that goes was never there, where there is no friction.
+/// A floor that comes later is one that was always there, and one that goes was never there, where there is no
+/// friction.
 #[test]
 fn contacts_start_and_end() {
     let scene = |floors: Vec<Contact>| {

@@ -21,7 +21,8 @@ fn top(scene: &Scene, u: &[f64]) -> Vec<f64> {
     nodes.flat_map(|n| [0, 1, 2].map(|c| u[3 * n as usize + c])).collect()
 }
 
-/// A support that starts holds its nodes where they are, or takes them back; the force that is taken away is its reaction.
+/// A support that starts holds its nodes where they are, or takes them back; the force that is taken away is its
+/// reaction.
 #[test]
 fn a_support_that_starts_holds_nodes_where_they_are() {
     let clamp = || Support::fixed(brick::Z_MAX).with_start(2.0);

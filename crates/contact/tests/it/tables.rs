@@ -102,8 +102,9 @@ fn own_distance(end: f64) -> Obstacle {
     Obstacle::from_distance(distance, gradient)
 }
 
-/// A quadratic block is held by as much of a table as a linear one. Means of distances to its edge, or of a gap that jumps
-/// there, left one node, and the block 300 times as soft. A table that comes from far below is the same, and turns nothing.
+/// A quadratic block is held by as much of a table as a linear one. Means of distances to its edge, or of a gap that
+/// jumps there, left one node, and the block 300 times as soft. A table that comes from far below is the same, and
+/// turns nothing.
 #[test]
 fn a_quadratic_block_over_the_edge_of_a_table_lies_on_what_is_below() {
     let held = |order: usize, contact: Contact| {

@@ -121,8 +121,8 @@ fn scenes_without_memory_never_set_it() {
     assert_eq!(frame.report().unconverged_history, None);
 }
 
-/// The first step of a strap on a drum of radius 1, so thick, of so many cells and order, whole or cut; its end is to be
-/// pulled later.
+/// The first step of a strap on a drum of radius 1, so thick, of so many cells and order, whole or cut; its end is to
+/// be pulled later.
 fn strap(thickness: f64, (cells, order): (usize, u8), parts: Option<usize>, settings: Settings) -> Arc<StepResult> {
     let angle = 0.5 * std::f64::consts::PI;
     let strap = block([thickness, angle, 0.1], [1, cells, 1]);
@@ -165,8 +165,8 @@ fn bounded(most: usize) -> Settings {
 }
 
 /// On a strap three times as thin the fall-back lost its way: balance to 1e-4 of the loads, then to 3e-3, was called a
-/// body that friction does not hold, for want of 22 N, and more friction was advised. Friction within the slip bounds of
-/// those normal forces holds it. Cut it is solved, and with a formed F one three times as thin is, too.
+/// body that friction does not hold, for want of 22 N, and more friction was advised. Friction within the slip bounds
+/// of those normal forces holds it. Cut it is solved, and with a formed F one three times as thin is, too.
 #[test]
 fn what_friction_could_hold_is_not_told_to_slide_away() {
     let plain = bounded(2000).with_preconditioner(Preconditioner::None);

@@ -16,8 +16,8 @@ fn plug(coefficient: f64, steps: usize) -> Scene {
         .with_analysis(Analysis::quasistatic(3.0, steps))
 }
 
-/// A wedge in a rigid V, friction next to what locks it. Active sets ran in circles in the step without load, and it was
-/// said not to be held: without forces nothing has to be.
+/// A wedge in a rigid V, friction next to what locks it. Active sets ran in circles in the step without load, and it
+/// was said not to be held: without forces nothing has to be.
 #[test]
 fn next_to_locking_nothing_is_left_of_a_wedge() {
     let slope = 0.1_f64;

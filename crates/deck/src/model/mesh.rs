@@ -8,7 +8,8 @@ use signorini_fem_mesh::mesh::CellShape;
 /// Most members of one generated range.
 const RANGE: u64 = 100_000_000;
 
-/// Elements that are read: what they are, the number of their nodes and of those that are kept, and what a line of them is.
+/// Elements that are read: what they are, the number of their nodes and of those that are kept, and what a line of them
+/// is.
 const TYPES: [(&str, Kind, [usize; 2], &str); 16] = {
     use CellShape::{Hexahedron, Prism, Pyramid, Tetrahedron};
     use Kind::{Flat, Line, Rigid, Solid};

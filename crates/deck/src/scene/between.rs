@@ -10,8 +10,8 @@ use super::timeline::{Acting, Beginning};
 use crate::error::{DeckError, Fault, Word};
 use crate::tolerances::TURNED;
 
-/// The components of the nodes around an added node, with their shares in one of its own: along x, y or z, or, `turned`,
-/// along its axes, if all have the same.
+/// The components of the nodes around an added node, with their shares in one of its own: along x, y or z, or,
+/// `turned`, along its axes, if all have the same.
 fn shares(
     known: Known,
     (node, around): (u32, &[(u32, f64)]),
@@ -41,8 +41,8 @@ fn shares(
     Some(out)
 }
 
-/// An equation that lets an added node follow those around it: the node, the component along x, y and z, or `turned` along
-/// the axes that all have, and the word of an equation that names one of them.
+/// An equation that lets an added node follow those around it: the node, the component along x, y and z, or `turned`
+/// along the axes that all have, and the word of an equation that names one of them.
 pub(super) struct Follower {
     pub(super) node: u32,
     pub(super) component: usize,
@@ -137,8 +137,8 @@ impl Targets<'_> {
     }
 }
 
-/// What holds added nodes, as long as all nodes around them are held, with the displacement that the element of the deck
-/// has there. `all` is what is held of nodes of the mesh.
+/// What holds added nodes, as long as all nodes around them are held, with the displacement that the element of the
+/// deck has there. `all` is what is held of nodes of the mesh.
 pub(super) fn between<'a>(
     known: Known,
     all: impl Iterator<Item = (Key, &'a Held)>,

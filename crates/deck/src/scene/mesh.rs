@@ -28,7 +28,8 @@ pub(super) struct Raw {
     /// Number in the mesh of each node of the deck, by position, and the tetrahedra of each element.
     of_node: Vec<Option<u32>>,
     of_element: Vec<Range<u32>>,
-    /// Numbers in the deck of the nodes of the mesh; those behind them are added between others and have that of the first.
+    /// Numbers in the deck of the nodes of the mesh; those behind them are added between others and have that of the
+    /// first.
     pub(super) node_labels: Vec<u32>,
     /// The nodes around each node that is added, with their shares in it, and which these are by the first of them.
     added: Lists<(u32, f64)>,

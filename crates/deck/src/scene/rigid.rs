@@ -256,8 +256,8 @@ impl RigidBodies {
         Ok(())
     }
 
-    /// Refuses rotations of a ROT NODE itself, and those that it and REF NODE hold in two ways; `held` are the components
-    /// of nodes that are held.
+    /// Refuses rotations of a ROT NODE itself, and those that it and REF NODE hold in two ways; `held` are the
+    /// components of nodes that are held.
     pub(super) fn check_rotations<'a>(
         &self,
         timeline: &Timeline,

@@ -8,8 +8,8 @@ use crate::error::{DeckError, Word};
 use crate::model::{Kind, Side};
 use crate::tolerances::{MOST_PARTS, MOST_SQUARES, SAGITTA};
 
-/// A side of a rigid element: corners, counter-clockwise seen from outside, and of quadratic elements the nodes between each
-/// and the next.
+/// A side of a rigid element: corners, counter-clockwise seen from outside, and of quadratic elements the nodes between
+/// each and the next.
 #[derive(Debug)]
 pub(super) struct RigidFace {
     pub(super) corners: Vec<Vec3>,
@@ -138,8 +138,8 @@ fn on_edge_at([a, mid, b]: [Vec3; 3], k: usize, parts: usize) -> Vec3 {
     }
 }
 
-/// Triangles of the faces of a surface, curved ones cut into as many as leave [`SAGITTA`] of an edge, to a limit. All edges
-/// into as many parts: neighbours share places.
+/// Triangles of the faces of a surface, curved ones cut into as many as leave [`SAGITTA`] of an edge, to a limit. All
+/// edges into as many parts: neighbours share places.
 pub(super) fn triangles(faces: &[RigidFace]) -> Vec<[Vec3; 3]> {
     let bow = faces.iter().map(RigidFace::bow).fold(0.0, f64::max);
     let most = (MOST_SQUARES / faces.len() as f64).sqrt().min(MOST_PARTS);
@@ -157,8 +157,8 @@ mod tests {
     use super::*;
     use std::collections::HashMap;
 
-    /// Two quarters of a quadratic cylinder of radius 1, of a rectangle and of two triangles: the cuts of both meet, and are
-    /// as near to it as its nodes say.
+    /// Two quarters of a quadratic cylinder of radius 1, of a rectangle and of two triangles: the cuts of both meet,
+    /// and are as near to it as its nodes say.
     #[test]
     fn curved_faces_are_followed_and_neighbours_meet() {
         let at = |quarter: f64, z: f64| {

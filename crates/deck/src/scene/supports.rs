@@ -263,8 +263,8 @@ impl Table {
         Ok(())
     }
 
-    /// Gives the nodes of what is rigid its displacements: of surfaces with *KINEMATIC, and of rigid bodies. What of it is
-    /// free or `loaded` is a coupling.
+    /// Gives the nodes of what is rigid its displacements: of surfaces with *KINEMATIC, and of rigid bodies. What of it
+    /// is free or `loaded` is a coupling.
     fn couple(
         &mut self,
         known: Known,
@@ -346,8 +346,8 @@ impl Table {
     }
 
     /// Gives nodes of the mesh the displacement of a reference node and its rotation; `what` they are, and its word. A
-    /// coupling where not all of its components are held, it is loaded, nodes are held by themselves, too, or it turns and
-    /// has several histories, of which a support has one.
+    /// coupling where not all of its components are held, it is loaded, nodes are held by themselves, too, or it turns
+    /// and has several histories, of which a support has one.
     fn move_rigidly(
         &mut self,
         known: Known,

@@ -1,5 +1,5 @@
-//! `*TEMPERATURE` of all steps as eigenstrains: what nodes are warmer than at first, times the coefficients of expansion
-//! of each section.
+//! `*TEMPERATURE` of all steps as eigenstrains: what nodes are warmer than at first, times the coefficients of
+//! expansion of each section.
 
 use std::collections::BTreeMap;
 

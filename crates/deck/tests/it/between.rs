@@ -84,7 +84,8 @@ fn what_is_between_moved_nodes_moves_along() {
     }
 }
 
-/// Added nodes are held in each step in which all nodes around them are, and in no other one, however these come and go.
+/// Added nodes are held in each step in which all nodes around them are, and in no other one, however these come and
+/// go.
 #[test]
 fn added_nodes_are_held_as_long_as_their_neighbours() {
     let grid = Grid::new("C3D8", [1, 1, 2], [1.0, 1.0, 2.0]);

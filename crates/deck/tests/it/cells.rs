@@ -29,7 +29,8 @@ fn pressure_acts_on_each_face_by_its_number() {
     }
 }
 
-/// The tip of a beam under a force: cells of second order are what CalculiX has, those of first order are worth as much.
+/// The tip of a beam under a force: cells of second order are what CalculiX has, those of first order are worth as
+/// much.
 #[test]
 fn cells_bend_as_those_of_second_order() {
     // CalculiX with these elements; with fine ones -0.190475

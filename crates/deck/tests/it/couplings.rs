@@ -205,7 +205,8 @@ fn a_rigid_end_is_loaded_as_in_calculix() {
     }
 }
 
-/// A quarter of a block under a plate that is moved: what its planes of symmetry hold of the plate the plate holds, too.
+/// A quarter of a block under a plate that is moved: what its planes of symmetry hold of the plate the plate holds,
+/// too.
 #[test]
 fn planes_of_symmetry_stand_beside_a_plate() {
     let symmetry = "*BOUNDARY\nN1, 1\nN3, 2\n";
@@ -228,8 +229,8 @@ fn planes_of_symmetry_stand_beside_a_plate() {
     );
 }
 
-/// What is held in all components and loaded, too, is a coupling, whose reaction has the load in it; a moved one follows
-/// its amplitude.
+/// What is held in all components and loaded, too, is a coupling, whose reaction has the load in it; a moved one
+/// follows its amplitude.
 #[test]
 fn a_load_on_what_is_held_is_in_its_reaction() {
     let moves = "*BOUNDARY\n900, 3, 3, -0.1\n900, 1, 2\n900, 4, 6\n";

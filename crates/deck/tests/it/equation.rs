@@ -58,7 +58,8 @@ fn sets_stand_for_their_nodes() {
     assert_eq!(scene.equations().len(), 3);
 }
 
-/// A bar with a plane end, by a node that is loaded, and a lever to a node of another bar, which CalculiX solves as well.
+/// A bar with a plane end, by a node that is loaded, and a lever to a node of another bar, which CalculiX solves as
+/// well.
 fn bars(mesh_: &TetMesh) -> String {
     let mut text = format!("{}*NODE\n900, 9.\n901, 9.\n", mesh(mesh_));
     text += STEEL;

@@ -12,8 +12,8 @@ const WOOD: &str = "*MATERIAL, NAME=WOOD\n*ELASTIC, TYPE=ENGINEERING CONSTANTS\n
 
 const SECTION: &str = "*SOLID SECTION, ELSET=ALL, MATERIAL=WOOD, ORIENTATION=GRAIN\n";
 
-/// A bar of wood whose grain runs obliquely, pulled, warmed, and both; with axes by points, and turned about one of them:
-/// displacements as CalculiX 2.20 prints them.
+/// A bar of wood whose grain runs obliquely, pulled, warmed, and both; with axes by points, and turned about one of
+/// them: displacements as CalculiX 2.20 prints them.
 #[test]
 fn a_bar_of_wood_strains_as_in_calculix() {
     let bar = Brick::new([4.0, 1.0, 1.0], [8, 2, 2]).build().expect("a bar");

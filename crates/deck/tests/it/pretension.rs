@@ -62,8 +62,8 @@ fn forces(text: &str) -> Vec<[f64; 3]> {
     out
 }
 
-/// What CalculiX 2.20 makes of the same bars with doubled nodes and an *EQUATION for each component. (Its own keyword is
-/// wrong for tetrahedra, of which some meet a section with an edge or a corner only: 218 N for 1000 N.)
+/// What CalculiX 2.20 makes of the same bars with doubled nodes and an *EQUATION for each component. (Its own keyword
+/// is wrong for tetrahedra, of which some meet a section with an edge or a corner only: 218 N for 1000 N.)
 #[test]
 fn a_tightened_bar_has_the_forces_of_calculix() {
     let cases = [

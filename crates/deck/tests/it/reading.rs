@@ -147,7 +147,8 @@ fn what_is_ignored_is_reported() {
     assert!(first.contains("part.inp:") && first.contains("ignored"), "{first}");
 }
 
-/// What asks nothing of a static solution: settings of other solvers, constants of other analyses, variants of elements.
+/// What asks nothing of a static solution: settings of other solvers, constants of other analyses, variants of
+/// elements.
 #[test]
 fn what_asks_nothing_is_reported() {
     let rest = "*NSET, NSET=Q, UNSORTED\n3, 2\n*PHYSICAL CONSTANTS, ABSOLUTE ZERO=-273.15\n*SECTION CONTROLS, NAME=EC\n1.\n\

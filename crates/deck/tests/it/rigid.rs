@@ -188,8 +188,8 @@ fn beside_a_rigid_plane_nothing_is_held() {
     }
 }
 
-/// A rigid punch of solid elements that is pressed by a force on an elastic block: its elements are in the mesh, and its
-/// nodes coupled, as those of a set are. It sinks in and tilts as one, and the block takes the force.
+/// A rigid punch of solid elements that is pressed by a force on an elastic block: its elements are in the mesh, and
+/// its nodes coupled, as those of a set are. It sinks in and tilts as one, and the block takes the force.
 #[test]
 fn a_rigid_punch_is_pressed_by_a_force() {
     let brick = |n| Brick::new([1.0; 3], [n; 3]).build().expect("brick");

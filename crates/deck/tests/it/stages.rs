@@ -67,8 +67,8 @@ fn assert_printed(found: &[[f64; 3]], printed: [[f64; 3]; 3], what: &str) {
     }
 }
 
-/// A bar is stretched and bent by one end, released and pressed, held elsewhere, and released there again: what CalculiX
-/// 2.20 prints of the same deck, with seven digits.
+/// A bar is stretched and bent by one end, released and pressed, held elsewhere, and released there again: what
+/// CalculiX 2.20 prints of the same deck, with seven digits.
 #[test]
 fn steps_release_and_add_supports_as_in_calculix() {
     let deck = in_steps(
@@ -119,7 +119,8 @@ fn steps_release_and_add_supports_as_in_calculix() {
     }
 }
 
-/// What is released is gone in the first increment; what is added goes from where it is along a straight line, or jumps.
+/// What is released is gone in the first increment; what is added goes from where it is along a straight line, or
+/// jumps.
 #[test]
 fn increments_release_at_once_and_hold_along_a_line() {
     let back = "*BOUNDARY\nN2, 1, 1, 0.001\n";
@@ -278,8 +279,8 @@ fn other_changes_are_refused() {
 
 const PULLED: &str = "*BOUNDARY\nN1, 1, 3\n*DSLOAD\nS6, P, 300.\n";
 
-/// Nodes of the body stay where a step found them, loads or not, until a step releases them: what CalculiX 2.20 prints of
-/// the same deck.
+/// Nodes of the body stay where a step found them, loads or not, until a step releases them: what CalculiX 2.20 prints
+/// of the same deck.
 #[test]
 fn fixed_nodes_stay_as_in_calculix() {
     let steps = [

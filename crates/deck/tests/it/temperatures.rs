@@ -93,8 +93,8 @@ fn an_amplitude_multiplies_the_temperature() {
     }
 }
 
-/// Temperatures that differ from node to node, and not in proportion, are a few loads; at each time they strain as a deck
-/// does that says the rises of that time, without amplitudes and initial temperatures.
+/// Temperatures that differ from node to node, and not in proportion, are a few loads; at each time they strain as a
+/// deck does that says the rises of that time, without amplitudes and initial temperatures.
 #[test]
 fn fields_are_a_few_loads() {
     let law = "*EXPANSION\n12e-6\n*AMPLITUDE, NAME=A\n0., 0.2, 0.5, 1., 1., 0.4\n";

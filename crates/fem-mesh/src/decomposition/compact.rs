@@ -22,8 +22,8 @@ use super::subdomains::DecompositionError;
 /// Each tetrahedron goes to the part whose centre is nearest, out of its own part and those that touch it, centres
 /// are computed anew, and so on until next to nothing moves. A centre is the mean over tetrahedra, not over volume,
 /// so that parts keep similar numbers of them in graded meshes. What a part does not reach through faces goes to the
-/// neighbour that shares most with it. At last parts that have both faces of a crack (tagged facets that face each other
-/// across next to nothing) are split between them, unless the crack is small against what joins them.
+/// neighbour that shares most with it. At last parts that have both faces of a crack (tagged facets that face each
+/// other across next to nothing) are split between them, unless the crack is small against what joins them.
 ///
 /// `groups` are labels, one for each tetrahedron, of what a part must not mix: materials. Bodies are never mixed. The
 /// result is accepted by [`Decomposition::from_parts`](crate::Decomposition::from_parts): all parts are connected, and

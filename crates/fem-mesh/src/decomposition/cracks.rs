@@ -1,7 +1,8 @@
 //! Parts on both sides of a crack.
 //!
-//! Centres of parts do not see a crack. A part that has both of its faces hangs together around the tip, perhaps by a few
-//! tetrahedra: nothing else is as soft as this neck, and solvers take many times the steps. So it becomes a part a side.
+//! Centres of parts do not see a crack. A part that has both of its faces hangs together around the tip, perhaps by a
+//! few tetrahedra: nothing else is as soft as this neck, and solvers take many times the steps. So it becomes a part a
+//! side.
 
 use std::collections::{BTreeMap, HashMap, VecDeque};
 
@@ -12,9 +13,9 @@ use crate::vec3::{Vec3, area_vector, centroid, dot, norm, scale, sub};
 
 use super::parts::{renumbered, split_by};
 
-/// Splits parts by the faces of cracks, if these are large against the neck around their tips: each tetrahedron goes with
-/// the face to which the fewest steps lead. Small pieces join their neighbours. The parts are numbered anew, by their first
-/// tetrahedra.
+/// Splits parts by the faces of cracks, if these are large against the neck around their tips: each tetrahedron goes
+/// with the face to which the fewest steps lead. Small pieces join their neighbours. The parts are numbered anew, by
+/// their first tetrahedra.
 pub(super) fn split_at_cracks(mesh: &TetMesh, parts: &[u32]) -> Vec<u32> {
     let mut parts = renumbered(parts);
     let count = parts.iter().max().map_or(0, |&p| p as usize + 1);
@@ -49,8 +50,8 @@ pub(super) fn split_at_cracks(mesh: &TetMesh, parts: &[u32]) -> Vec<u32> {
     }
 }
 
-/// Makes parts of what hangs together, since a side may come to a part at several places, and gives what is small to the
-/// neighbour that shares most faces with it; `members` are the parts before.
+/// Makes parts of what hangs together, since a side may come to a part at several places, and gives what is small to
+/// the neighbour that shares most faces with it; `members` are the parts before.
 fn join_small(mesh: &TetMesh, members: &Lists<u32>, parts: &[u32]) -> Vec<u32> {
     let pieces = split_by(mesh, parts);
     let mut joined = pieces.clone();

@@ -17,8 +17,8 @@ pub enum PartCount {
     /// So many; more where bodies or groups are, or cracks split them.
     Exactly(usize),
     /// A number near by for which the parts of a body that fills its box are nearest to cubes; a sixth of it where
-    /// quadratic cells are graded so strongly along all axes that many parts would be flat. Rods, more than eight times as
-    /// long as thick, have a part for each two thicknesses if their tetrahedra suffice: in long parts, bending costs
+    /// quadratic cells are graded so strongly along all axes that many parts would be flat. Rods, more than eight times
+    /// as long as thick, have a part for each two thicknesses if their tetrahedra suffice: in long parts, bending costs
     /// iterations. Of one part, other bodies stay whole.
     About(usize),
 }
@@ -29,9 +29,9 @@ pub enum PartCount {
 /// connected group gets its share of the parts by its number of tetrahedra, at least one. It is cut across the longest
 /// edge of its box into slabs, slabs into columns, columns into blocks; cells of a structured mesh stay whole where the
 /// number of parts allows it. What is not compact then is made so as by
-/// [`compact_parts`](crate::decomposition::compact_parts), cracks included. In a box with cells graded along an axis, slabs of long
-/// cells get fewer of them, so that parts are not flat, and where all fell into boxes they stay so. The parts are
-/// numbered by their first tetrahedra.
+/// [`compact_parts`](crate::decomposition::compact_parts), cracks included. In a box with cells graded along an axis,
+/// slabs of long cells get fewer of them, so that parts are not flat, and where all fell into boxes they stay so. The
+/// parts are numbered by their first tetrahedra.
 ///
 /// # Errors
 /// [`DecompositionError::PartCount`] if there is not one label for each tetrahedron; [`DecompositionError::NoParts`]

@@ -1,7 +1,7 @@
 //! Subdomains of a mesh, and the copies of each node in them.
 //!
-//! `subdomains` is the decomposition; `boxes` cuts it by a grid, `parts` takes the part numbers of a partitioner, `compact`
-//! makes ragged parts compact, and `even` makes parts for a mesh without any.
+//! `subdomains` is the decomposition; `boxes` cuts it by a grid, `parts` takes the part numbers of a partitioner,
+//! `compact` makes ragged parts compact, and `even` makes parts for a mesh without any.
 //!
 //! Uses: `mesh`, `tables`, `vec3`. In: a mesh, and a grid or part numbers. Out: subdomains connected through faces.
 

@@ -18,7 +18,8 @@ pub struct Subdomain {
     pub mids: Vec<[u32; 6]>,
     /// Global number of each tetrahedron, ascending.
     pub elements: Vec<u32>,
-    /// Whether its nodes are places only, which it does not move: its motion is one of two parts relative to each other.
+    /// Whether its nodes are places only, which it does not move: its motion is one of two parts relative to each
+    /// other.
     pub is_relative: bool,
 }
 
@@ -156,8 +157,8 @@ impl Decomposition {
         }
     }
 
-    /// Adds subdomains without elements behind the others. They are rigid: nothing but their six motions moves them, and
-    /// their nodes, which stay those of elements too, move with them, unless they are [places](Rigid::Places).
+    /// Adds subdomains without elements behind the others. They are rigid: nothing but their six motions moves them,
+    /// and their nodes, which stay those of elements too, move with them, unless they are [places](Rigid::Places).
     ///
     /// # Errors
     /// [`DecompositionError::RigidNode`] for a node that does not exist.

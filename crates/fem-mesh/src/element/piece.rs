@@ -27,8 +27,8 @@ pub(crate) enum Piece {
     },
 }
 
-/// Gradients of the shape functions of a tetrahedron of a mesh at barycentric coordinates, 1/m: those of its corners, then
-/// those of its mid-nodes.
+/// Gradients of the shape functions of a tetrahedron of a mesh at barycentric coordinates, 1/m: those of its corners,
+/// then those of its mid-nodes.
 pub fn shape_gradients(mesh: &TetMesh, tet: usize, l: &[f64; 4]) -> Vec<Vec3> {
     match mesh.order() {
         1 => Element::new(&mesh.tet_points(tet)).gradients.to_vec(),

@@ -2,7 +2,8 @@
 //!
 //! A displacement holds component i of node n at 3 n + i. Strains and stresses are constant in each linear tetrahedron,
 //! linear in a quadratic one; they are in Voigt order xx, yy, zz, yz, xz, xy, strains with engineering shear. `strain`
-//! has these, `norms` integrals for errors against a known displacement, `difference` the energy between displacements of two meshes.
+//! has these, `norms` integrals for errors against a known displacement, `difference` the energy between displacements
+//! of two meshes.
 //!
 //! Uses: `element`, `material`, `mesh`, `vec3`. In: a mesh and a displacement. Out: values a tetrahedron or node,
 //! norms.

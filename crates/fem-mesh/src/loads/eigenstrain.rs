@@ -10,8 +10,8 @@ use crate::mesh::TetMesh;
 use super::assemble::{accumulate, expect_decomposition};
 use super::density::LoadError;
 
-/// Turns an eigenstrain into nodal forces of the subdomains, as [`assemble_load`](crate::assemble_load) does with loads:
-/// the work of the stress that would suppress it, on the strains of the elements. They are in balance on each
+/// Turns an eigenstrain into nodal forces of the subdomains, as [`assemble_load`](crate::assemble_load) does with
+/// loads: the work of the stress that would suppress it, on the strains of the elements. They are in balance on each
 /// tetrahedron.
 ///
 /// # Errors

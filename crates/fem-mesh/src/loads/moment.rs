@@ -6,8 +6,8 @@ use crate::mesh::{FacetTag, TetMesh, curved_facet, facet_area_vector};
 use crate::quadrature;
 use crate::vec3::{Vec3, add, cross, norm, scale, sub};
 
-/// The traction `w x (x - c)` on the facets of a tag, at places and normals, whose moment is the given one: `c` is their
-/// centroid, and their second moments of area about it times `w` are the moment. Not a number without facets.
+/// The traction `w x (x - c)` on the facets of a tag, at places and normals, whose moment is the given one: `c` is
+/// their centroid, and their second moments of area about it times `w` are the moment. Not a number without facets.
 pub(super) fn traction_of_moment(mesh: &TetMesh, tag: FacetTag, moment: Vec3) -> impl Fn(Vec3, Vec3) -> Vec3 {
     let areas = areas(mesh, tag);
     let whole: f64 = areas.iter().map(|(_, area)| area).sum();

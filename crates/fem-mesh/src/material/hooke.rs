@@ -99,8 +99,8 @@ impl Hooke {
     }
 
     /// A general law from its 6 x 6 matrix (Voigt order xx, yy, zz, yz, xz, xy with engineering
-    /// shear): the entry of (xx, yz) is c_xxyz; see (2.8) for the conditions. Deviations from symmetry at rounding level
-    /// are averaged away.
+    /// shear): the entry of (xx, yz) is c_xxyz; see (2.8) for the conditions. Deviations from symmetry at rounding
+    /// level are averaged away.
     ///
     /// # Errors
     /// [`HookeError`] if an entry is not finite, a symmetry is missing by more than 1e-9 of the

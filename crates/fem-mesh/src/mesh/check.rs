@@ -98,8 +98,9 @@ pub(super) fn no_dangling(nodes: usize, tets: &[[u32; 4]], mids: &[[u32; 6]]) ->
     }
 }
 
-/// Coinciding nodes of the same body are a cut that nobody meant, unless `keep` drops them; those of different bodies are
-/// allowed, since bodies in contact may have matching nodes. Here tetrahedra with a common node belong to the same body.
+/// Coinciding nodes of the same body are a cut that nobody meant, unless `keep` drops them; those of different bodies
+/// are allowed, since bodies in contact may have matching nodes. Here tetrahedra with a common node belong to the same
+/// body.
 pub(super) fn no_coincident(
     points: &[Vec3],
     tets: &[[u32; 4]],

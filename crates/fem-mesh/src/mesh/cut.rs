@@ -10,11 +10,11 @@ use super::faces::{NONE, face_nodes};
 use super::tet_mesh::{Facet, FacetTag, TetMesh};
 
 impl TetMesh {
-    /// Cuts the mesh open along all faces between tetrahedra of which `is_first(tet)` is `Some(true)` and `Some(false)`;
-    /// those with `None` stay joined with both. The facets of the first side get the first tag, those of the other the
-    /// second one, beside those that have them already. Nodes of the cut stay with the first side; the other side has copies of
-    /// them, numbered behind all nodes, which have the list of these nodes in this order. What of a side hangs together by an
-    /// edge or a node only still does.
+    /// Cuts the mesh open along all faces between tetrahedra of which `is_first(tet)` is `Some(true)` and
+    /// `Some(false)`; those with `None` stay joined with both. The facets of the first side get the first tag, those of
+    /// the other the second one, beside those that have them already. Nodes of the cut stay with the first side; the
+    /// other side has copies of them, numbered behind all nodes, which have the list of these nodes in this order. What
+    /// of a side hangs together by an edge or a node only still does.
     ///
     /// ```
     /// use signorini_fem_mesh::{Brick, FacetTag, vec3};
@@ -44,13 +44,13 @@ impl TetMesh {
         )
     }
 
-    /// Cuts a body open along faces inside it that need not lead through: a crack, the tip of which stays joined. It has
-    /// all faces between two tetrahedra of which `is_on(corners)` holds; `is_first(tet)` tells on which side of them a
-    /// tetrahedron is. Tags, nodes and copies are as those of [`cut`](Self::cut). A face with all corners at the tip stays
-    /// closed. Branches are cracks of their own.
+    /// Cuts a body open along faces inside it that need not lead through: a crack, the tip of which stays joined. It
+    /// has all faces between two tetrahedra of which `is_on(corners)` holds; `is_first(tet)` tells on which side of
+    /// them a tetrahedron is. Tags, nodes and copies are as those of [`cut`](Self::cut). A face with all corners at the
+    /// tip stays closed. Branches are cracks of their own.
     ///
-    /// Gmsh's plugin `Crack` does the same to a surface inside a volume, with `NewPhysicalGroup` for the other side: one run
-    /// a branch, and the order of elements set before.
+    /// Gmsh's plugin `Crack` does the same to a surface inside a volume, with `NewPhysicalGroup` for the other side:
+    /// one run a branch, and the order of elements set before.
     ///
     /// ```
     /// use signorini_fem_mesh::{Brick, FacetTag, vec3};
@@ -194,8 +194,8 @@ impl TetMesh {
         Ok((out, copied))
     }
 
-    /// The copies of mid-nodes, each with its tetrahedra, from the corners that have a copy: where the ends of an edge become
-    /// different nodes, its mid-node does. The first keeps it, an edge that stays if there is one.
+    /// The copies of mid-nodes, each with its tetrahedra, from the corners that have a copy: where the ends of an edge
+    /// become different nodes, its mid-node does. The first keeps it, an edge that stays if there is one.
     fn copies_of_mids(&self, corners: &BTreeMap<u32, Vec<usize>>) -> Vec<(u32, Vec<usize>)> {
         let is_copied = |tet: usize, node: u32| corners.get(&node).is_some_and(|tets| tets.binary_search(&tet).is_ok());
         let ends = |tet: usize, edge: usize| EDGES[edge].map(|k| is_copied(tet, self.tets[tet][k]));

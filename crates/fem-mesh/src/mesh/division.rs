@@ -34,8 +34,8 @@ pub struct Division {
     pub tets: Vec<[u32; 4]>,
     /// Nodes on the edges of each, if the cells have some.
     pub mids: Vec<[u32; 6]>,
-    /// For the face of each that lacks its corner 3, 2, 0 and 1, in this order, the number of the face of the cell that it
-    /// is a part of, from 1; 0 inside the cell.
+    /// For the face of each that lacks its corner 3, 2, 0 and 1, in this order, the number of the face of the cell that
+    /// it is a part of, from 1; 0 inside the cell.
     pub faces: Vec<[u8; 4]>,
     /// Tetrahedra of each cell.
     pub of_cell: Vec<Range<u32>>,
@@ -46,16 +46,16 @@ impl Division {
     /// Divides cells all of which have nodes on their edges, or none; new nodes are added to the points.
     ///
     /// # Errors
-    /// [`MeshError::CellNodes`] for a number of nodes that a cell does not take, [`MeshError::CellNode`] for a node that
-    /// there is not, [`MeshError::CellFlat`] for too many corners that are one, [`MeshError::CellsCross`] for triangles that
-    /// do not fit, [`MeshError::MixedOrder`] for cells with and without nodes on their edges, [`MeshError::TooLarge`] for
-    /// more nodes or tetrahedra than can be numbered.
+    /// [`MeshError::CellNodes`] for a number of nodes that a cell does not take, [`MeshError::CellNode`] for a node
+    /// that there is not, [`MeshError::CellFlat`] for too many corners that are one, [`MeshError::CellsCross`] for
+    /// triangles that do not fit, [`MeshError::MixedOrder`] for cells with and without nodes on their edges,
+    /// [`MeshError::TooLarge`] for more nodes or tetrahedra than can be numbered.
     pub fn new(points: &mut Vec<[f64; 3]>, cells: &[Cell<'_>]) -> Result<Self, MeshError> {
         Self::of(points, cells, false)
     }
 
-    /// The same into quadratic tetrahedra: cells without nodes on their edges get those of others there, or new ones. Linear
-    /// tetrahedra are far stiffer in bending than the cells that they fill; quadratic ones are not.
+    /// The same into quadratic tetrahedra: cells without nodes on their edges get those of others there, or new ones.
+    /// Linear tetrahedra are far stiffer in bending than the cells that they fill; quadratic ones are not.
     ///
     /// # Errors
     /// As [`new`](Self::new).
@@ -120,9 +120,9 @@ impl Division {
         Ok(out)
     }
 
-    /// Nodes that are added behind all others, on edges, in faces and in the middle of hexahedra that have none there: the
-    /// given nodes of the edge, the face or the cell, and the shares of their places in that of the new one. These are the
-    /// shape functions of second order, or, of cells of first order, halves for the ends of the edge and zeros.
+    /// Nodes that are added behind all others, on edges, in faces and in the middle of hexahedra that have none there:
+    /// the given nodes of the edge, the face or the cell, and the shares of their places in that of the new one. These
+    /// are the shape functions of second order, or, of cells of first order, halves for the ends of the edge and zeros.
     pub fn added(&self) -> impl ExactSizeIterator<Item = &[(u32, f64)]> {
         (0..self.added.count()).map(|k| self.added.of(k))
     }
@@ -287,8 +287,8 @@ fn crossed(cells: &[Cell<'_>]) -> Option<MeshError> {
     None
 }
 
-/// The triangles, of the same orientation, into which a division cuts a face, given by its corners: a quadrilateral is cut
-/// from that of the smallest number.
+/// The triangles, of the same orientation, into which a division cuts a face, given by its corners: a quadrilateral is
+/// cut from that of the smallest number.
 pub fn divide_face(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let smallest = (0..corners.len()).min_by_key(|&k| corners[k]);
     // a triangle stays as it is
@@ -297,8 +297,8 @@ pub fn divide_face(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     (2..corners.len()).map(move |k| [at(0), at(k - 1), at(k)])
 }
 
-/// Shape functions of second order in the middle of a face or a hexahedron with nodes on the edges only: at its corners,
-/// and at these.
+/// Shape functions of second order in the middle of a face or a hexahedron with nodes on the edges only: at its
+/// corners, and at these.
 fn shares(corners: usize, mids: usize) -> [f64; 2] {
     [-0.25, (1.0 + 0.25 * corners as f64) / mids as f64]
 }

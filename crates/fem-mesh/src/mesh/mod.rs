@@ -2,11 +2,12 @@
 //!
 //! `tet_mesh` is the mesh, `check` what its tables must pass, `faces` which tetrahedra meet at which face, `quadratic`
 //! mid-nodes, `curved` the geometry of tetrahedra and facets that have them, `cylindrical` directions about an axis,
-//! `edit` meshes made from meshes, `cut` opens them, `cells` are hexahedra, prisms and pyramids, `division` makes tetrahedra of
-//! them, `brick` a box of cells, `surface` nodal normals, frames, areas and
-//! means, `error` what can be wrong.
+//! `edit` meshes made from meshes, `cut` opens them, `cells` are hexahedra, prisms and pyramids, `division` makes
+//! tetrahedra of them, `brick` a box of cells, `surface` nodal normals, frames, areas and means, `error` what can be
+//! wrong.
 //!
-//! Uses: `tables`, `tolerances`, `vec3`. In: tables of points, tetrahedra and facets. Out: a mesh that has passed all checks.
+//! Uses: `tables`, `tolerances`, `vec3`. In: tables of points, tetrahedra and facets. Out: a mesh that has passed all
+//! checks.
 
 pub mod brick;
 mod cells;

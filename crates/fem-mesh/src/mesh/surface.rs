@@ -87,9 +87,9 @@ errors! {
 /// A part of the boundary with what contact needs at its nodes, the corners of its triangles.
 ///
 /// The area of a node is a third of the triangles around it; its normal is the mean of theirs,
-/// weighted by area. In a mesh of order 2 the area is the integral of the linear hat function of the node, the same where
-/// edges are straight, and the normal on curved facets the mean that displacements have ([`Surface::mean`]), in which
-/// mid-nodes have a share: that where the force of the node acts, at a rim, too.
+/// weighted by area. In a mesh of order 2 the area is the integral of the linear hat function of the node, the same
+/// where edges are straight, and the normal on curved facets the mean that displacements have ([`Surface::mean`]), in
+/// which mid-nodes have a share: that where the force of the node acts, at a rim, too.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Surface {
     facets: Vec<u32>,
@@ -266,8 +266,8 @@ impl Surface {
         if mean.is_empty() { vec![(own, 1.0)] } else { mean }
     }
 
-    /// Area of the hat function of a corner of a triangle, a third of a straight one's, and the integral of the normal with
-    /// it, on curved facets with the weight of [`Surface::mean`].
+    /// Area of the hat function of a corner of a triangle, a third of a straight one's, and the integral of the normal
+    /// with it, on curved facets with the weight of [`Surface::mean`].
     pub fn corner_area(&self, mesh: &TetMesh, triangle: usize, corner: usize) -> (f64, [f64; 3]) {
         match self.integrals.get(triangle) {
             Some(facet) => (facet.areas[corner], facet.normals[corner]),

@@ -265,8 +265,8 @@ impl TetMesh {
     }
 }
 
-/// Turns facets outward and finds their tetrahedra. Leaves out faces of cracks that have all corners at the tip, and are
-/// closed: facets inside that are listed from both sides, at whose corners others of their tags face each other.
+/// Turns facets outward and finds their tetrahedra. Leaves out faces of cracks that have all corners at the tip, and
+/// are closed: facets inside that are listed from both sides, at whose corners others of their tags face each other.
 fn place_facets(
     points: &[Vec3],
     tets: &[[u32; 4]],

@@ -143,8 +143,8 @@ fn layers(order: usize) -> TetMesh {
     of_order(order, mesh)
 }
 
-/// A crack inside a block: its tip is on both sides, all other nodes on one, and the block stays one body. One that leads
-/// through is a cut.
+/// A crack inside a block: its tip is on both sides, all other nodes on one, and the block stays one body. One that
+/// leads through is a cut.
 #[test]
 fn a_crack_keeps_its_tip() {
     for order in [1, 2] {
@@ -233,8 +233,8 @@ fn parts_do_not_straddle_a_crack() {
     assert_eq!(parts.iter().max(), Some(&2));
 }
 
-/// Ragged cracks that cross others and end at their tips: meshes as those that are made anew, and the same nodes whether
-/// the order is raised before or after.
+/// Ragged cracks that cross others and end at their tips: meshes as those that are made anew, and the same nodes
+/// whether the order is raised before or after.
 #[test]
 fn ragged_cracks_leave_sound_meshes() {
     let mut dice = Pcg64Mcg::new(0x9e37_79b9_7f4a_7c15);

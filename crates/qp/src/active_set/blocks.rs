@@ -79,7 +79,8 @@ impl ActiveSet {
         });
     }
 
-    /// After a [guess](Self::guess): the next [`classify`](Self::classify) is to find what it has found, circles sliding.
+    /// After a [guess](Self::guess): the next [`classify`](Self::classify) is to find what it has found, circles
+    /// sliding.
     pub(crate) fn foresee_guess(&mut self) {
         let bounds = self.free.iter().map(|free| !free);
         self.foreseen = bounds

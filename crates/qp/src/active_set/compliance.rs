@@ -1,8 +1,8 @@
 //! Springs in series with the constrained components, and what a solve remembers of them ([`path`](super::path)).
 //!
-//! They add `c / scale` to the diagonal of `A`. All that belongs to a constrained component changes with its spring: the
-//! preconditioner and the weight of the projector by the share `1 / (1 + c)`, as with the curvature of a disc, and the
-//! step of the natural map.
+//! They add `c / scale` to the diagonal of `A`. All that belongs to a constrained component changes with its spring:
+//! the preconditioner and the weight of the projector by the share `1 / (1 + c)`, as with the curvature of a disc, and
+//! the step of the natural map.
 
 use crate::problem::SymmetricOperator;
 use crate::vector;

@@ -72,10 +72,10 @@ pub(crate) fn disc_state(x: [f64; 2], g: [f64; 2], radius: f64, scale: f64) -> D
     }
 }
 
-/// Whether a point on its circle goes so far inwards that it comes to the other side, or one in the centre so far out of a
-/// circle that has just grown, as far as its own scale tells. A solve with the disc free would take it there and spoil what
-/// else it finds; so it is held, and the move takes it across. On the circle not twice in a row: with others that go with
-/// it a point gives way further than it does alone.
+/// Whether a point on its circle goes so far inwards that it comes to the other side, or one in the centre so far out
+/// of a circle that has just grown, as far as its own scale tells. A solve with the disc free would take it there and
+/// spoil what else it finds; so it is held, and the move takes it across. On the circle not twice in a row: with others
+/// that go with it a point gives way further than it does alone.
 pub(crate) fn crosses(x: [f64; 2], g: [f64; 2], radius: f64, a: f64, is_held: bool) -> bool {
     let length = x[0].hypot(x[1]);
     if length <= 0.0 {

@@ -228,7 +228,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         balances
     }
 
-    /// The same but for the equality where there is no such point: constrained components then balance as far as they can.
+    /// The same but for the equality where there is no such point: constrained components then balance as far as they
+    /// can.
     fn approach(&mut self) -> bool {
         let constrained = self.constrained();
         let (y, lengths) = (&self.x[..constrained], &self.problem.scale[..constrained]);
@@ -239,8 +240,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         balances
     }
 
-    /// [`project_start`](Iterate::project_start), and where that moves nothing [`project`](Iterate::project) with the set
-    /// of the start: the projector may still have that of another solve.
+    /// [`project_start`](Iterate::project_start), and where that moves nothing [`project`](Iterate::project) with the
+    /// set of the start: the projector may still have that of another solve.
     pub(crate) fn begin(&mut self) -> Result<(), QpError> {
         if self.project_start() || self.approach() {
             return Ok(());

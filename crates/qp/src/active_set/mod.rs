@@ -1,10 +1,11 @@
 //! The active-set method: conjugate gradients for a choice of active, free and sliding blocks, and a natural map that
 //! predicts the next choice.
 //!
-//! From above: `solver` (the loop), `start`, `moves` and `run` (what happens between one active set and the next), `descent`
-//! (safeguard against cycles of predictions), `path` and `compliance` (springs that lead to another set), `trial` (slips, tried where a run takes long), `cg` and
-//! `weights` (the linear problem), `iterate` (the point), `balance` (modes that constraints alone stop), `coupling` (radii
-//! that depend on the solution), `natural_map`, `blocks` and `disc` (states); `problem`, `settings`, `view`.
+//! From above: `solver` (the loop), `start`, `moves` and `run` (what happens between one active set and the next),
+//! `descent` (safeguard against cycles of predictions), `path` and `compliance` (springs that lead to another set),
+//! `trial` (slips, tried where a run takes long), `cg` and `weights` (the linear problem), `iterate` (the point),
+//! `balance` (modes that constraints alone stop), `coupling` (radii that depend on the solution), `natural_map`,
+//! `blocks` and `disc` (states); `problem`, `settings`, `view`.
 //!
 //! Uses: `problem`, `report`, `vector`, `settings`, `error`, `tolerances`. In: operator, preconditioner, projector,
 //! set, load, a start. Out: the minimiser and its product, a report.

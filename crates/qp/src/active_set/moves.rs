@@ -45,8 +45,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         Ok(())
     }
 
-    /// Whether the solved set is to tell what is active next, not the point moved to: on bodies that bend easily forces that
-    /// pull, and are cut off, come back there.
+    /// Whether the solved set is to tell what is active next, not the point moved to: on bodies that bend easily forces
+    /// that pull, and are cut off, come back there.
     fn is_unsure(&self) -> bool {
         self.safeguard.is_none() && (self.is_near_path() || self.progress.waited >= UNSURE)
     }
@@ -65,9 +65,9 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         Ok(())
     }
 
-    /// The same such that constrained components balance. At the `start` there is no natural map yet. A set that follows
-    /// and a balance that follows the set may swing ever wider (friction that takes more than all of a pressure away):
-    /// then it follows a point between.
+    /// The same such that constrained components balance. At the `start` there is no natural map yet. A set that
+    /// follows and a balance that follows the set may swing ever wider (friction that takes more than all of a pressure
+    /// away): then it follows a point between.
     pub(crate) fn settle_loose(&mut self, start: bool, follow: bool) -> Result<(), QpError> {
         let constrained = self.at.constrained();
         let from = self.at.x[..constrained].to_vec();
@@ -198,8 +198,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
     }
 }
 
-/// Rounds in which a point that balances and a set that follows it swing about their limit: parts of ways as Irons and Tuck
-/// (Int. J. Numer. Meth. Eng. 1, 1969) take them.
+/// Rounds in which a point that balances and a set that follows it swing about their limit: parts of ways as Irons and
+/// Tuck (Int. J. Numer. Meth. Eng. 1, 1969) take them.
 #[derive(Default)]
 struct Swings {
     /// The last two ways from the point that was followed to the one that balances.

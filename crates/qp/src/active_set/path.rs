@@ -1,10 +1,10 @@
 //! A path of compliant constraints to an active set where predictions fail.
 //!
 //! Where a body bends easily, forces gather at the rim of what touches, and a set predicted from a solved one is no
-//! closer to the solution. [Springs](super::compliance) in series with the constrained components spread the forces, and
-//! with much compliance few predictions settle. From one such set to that of a tenth of it little changes, down to none
-//! (Moreau-Yosida regularisation with path-following: Hintermüller and Kunisch, SIAM J. Optim. 17, 2006). A change of
-//! the compliance costs no product, only its end one, for large terms have rounded.
+//! closer to the solution. [Springs](super::compliance) in series with the constrained components spread the forces,
+//! and with much compliance few predictions settle. From one such set to that of a tenth of it little changes, down to
+//! none (Moreau-Yosida regularisation with path-following: Hintermüller and Kunisch, SIAM J. Optim. 17, 2006). A change
+//! of the compliance costs no product, only its end one, for large terms have rounded.
 
 use crate::problem::{ConvexSet, EqualityProjector, SymmetricOperator};
 use crate::tolerances::{

@@ -289,8 +289,8 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
             && self.is_gradient_small(place)
     }
 
-    /// Whether the residual on the set, at least `rho / |z|`, is small against `b` and `A x`, after a long step: an `x` that
-    /// runs away along a direction without curvature makes any error small against itself.
+    /// Whether the residual on the set, at least `rho / |z|`, is small against `b` and `A x`, after a long step: an `x`
+    /// that runs away along a direction without curvature makes any error small against itself.
     fn is_gradient_small(&self, place: &Place) -> bool {
         let (problem, norm) = (self.at.problem, |v: &[f64]| self.at.problem.operator.norm(v));
         let load = norm(problem.linear);

@@ -9,7 +9,8 @@
 //! next step of conjugate gradients, of the length of the last one. A set of which much has just changed is not solved:
 //! this step leads over it, and over the first one where the product of the start is known before the set has moved it.
 //! Where predictions run in circles, or away from a start that told nothing, a path
-//! of compliant constraints leads to another set ([`path`](super::path)), and slips are tried ([`trial`](super::trial)).
+//! of compliant constraints leads to another set ([`path`](super::path)), and slips are tried
+//! ([`trial`](super::trial)).
 //!
 //! The error is the length of the preconditioned residual. After `PATIENCE` sets without progress they are solved
 //! more accurately, every move has to lower the cost, and the set follows the solution only where the problem with

@@ -1,10 +1,10 @@
 //! Trials of another prediction, beside a run that takes long.
 //!
-//! Sets of bodies that constraints alone hold may run in circles though their bounds have settled: on a solved set, points
-//! that stick are beyond their circles by many radii, a move cuts them all off at once, and what goes with them then seems
-//! to turn round. A semismooth Newton step does not ask the point moved to: discs slide where, and as far as, the solved
-//! set tells. That ends such circles, but is no better elsewhere, so it is tried with a part of the products spent so far.
-//! A run whose trial fails goes on as if there had been none.
+//! Sets of bodies that constraints alone hold may run in circles though their bounds have settled: on a solved set,
+//! points that stick are beyond their circles by many radii, a move cuts them all off at once, and what goes with them
+//! then seems to turn round. A semismooth Newton step does not ask the point moved to: discs slide where, and as far
+//! as, the solved set tells. That ends such circles, but is no better elsewhere, so it is tried with a part of the
+//! products spent so far. A run whose trial fails goes on as if there had been none.
 
 use crate::error::QpError;
 use crate::problem::{EqualityProjector, MovingSet, Segment, SymmetricOperator};
@@ -81,8 +81,8 @@ mod tests {
     use crate::active_set::solver::go_on;
     use crate::problem::{DenseOperator, DenseProjector, Identity, ProductSet};
 
-    /// A chain with discs, bounds and free components, and an equality, solved with a pause after so many products, in which
-    /// slips may be tried with half as many: the solution, and the products of the run.
+    /// A chain with discs, bounds and free components, and an equality, solved with a pause after so many products, in
+    /// which slips may be tried with half as many: the solution, and the products of the run.
     fn chain(pause: usize, tries: bool) -> (Vec<f64>, usize) {
         const N: usize = 20;
         let entry = |k: usize| match (k / N).abs_diff(k % N) {

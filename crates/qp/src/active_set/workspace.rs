@@ -84,23 +84,23 @@ impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
         self.coupling.set(slopes);
     }
 
-    /// Tells the next solve that the product handed in is that of the start with these constrained components in place of
-    /// its own (none: with its own), and the [shortest step](Self::shortest_step) of an earlier solve, 0 if there was
-    /// none: where the set moves the start, a step of that length shares the product.
+    /// Tells the next solve that the product handed in is that of the start with these constrained components in place
+    /// of its own (none: with its own), and the [shortest step](Self::shortest_step) of an earlier solve, 0 if there
+    /// was none: where the set moves the start, a step of that length shares the product.
     pub fn set_start(&mut self, known: &[f64], shortest: f64) {
         self.known.clear();
         self.known.extend_from_slice(known);
         self.first_step = shortest;
     }
 
-    /// Tells the next solve that components on their bounds at the start are active, and discs on their circles slide, but no
-    /// others, as [`interior_point()`](crate::interior_point()) leaves them: its gradient is too rough to tell.
+    /// Tells the next solve that components on their bounds at the start are active, and discs on their circles slide,
+    /// but no others, as [`interior_point()`](crate::interior_point()) leaves them: its gradient is too rough to tell.
     pub fn trust_start(&mut self) {
         self.told = true;
     }
 
-    /// The shortest step of conjugate gradients in the last solve, infinite if it made none: one of that length magnifies
-    /// next to nothing.
+    /// The shortest step of conjugate gradients in the last solve, infinite if it made none: one of that length
+    /// magnifies next to nothing.
     #[must_use]
     pub fn shortest_step(&self) -> f64 {
         self.shortest

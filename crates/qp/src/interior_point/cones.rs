@@ -17,8 +17,8 @@ pub(crate) enum Cone {
     Circle(Circle),
 }
 
-/// One or two components `t` from `first` on, in a circle of radius `r = own`, or `own + slope * x[of]` where it follows
-/// `(of, slope)`.
+/// One or two components `t` from `first` on, in a circle of radius `r = own`, or `own + slope * x[of]` where it
+/// follows `(of, slope)`.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Circle {
     pub(crate) first: usize,
@@ -134,7 +134,8 @@ impl Cone {
         }
     }
 
-    /// Calls `f` with those of the derivative of `q`, which is the normal turned round, and more where a radius follows.
+    /// Calls `f` with those of the derivative of `q`, which is the normal turned round, and more where a radius
+    /// follows.
     pub(crate) fn derivative(&self, x: &[f64], mut f: impl FnMut(usize, f64)) {
         self.normal(x, |i, n| f(i, -n));
         if let Self::Circle(circle) = self
@@ -168,8 +169,8 @@ pub(crate) struct Cones {
 }
 
 impl Cones {
-    /// Puts fixed components of `x` where the set has them. The radii of the set, and intervals that slopes tell of, are
-    /// those at `x`. What has one bound and is on it rests there, unless that is so everywhere.
+    /// Puts fixed components of `x` where the set has them. The radii of the set, and intervals that slopes tell of,
+    /// are those at `x`. What has one bound and is on it rests there, unless that is so everywhere.
     pub(crate) fn new(set: &ProductSet, slopes: &[RadiusSlope], x: &mut [f64]) -> Result<Self, QpError> {
         let slope_of = slope_table(set, slopes, x.len())?;
         let before = x.to_vec();
@@ -246,8 +247,8 @@ impl Cones {
         self.all.sort_by_key(|cone| matches!(cone, Cone::Circle(_)));
     }
 
-    /// Lets go what `pushes` off the bound on which it rests, given component and sign, with circles that follow. Whether
-    /// there is any.
+    /// Lets go what `pushes` off the bound on which it rests, given component and sign, with circles that follow.
+    /// Whether there is any.
     pub(crate) fn let_go(&mut self, pushes: impl Fn(usize, f64) -> bool) -> bool {
         let mut goes = vec![false; self.fixed.len()];
         for cone in &self.resting {

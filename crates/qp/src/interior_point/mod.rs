@@ -2,8 +2,8 @@
 //!
 //! From above: `solver` (the loop), `system` (the linear equations of a step), `cones` (blocks as inequalities).
 //!
-//! Uses: `problem`, `report`, `vector`, `error`, `tolerances`; of `active_set` the radius slopes. In: a matrix, a load, a
-//! set, slopes of its radii. Out: a point next to the solution, a report.
+//! Uses: `problem`, `report`, `vector`, `error`, `tolerances`; of `active_set` the radius slopes. In: a matrix, a load,
+//! a set, slopes of its radii. Out: a point next to the solution, a report.
 
 mod cones;
 mod solver;

@@ -4,7 +4,8 @@
 //! `tau` on the way to zero: predictor and corrector by Mehrotra (SIAM J. Optim. 2, 1992), inequalities of discs as in
 //! Kucera, Machalova, Netuka, Zencak (Optim. Methods Softw. 28, 2013). A radius that follows a component stays out of
 //! `n`, but not of the derivative of `q`: the equations are those of Coulomb friction itself, no sequence of problems
-//! with given radii. No active set is predicted, so the number of steps, 15 to 40 a round, hardly depends on the problem.
+//! with given radii. No active set is predicted, so the number of steps, 15 to 70 a round, hardly depends on the
+//! problem.
 
 use crate::active_set::RadiusSlope;
 use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
@@ -28,19 +29,20 @@ pub struct InteriorPointReport {
     pub status: Status,
     /// Steps, with one factorisation each; the first round takes another one.
     pub steps: usize,
-    /// Residual of the gradient and the multipliers of the last round, before it goes to bounds and circles, over the load,
-    /// each component over the root of its diagonal entry. Where radii vanish, what is on those circles means nothing.
+    /// Residual of the gradient and the multipliers of the last round, before it goes to bounds and circles, over the
+    /// load, each component over the root of its diagonal entry. Where radii vanish, what is on those circles means
+    /// nothing.
     pub residual: f64,
 }
 
-/// Minimises `1/2 x·Ax - b·x` over the set from inside of it, up to `complementarity`: values of inequalities times their
-/// multipliers, in all, over the work of the load, or what rounding leaves, at most 1e-9.
+/// Minimises `1/2 x·Ax - b·x` over the set from inside of it, up to `complementarity`: values of inequalities times
+/// their multipliers, in all, over the work of the load, or what rounding leaves, at most 1e-9.
 ///
-/// `x` is the point that the radii of the set belong to, where `slopes` tell that they follow it. What has one bound and is
-/// on it there begins fixed to it and is let go, with radii that follow it, once the gradient pushes it off: the equations
-/// of a step are those of all other components only. Beyond that the method begins where it likes; where nothing is off its
-/// bound, all are free. A slope may also tell of an interval symmetric to zero. The result is on bounds and circles where
-/// multipliers tell so: a start for [`active_set()`](crate::active_set()).
+/// `x` is the point that the radii of the set belong to, where `slopes` tell that they follow it. What has one bound
+/// and is on it there begins fixed to it and is let go, with radii that follow it, once the gradient pushes it off: the
+/// equations of a step are those of all other components only. Beyond that the method begins where it likes; where
+/// nothing is off its bound, all are free. A slope may also tell of an interval symmetric to zero. The result is on
+/// bounds and circles where multipliers tell so: a start for [`active_set()`](crate::active_set()).
 ///
 /// # Errors
 /// [`QpError`] for wrong lengths, sets and slopes, and for NaN.
@@ -205,8 +207,8 @@ impl Run<'_> {
         }
     }
 
-    /// Lets go the components that the gradient pushes off their bounds, `only` those or all that rest as soon as there is
-    /// one; whether there is.
+    /// Lets go the components that the gradient pushes off their bounds, `only` those or all that rest as soon as there
+    /// is one; whether there is.
     fn let_go(&mut self, only: bool) -> bool {
         // over the root of the diagonal: stiff components stand beside soft ones
         let push = |i: usize| self.residual[i] * self.weights[i];
@@ -250,8 +252,8 @@ impl Run<'_> {
         all.filter(|(_, fixed)| !**fixed).map(|((r, x), _)| (r * x).abs()).sum()
     }
 
-    /// What values of inequalities times multipliers are compared with: twice the work of the load, that of the residual,
-    /// and of what bounds hold.
+    /// What values of inequalities times multipliers are compared with: twice the work of the load, that of the
+    /// residual, and of what bounds hold.
     fn energy(&self) -> f64 {
         let mut held = 0.0;
         for (cone, y) in self.cones.all.iter().zip(&self.multipliers) {
@@ -331,8 +333,8 @@ impl Run<'_> {
         blocks.map(|(cone, y)| [cone.value(self.x), *y]).collect()
     }
 
-    /// Which inequalities the last step brought further to zero than their multipliers: those become active, in any units
-    /// (El-Bakry, Tapia, Zhang, SIAM Review 36, 1994).
+    /// Which inequalities the last step brought further to zero than their multipliers: those become active, in any
+    /// units (El-Bakry, Tapia, Zhang, SIAM Review 36, 1994).
     fn tell_active(&mut self, before: &[[f64; 2]]) {
         let pairs = self.products().into_iter().zip(before);
         let active: Vec<bool> = pairs.map(|([q, y], [q0, y0])| q * y0 < y * q0).collect();

@@ -11,8 +11,8 @@ pub struct QuadraticCost<'a, A> {
 }
 
 impl<'a, A: SymmetricOperator> QuadraticCost<'a, A> {
-    /// From `A`, `b` and an upper bound of the norm of `A` ([`norm_estimate`](crate::norm_estimate)): steps and penalties are
-    /// relative to it.
+    /// From `A`, `b` and an upper bound of the norm of `A` ([`norm_estimate`](crate::norm_estimate)): steps and
+    /// penalties are relative to it.
     pub fn new(a: &'a A, b: &'a [f64], norm: f64) -> Self {
         Self { a, b, norm }
     }

@@ -9,8 +9,8 @@ use super::projector::EqualityProjector;
 /// [`EqualityProjector`] of a dense matrix with few rows: `G W Gᵀ` is factored by Cholesky at every change of weights.
 ///
 /// Unconstrained components ([`Segment::Free`](crate::Segment)) should determine the multiplier, so that `G` has full
-/// rank on them alone: of 6,296 random problems all are solved then. Where constrained components have to, one in five ends
-/// as [`Status::Stagnated`](crate::Status::Stagnated), and [`smalse`](crate::smalse()) is the better method.
+/// rank on them alone: of 6,296 random problems all are solved then. Where constrained components have to, one in five
+/// ends as [`Status::Stagnated`](crate::Status::Stagnated), and [`smalse`](crate::smalse()) is the better method.
 ///
 /// ```
 /// use signorini_qp::{EqualityProjector, DenseProjector};

@@ -1,12 +1,12 @@
 //! The parts of a problem: operator, set, equality; minimise `1/2 x·Ax - b·x` over `x` in a set with `C x = e`.
 //!
 //! `operator` has the two traits that every solver needs, `dense` matrices that implement them, `projected` the
-//! operator `P A P`, `cost` what is minimised. `set` is what a solver asks of a convex set, `moving_set` one that follows
-//! the solution, `product` the one set here: segments of blocks, of which `block` has one shape each (interval, disc).
-//! `projector` is the equality as the active-set method sees it, `dense_projector` one of a matrix.
+//! operator `P A P`, `cost` what is minimised. `set` is what a solver asks of a convex set, `moving_set` one that
+//! follows the solution, `product` the one set here: segments of blocks, of which `block` has one shape each (interval,
+//! disc). `projector` is the equality as the active-set method sees it, `dense_projector` one of a matrix.
 //!
-//! Uses: `vector`, `error`, `tolerances`. In: what a caller owns. Out: products, projections, steps to the boundary. Solvers
-//! are above.
+//! Uses: `vector`, `error`, `tolerances`. In: what a caller owns. Out: products, projections, steps to the boundary.
+//! Solvers are above.
 
 mod block;
 mod cost;

@@ -15,8 +15,9 @@ impl<'a, S: ?Sized> MovingSet<'a, S> {
         Self { set, hook: None }
     }
 
-    /// A set that `hook` may change when it is told an iterate, which is feasible for the set as it is; it answers whether
-    /// it did anything that matters. Of a [`ProductSet`](crate::ProductSet) bounds and radii may change, segments not.
+    /// A set that `hook` may change when it is told an iterate, which is feasible for the set as it is; it answers
+    /// whether it did anything that matters. Of a [`ProductSet`](crate::ProductSet) bounds and radii may change,
+    /// segments not.
     pub fn new(set: &'a mut S, hook: &'a mut dyn FnMut(&[f64], &mut S) -> bool) -> Self {
         let hook = Some(hook as _);
         Self { set, hook }

@@ -81,8 +81,8 @@ pub trait EqualityProjector {
         self.project_transpose(g);
     }
 
-    /// After a change of the weights: the same for the gradient that was projected last. Whether it is done; where it is
-    /// not, the gradient is projected afresh.
+    /// After a change of the weights: the same for the gradient that was projected last. Whether it is done; where it
+    /// is not, the gradient is projected afresh.
     #[doc(hidden)]
     fn project_gradient_again(&mut self, _g: &mut [f64]) -> bool {
         false

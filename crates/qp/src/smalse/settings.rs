@@ -12,8 +12,8 @@ settings! {
     /// Settings of [`smalse`](crate::smalse()), dimensionless but for `least`.
     #[derive(Debug, Clone, Copy, PartialEq)]
     SmalseSettings or QpError {
-        /// Projected gradient at the end over `|P (b - A C'e)|`, the paper's `|P h|` (one more product if `e` is not zero), or
-        /// over the norm of the first gradient where that is zero: `eps`.
+        /// Projected gradient at the end over `|P (b - A C'e)|`, the paper's `|P h|` (one more product if `e` is not
+        /// zero), or over the norm of the first gradient where that is zero: `eps`.
         tolerance, with_tolerance: f64 = 1e-6, in "[0, inf)";
         /// Residual `Cx - e` at the end, relative to the larger of `|x|` and `|e|` and to no less than what rounding
         /// errors of `b` make of `x`: `eps_1 M_0`.

@@ -33,9 +33,9 @@ use super::settings::{SmalseReport, SmalseSettings, SmalseWorkspace};
 /// Minimises `cost` over a set, from the given `x` and `multiplier` (zeros, the last solution or an extrapolation,
 /// [`vector::extrapolate`]), which are overwritten by the result.
 ///
-/// The set may move after Step 1 of every outer step; if it does, `x` is projected on it again and the solve goes on. On
-/// return `x` is feasible for the set as it then is, and the workspace holds the gradient, `A x - b` and the multiplier of
-/// the original problem.
+/// The set may move after Step 1 of every outer step; if it does, `x` is projected on it again and the solve goes on.
+/// On return `x` is feasible for the set as it then is, and the workspace holds the gradient, `A x - b` and the
+/// multiplier of the original problem.
 ///
 /// # Errors
 /// As for [`kprgp`](crate::kprgp()). Not reaching the tolerance is no error: see

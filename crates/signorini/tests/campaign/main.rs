@@ -61,8 +61,8 @@ fn what_is_said_to_be_solved_is_solved() {
 }
 
 /// Supports that share nodes with what sticks, and friction that turns from step to step: forces that a set does not
-/// determine ran away, or predictions in circles, and steps fell back. They took 12,093, 4,495, 3,731 and 8,083 products.
-/// The last one takes 222 to 843 in 30 numberings of its subdomains.
+/// determine ran away, or predictions in circles, and steps fell back. They took 12,093, 4,495, 3,731 and 8,083
+/// products. The last one takes 222 to 843 in 30 numberings of its subdomains.
 #[test]
 fn scenes_that_ran_away_stay_cheap() {
     for (number, most) in [(14, 400), (148, 250), (203, 800), (364, 700)] {

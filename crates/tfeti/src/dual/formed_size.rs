@@ -72,8 +72,8 @@ impl RowGroups {
         self.size(boundary).map_or(0, |size| size.bytes(boundary) as u64)
     }
 
-    /// Numbers and operations; `None` if there are too many. `boundary` is the largest number of unknowns that rows touch in
-    /// a subdomain.
+    /// Numbers and operations; `None` if there are too many. `boundary` is the largest number of unknowns that rows
+    /// touch in a subdomain.
     fn size(&self, boundary: usize) -> Option<FormedSize> {
         let all = self.others.iter().chain(&self.contact);
         let groups: Vec<(&Vec<u32>, f64)> = all.map(|(key, rows)| (key, *rows as f64)).collect();
@@ -122,8 +122,8 @@ impl RowGroups {
     }
 }
 
-/// Whether so many rows, so many of them of contact, might be few enough, without a look at them: each of the others meets at
-/// least its share of them, of entries with a number and its place.
+/// Whether so many rows, so many of them of contact, might be few enough, without a look at them: each of the others
+/// meets at least its share of them, of entries with a number and its place.
 #[doc(hidden)]
 #[must_use]
 pub fn may_be_formed(rows: usize, contact: usize, subdomains: usize) -> bool {

@@ -1,8 +1,8 @@
 //! The dual operator `F = B K+ B^T`.
 //!
 //! Uses `linalg`, `processes`, `subdomain` and `rows`. In go gluing and classes, out come gather tables between dual
-//! vectors and boundary vectors (`boundary`, filled by `build`; `cut` for several ranks, of which each keeps a `part` of
-//! the dual vectors), the inverses of all classes (`inverses`), the product with `F` (`operator`) and `F` as a
+//! vectors and boundary vectors (`boundary`, filled by `build`; `cut` for several ranks, of which each keeps a `part`
+//! of the dual vectors), the inverses of all classes (`inverses`), the product with `F` (`operator`) and `F` as a
 //! matrix (`formed`; `formed_size` tells beforehand what that takes).
 
 pub(crate) mod boundary;

@@ -1,8 +1,8 @@
 //! The part of dual vectors that a rank keeps where each works with its own rows.
 //!
-//! A rank keeps the contact rows, as all do, the rows of its subdomains, and what is missing of the chunks that it sums:
-//! a dot product adds up chunks of consecutive rows, each on one rank, and the ranks tell one another these sums. The
-//! order of additions so does not depend on the ranks. Rows of a glob are kept together.
+//! A rank keeps the contact rows, as all do, the rows of its subdomains, and what is missing of the chunks that it
+//! sums: a dot product adds up chunks of consecutive rows, each on one rank, and the ranks tell one another these sums.
+//! The order of additions so does not depend on the ranks. Rows of a glob are kept together.
 
 use crate::processes::exchange::Exchange;
 use crate::rows::gluing::{Glob, Gluing};

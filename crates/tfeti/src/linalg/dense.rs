@@ -115,8 +115,8 @@ pub(crate) fn subtract_columns(out: &mut [f64], a: &[f64], height: usize, width:
     );
 }
 
-/// [`cholesky_columns`] and [`subtract_columns`] for large matrices: parts of columns on several threads. Above the diagonal
-/// of a part there may be anything.
+/// [`cholesky_columns`] and [`subtract_columns`] for large matrices: parts of columns on several threads. Above the
+/// diagonal of a part there may be anything.
 pub(crate) fn eliminate_in_parts(
     a: &mut [f64],
     out: &mut [f64],

@@ -1,7 +1,7 @@
 //! Triangular solves with groups of columns for several right sides at once.
 //!
-//! The right sides stand next to one another, as many as a tile has rows, or half of them; those that are missing are told
-//! to be zero. Each number of the factor is read once for all of them, so that the time is that of the arithmetic.
+//! The right sides stand next to one another, as many as a tile has rows, or half of them; those that are missing are
+//! told to be zero. Each number of the factor is read once for all of them, so that the time is that of the arithmetic.
 
 use crate::linalg::tiles::{LANES, Stored, Unknown};
 use pulp::Simd;

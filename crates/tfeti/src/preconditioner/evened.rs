@@ -1,9 +1,10 @@
 //! The lumped blocks of subdomains that are much stiffer than others, brought to the spectrum of the softer ones.
 //!
-//! A lumped block leaves eigenvalues that grow with the number of elements across its subdomain. Conjugate gradients weigh
-//! errors by energy, and a body that is a thousand times stiffer has a thousandth of it: their polynomials suit the
-//! soft bodies first, and grow on what the spectrum of the stiff one has beyond. Errors there then appear late, and the
-//! iteration begins anew. Blocks of stiff subdomains are therefore scaled down to the largest eigenvalue of softer ones.
+//! A lumped block leaves eigenvalues that grow with the number of elements across its subdomain. Conjugate gradients
+//! weigh errors by energy, and a body that is a thousand times stiffer has a thousandth of it: their polynomials suit
+//! the soft bodies first, and grow on what the spectrum of the stiff one has beyond. Errors there then appear late, and
+//! the iteration begins anew. Blocks of stiff subdomains are therefore scaled down to the largest eigenvalue of softer
+//! ones.
 
 use crate::dual::boundary::BoundaryMap;
 use crate::linalg::block_rows::BlockRows;

@@ -1,10 +1,10 @@
 //! The inverse of `F` on an active set, for systems of so few contact rows that `F` can be formed.
 //!
-//! Each subdomain adds what it answers to its rows. `H = F + w Gᵀ G` is definite; with a large `w` its inverse is that of
-//! `F` where `G x = 0`. Rows that share no subdomain have a zero in it: those that no active set takes away, most of all
-//! the gluing, are eliminated once by a sparse factor. The Schur complement of the contact rows is factored on each set. A
-//! body that bends far more easily than it is pressed in (a plate on a floor) leaves no other choice: on part of its
-//! contact rows the stiffness of their nodes is nowhere near an inverse.
+//! Each subdomain adds what it answers to its rows. `H = F + w Gᵀ G` is definite; with a large `w` its inverse is that
+//! of `F` where `G x = 0`. Rows that share no subdomain have a zero in it: those that no active set takes away, most of
+//! all the gluing, are eliminated once by a sparse factor. The Schur complement of the contact rows is factored on each
+//! set. A body that bends far more easily than it is pressed in (a plate on a floor) leaves no other choice: on part of
+//! its contact rows the stiffness of their nodes is nowhere near an inverse.
 
 use crate::coarse::space::Coarse;
 use crate::dual::part::RowPart;
@@ -192,11 +192,12 @@ impl ExplicitInverse {
         Self { part, ..self }
     }
 
-    /// Solves `F x = linear` with `G x = e` where a `solve` finds the contact rows from those of `x`: it has their matrix and
-    /// load, all other rows eliminated. It is asked again, with another load, until `G x = e` holds, which the weight leaves
-    /// to do (method of multipliers with secants: where all of a body's friction is spent, hardly anything but that load
-    /// holds the body), a few times at most, from where the last time ended whether that was a solution or not. For whole
-    /// vectors. `x` is that which lacks the least, a solution if there was one; its rigid amplitudes then.
+    /// Solves `F x = linear` with `G x = e` where a `solve` finds the contact rows from those of `x`: it has their
+    /// matrix and load, all other rows eliminated. It is asked again, with another load, until `G x = e` holds, which
+    /// the weight leaves to do (method of multipliers with secants: where all of a body's friction is spent, hardly
+    /// anything but that load holds the body), a few times at most, from where the last time ended whether that was a
+    /// solution or not. For whole vectors. `x` is that which lacks the least, a solution if there was one; its rigid
+    /// amplitudes then.
     ///
     /// # Errors
     /// Those of `solve`, and [`QpError`] for a matrix that has overflowed.

@@ -1,8 +1,8 @@
 //! Directions that only contact touches, of bodies that are thin: eliminated like the interior where an active set
 //! holds the rows that touch them.
 //!
-//! They are unknowns of the interior from the start. Where rows are free a large weight on their diagonal holds them, so
-//! that the pattern of the factor stays. Held where nothing presses, they make long flat cells stiff.
+//! They are unknowns of the interior from the start. Where rows are free a large weight on their diagonal holds them,
+//! so that the pattern of the factor stays. Held where nothing presses, they make long flat cells stiff.
 
 use super::split::Split;
 use crate::linalg::sparse::{Columns, FactorError, SparseCholesky, Symbolic};

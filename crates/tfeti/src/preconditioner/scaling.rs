@@ -59,14 +59,10 @@ impl Groups {
 impl Scaling {
     pub(crate) fn new(system: &Tfeti) -> Result<Self, TfetiError> {
         let gluing = system.gluing();
-        let all;
         let stiffness = match gluing.is_aligned && !gluing.is_compliant() {
             true => system.copy_stiffness(),
             // rows join nodes, corners and mid-nodes too, or end in springs: ratios of copies are not enough
-            false => {
-                all = system.all_copy_stiffness();
-                &all
-            }
+            false => system.all_copy_stiffness(),
         };
         let mut compliance: Vec<f64> = (0..system.torn_dim() / 3).map(|k| 1.0 / stiffness.weight(k)).collect();
         let smallest = compliance.iter().fold(f64::INFINITY, |m, v| m.min(*v));

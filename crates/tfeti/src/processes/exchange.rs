@@ -124,7 +124,8 @@ impl Exchange {
         }
     }
 
-    /// The part of each rank, where each has set consecutive numbers, in the order of the ranks: then nothing is packed.
+    /// The part of each rank, where each has set consecutive numbers, in the order of the ranks: then nothing is
+    /// packed.
     fn in_order(&self, pieces: &[(usize, Range<usize>)]) -> Option<Vec<Range<usize>>> {
         let (mut parts, mut end) = (Vec::with_capacity(self.ranks()), 0);
         for (rank, range) in pieces {

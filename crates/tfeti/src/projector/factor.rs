@@ -39,7 +39,8 @@ struct FactorData {
 pub(super) enum Factor {
     Sparse(Arc<SparseCholesky>),
     Split(Arc<SplitBase>, SplitFactor),
-    /// An approximation, and the factor of the rows that are always free: with it projectors are [exact](super::levels).
+    /// An approximation, and the factor of the rows that are always free: with it projectors are
+    /// [exact](super::levels).
     Model(Arc<Model>, ModelFactor, CoarseFactor),
 }
 

@@ -18,9 +18,9 @@ use signorini_fem_mesh::vec3::{combine, dot};
 
 impl Gluing {
     /// Builds the rows. `stiffness` weighs the copies of a node in contact and support rows. Those that hold rigid
-    /// subdomains come as they stand; equations are independent, with their positions. The rows of springs to the ground
-    /// are the last of the support rows; with them comes the stiffness of all copies, with which they are compared: the
-    /// row of a soft one is as much smaller as it is softer.
+    /// subdomains come as they stand; equations are independent, with their positions. The rows of springs to the
+    /// ground are the last of the support rows; with them comes the stiffness of all copies, with which they are
+    /// compared: the row of a soft one is as much smaller as it is softer.
     ///
     /// # Errors
     /// [`TfetiError`] for bad supports, contact points or springs.

@@ -36,8 +36,9 @@ pub fn prescribed_points(
     Ok(contact_rows(contact, &merged, nodes, |_| 1.0)?.prescribed)
 }
 
-/// Directions in which supports hold both sides of tied constraints whose sides move [relative](ContactConstraint::relative)
-/// to each other, with the position of the constraint: no row says there how they do.
+/// Directions in which supports hold both sides of tied constraints whose sides move
+/// [relative](ContactConstraint::relative) to each other, with the position of the constraint: no row says there how
+/// they do.
 ///
 /// # Errors
 /// As [`prescribed_points`].
@@ -186,8 +187,8 @@ impl Space {
     }
 
     /// Directions that supports fix at all nodes, and those in which they hold both sides, or one beside an obstacle: a
-    /// node or a good part of a mean, along `normal` and at right angles to it. There, at a clamp or a plane of symmetry
-    /// that cuts both, a row would see no slip and no gap, but how displacements bend beside the plane.
+    /// node or a good part of a mean, along `normal` and at right angles to it. There, at a clamp or a plane of
+    /// symmetry that cuts both, a row would see no slip and no gap, but how displacements bend beside the plane.
     fn fixed(&self, point: &ContactConstraint, normal: Vector3<f64>) -> Vec<Vector3<f64>> {
         let eigen = SymmetricEigen::new(self.gram);
         let zero = FIXED * self.nodes.iter().map(|(c, _)| c * c).sum::<f64>();

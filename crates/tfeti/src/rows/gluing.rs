@@ -149,8 +149,8 @@ impl Gluing {
         &self.ranges
     }
 
-    /// Number of rows as the paper counts them, with those that are left out: three for each additional copy of a node, three for each supported node
-    /// and three (without friction one) for each contact point, supported or not.
+    /// Number of rows as the paper counts them, with those that are left out: three for each additional copy of a node,
+    /// three for each supported node and three (without friction one) for each contact point, supported or not.
     pub fn rows_as_paper(&self) -> usize {
         self.paper_rows
     }

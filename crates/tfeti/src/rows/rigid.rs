@@ -7,8 +7,8 @@ use nalgebra::{SMatrix, SVector};
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, norm, sub};
 use signorini_fem_mesh::{Decomposition, TetMesh};
 
-/// A motion of a [rigid subdomain](Decomposition::with_rigid) that is held: the displacement of a point, which need not be
-/// one of its nodes, or a rotation.
+/// A motion of a [rigid subdomain](Decomposition::with_rigid) that is held: the displacement of a point, which need not
+/// be one of its nodes, or a rotation.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RigidSupport {
     /// Number of the subdomain.

@@ -112,13 +112,13 @@ pub struct ContactConstraint {
     pub moving: bool,
     /// Whether both sides move alike, in all directions that supports leave free, in place of contact and friction.
     pub tied: bool,
-    /// Of a tied one: a [subdomain of places](signorini_fem_mesh::decomposition::Rigid::Places) with the nodes of the side,
-    /// whose motion, times this factor, the side has beside that of the partner.
+    /// Of a tied one: a [subdomain of places](signorini_fem_mesh::decomposition::Rigid::Places) with the nodes of the
+    /// side, whose motion, times this factor, the side has beside that of the partner.
     pub relative: Option<(u32, f64)>,
     /// How far the point gives way along the normal and along the surface under a force, m/N: finite, 0 for not at all.
     pub compliance: [f64; 2],
-    /// Factor of the second tangential row beside the first, finite and positive, 1 for isotropic friction. An ellipse with this ratio of
-    /// its axes, along the tangents, is a disc in the rows.
+    /// Factor of the second tangential row beside the first, finite and positive, 1 for isotropic friction. An ellipse
+    /// with this ratio of its axes, along the tangents, is a disc in the rows.
     pub stretch: f64,
 }
 

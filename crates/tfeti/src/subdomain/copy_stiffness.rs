@@ -21,8 +21,8 @@ pub struct CopyStiffness {
 }
 
 impl CopyStiffness {
-    /// With the mesh node of each copy in torn order. Copies in rigid subdomains are as much stiffer than the others of their
-    /// node, places than all.
+    /// With the mesh node of each copy in torn order. Copies in rigid subdomains are as much stiffer than the others of
+    /// their node, places than all.
     pub(crate) fn new(subdomains: &Subdomains, node_of: impl Iterator<Item = Option<u32>>) -> Self {
         let by_class = |base: &ClassBase| -> Vec<f64> {
             let mean = |node: usize| {

@@ -21,8 +21,8 @@ pub struct Forecast<'a> {
     pub classes: Vec<ClassReport>,
     /// Bytes of all inverses.
     pub inverse_bytes: u64,
-    /// The coarse factor, once it is counted: of two levels by [`forecast_levels`](crate::internal::forecast_levels), else
-    /// by [`count_coarse`](Self::count_coarse).
+    /// The coarse factor, once it is counted: of two levels by [`forecast_levels`](crate::internal::forecast_levels),
+    /// else by [`count_coarse`](Self::count_coarse).
     pub coarse: Option<CoarseForecast>,
     /// Bytes of the gather tables, if there are three rows at each node that is touched.
     pub table_bytes: u64,

@@ -3,8 +3,8 @@
 //! Free of its supports a slice bends as a plate, softer than what it is part of by the square of its length over its
 //! thickness, and conjugate gradients take as much longer. Its solution is zero where supports hold it at zero, so that
 //! springs `D` there change nothing: with forces in balance `(K + D) u = f` has `Rᵀ D u = 0`, and `u` is a solution of
-//! `(K + D - D R (Rᵀ D R)⁺ Rᵀ D) u = f`, whose kernel is that of `K`, for every `u` that [`Held`] makes. The multipliers
-//! stay what they are.
+//! `(K + D - D R (Rᵀ D R)⁺ Rᵀ D) u = f`, whose kernel is that of `K`, for every `u` that [`Held`] makes. The
+//! multipliers stay what they are.
 
 use crate::linalg::sparse::Columns;
 use crate::subdomain::class::HeldDirection;
@@ -122,8 +122,8 @@ mod tests {
     use nalgebra::{DMatrix, DVector};
     use signorini_fem_mesh::{Brick, Hooke, assemble_stiffness, brick};
 
-    /// Between parallel planes, planes at an angle, and on a curved side: forces in balance leave the anchors at rest and
-    /// make no wrench of the springs.
+    /// Between parallel planes, planes at an angle, and on a curved side: forces in balance leave the anchors at rest
+    /// and make no wrench of the springs.
     #[test]
     fn springs_and_anchors_are_in_balance_by_themselves() {
         let mesh = Brick::new([3.0, 0.4, 1.0], [4, 2, 2])

@@ -3,8 +3,8 @@
 //! Uses `linalg` and `processes`. In go mesh, decomposition and materials. Out come classes of translates (`class`),
 //! stiffness matrix and rigid motions of each (`matrices`, `kernel`), who of several ranks holds them (`ownership`), a
 //! generalised inverse (`inverse`; `held` where supports hold slices, `packed` for one right-hand side), the choice
-//! between a dense and a sparse one (`cost`), the stiffness of the copies of a node (`copy_stiffness`) and the sizes that
-//! a set-up will have (`forecast`), with the speed of the machine (`rate`).
+//! between a dense and a sparse one (`cost`), the stiffness of the copies of a node (`copy_stiffness`) and the sizes
+//! that a set-up will have (`forecast`), with the speed of the machine (`rate`).
 
 pub(crate) mod class;
 pub(crate) mod copy_stiffness;

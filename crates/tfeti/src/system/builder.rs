@@ -196,12 +196,12 @@ impl<'a> TfetiBuilder<'a> {
         Ok(Tfeti::new(dual, coarse, report, decomposition, stiffness))
     }
 
-    /// The rows, and the stiffness of copies by which they weigh these.
-    fn glue(&self, subdomains: &Subdomains) -> Result<(Arc<Gluing>, CopyStiffness), TfetiError> {
+    /// The rows, and the stiffness of copies, with whether rows weigh copies by it.
+    fn glue(&self, subdomains: &Subdomains) -> Result<(Arc<Gluing>, (CopyStiffness, bool)), TfetiError> {
         let all = CopyStiffness::new(subdomains, self.decomposition.torn_nodes());
         let counts = has_several_laws(self.mesh, self.materials) || all.differs(self.decomposition);
-        let stiffness = if counts { all.clone() } else { CopyStiffness::default() };
-        let springs = (self.springs, &all);
+        let alike = CopyStiffness::default();
+        let (stiffness, springs) = (if counts { &all } else { &alike }, (self.springs, &all));
         let rigid = self
             .rigid
             .iter()
@@ -211,8 +211,8 @@ impl<'a> TfetiBuilder<'a> {
         let needed = independent_equations(self.equations, self.decomposition, held, self.contact)?;
         let needed: Vec<_> = needed.into_iter().map(|k| (k, &self.equations[k])).collect();
         let (supports, contact) = ((self.supports, &rigid[..]), (self.contact, &needed[..]));
-        let gluing = Gluing::new(self.decomposition, supports, contact, &stiffness, springs)?;
-        Ok((Arc::new(gluing), stiffness))
+        let gluing = Gluing::new(self.decomposition, supports, contact, stiffness, springs)?;
+        Ok((Arc::new(gluing), (all, counts)))
     }
 }
 

@@ -171,8 +171,8 @@ impl Tfeti {
     /// and of the force needs theirs only; [`complete_torn`](Self::complete_torn) tells it the others'.
     ///
     /// `force` is a torn vector in newtons, `alpha` the rigid amplitudes, for instance from
-    /// [`CoarseFactor::amplitudes`](crate::CoarseFactor::amplitudes). The displacement is made in old memory, which may be
-    /// empty, the residual in that of the force.
+    /// [`CoarseFactor::amplitudes`](crate::CoarseFactor::amplitudes). The displacement is made in old memory, which may
+    /// be empty, the residual in that of the force.
     ///
     /// # Errors
     /// [`TfetiError::Length`] and [`TfetiError::NotFinite`], also of a displacement that is not finite.
@@ -219,8 +219,8 @@ impl Tfeti {
         out
     }
 
-    /// The rigid motion of a subdomain in a torn displacement, the nearest one: displacement of a point in m, and rotation
-    /// in radians.
+    /// The rigid motion of a subdomain in a torn displacement, the nearest one: displacement of a point in m, and
+    /// rotation in radians.
     pub fn rigid_motion(&self, subdomain: usize, u: &[f64], point: [f64; 3]) -> [[f64; 3]; 2] {
         let kernel = self.kernel(subdomain);
         let amplitudes = kernel.transpose_times(&u[self.torn_range(subdomain)]);
@@ -230,8 +230,8 @@ impl Tfeti {
         [moved([[x, y, z], rotation], arm), rotation]
     }
 
-    /// Row offsets `c` of prescribed displacements, `sum factor * offset` over `(case, factor)`, in old memory, which may
-    /// be empty.
+    /// Row offsets `c` of prescribed displacements, `sum factor * offset` over `(case, factor)`, in old memory, which
+    /// may be empty.
     pub fn prescribed_offsets(&self, old: Vec<f64>, factors: &[(usize, f64)]) -> Vec<f64> {
         let mut c = zeros(old, self.dual_dim());
         for &(case, factor) in factors {

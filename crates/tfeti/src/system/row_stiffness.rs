@@ -124,8 +124,8 @@ impl Tfeti {
 
     /// Weights of the rows for projectors where copies differ in stiffness: `1 / sum_d b_d² / K_dd`, relative to the
     /// largest. A row between a stiff and a soft copy carries forces in proportion to the soft one, and a row that
-    /// gives way in proportion to both together: a soft spring takes no part in what friction holds. Bodies that differ by
-    /// more than a thousand weigh as if they differed by that. `None` where all copies [count
+    /// gives way in proportion to both together: a soft spring takes no part in what friction holds. Bodies that differ
+    /// by more than a thousand weigh as if they differed by that. `None` where all copies [count
     /// alike](Self::copy_stiffness) and no row gives way. Without contact that is so only where the factor is not small
     /// (there weights save a product), and always on springs, whose small forces weights would hide.
     pub fn row_weights(&self) -> Option<Vec<f64>> {
@@ -158,8 +158,8 @@ impl Tfeti {
             return Some(soft.chain(std::iter::repeat_n(1.0, rest)).collect());
         }
         let (mut weights, give): (Vec<f64>, Vec<bool>) = (0..self.dual_dim()).map(weight).unzip();
-        // equations of little but places would hide all others, and so would rows of little but rigid sides; half rigid,
-        // a row is twice as stiff
+        // equations of little but places would hide all others, and so would rows of little but rigid sides; half
+        // rigid, a row is twice as stiff
         let hides = |row: &usize| ranges.equations.contains(row) || !give[*row];
         let (hiding, others): (Vec<usize>, Vec<usize>) = (0..weights.len()).partition(hides);
         let most = others.iter().fold(0.0_f64, |most, &row| most.max(weights[row]));
@@ -178,8 +178,8 @@ impl Tfeti {
         Some(weights)
     }
 
-    /// Divides the weights by the largest, but those of much softer bodies only until their own largest is `SOFT_BODY`. A
-    /// row between bodies is one of the softer.
+    /// Divides the weights by the largest, but those of much softer bodies only until their own largest is `SOFT_BODY`.
+    /// A row between bodies is one of the softer.
     fn compare_weights(&self, weights: &mut [f64]) {
         let body = &self.coarse().0.mobility.part_of;
         // of a single body no row is asked for its own

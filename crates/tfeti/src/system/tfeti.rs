@@ -29,6 +29,8 @@ pub struct Tfeti {
     factor: OnceLock<CoarseFactor>,
     report: SetupReport,
     stiffness: CopyStiffness,
+    /// Where copies of a node count alike, in the place of their stiffness.
+    alike: Option<CopyStiffness>,
     /// Rank that works on the part of torn vectors of each subdomain; empty of one process.
     pub(super) torn_ranks: Vec<u32>,
     /// The ranks of consecutive numbers of torn vectors; none of one process.
@@ -47,7 +49,7 @@ impl Tfeti {
         coarse: Coarse,
         report: SetupReport,
         decomposition: &Decomposition,
-        stiffness: CopyStiffness,
+        (stiffness, counts): (CopyStiffness, bool),
     ) -> Self {
         let mut offsets = vec![0];
         for subdomain in decomposition.subdomains() {
@@ -75,6 +77,7 @@ impl Tfeti {
             factor: OnceLock::new(),
             report,
             stiffness,
+            alike: (!counts).then(CopyStiffness::default),
             offsets,
             node_of: decomposition.torn_nodes().collect(),
             nodes,
@@ -91,13 +94,13 @@ impl Tfeti {
     /// otherwise.
     #[doc(hidden)]
     pub fn copy_stiffness(&self) -> &CopyStiffness {
-        &self.stiffness
+        self.alike.as_ref().unwrap_or(&self.stiffness)
     }
 
     /// The stiffness of the copies of each node, whether or not they differ.
     #[doc(hidden)]
-    pub fn all_copy_stiffness(&self) -> CopyStiffness {
-        CopyStiffness::new(&self.dual.subdomains, self.node_of.iter().copied())
+    pub fn all_copy_stiffness(&self) -> &CopyStiffness {
+        &self.stiffness
     }
 
     /// The classes of subdomains.

@@ -87,7 +87,8 @@ fn rows_measure_equations() {
     assert!(gluing.length(own.row) == 1.0 && !gluing.ranges().equations.is_empty());
 }
 
-/// Those that follow from others, and from supports, are left out; what contradicts them, or does nearly, is refused with them.
+/// Those that follow from others, and from supports, are left out; what contradicts them, or does nearly, is refused
+/// with them.
 #[test]
 fn what_follows_has_no_row() {
     let held = common::Brick::new(1, 2).mesh.nodes_on(brick::X_MIN);

@@ -287,8 +287,8 @@ fn a_forecast_counts_what_two_levels_store() {
     );
 }
 
-/// Methods that keep all rows have the factor in which equal regions are stored once, too: its rows are orthonormal, and
-/// project as those of the sparse factor do. The forecast counts it.
+/// Methods that keep all rows have the factor in which equal regions are stored once, too: its rows are orthonormal,
+/// and project as those of the sparse factor do. The forecast counts it.
 #[test]
 fn methods_without_active_sets_share_equal_regions() {
     for (n, perturbation) in [(8, 0.0), (7, 0.1)] {

@@ -208,8 +208,8 @@ fn asked(system: &Tfeti, part: Option<&SystemPart>, kind: ActiveSetFactor) -> (V
 const KINDS: [ActiveSetFactor; 3] = [ActiveSetFactor::Auto, ActiveSetFactor::Split, ActiveSetFactor::Levels];
 
 /// Parts of vectors, which are shorter, give the bits of whole ones, with one exchange a call and less in it. Where the
-/// factor is spread a solve adds two exchanges, a model of it four; where all blocks of branches belong to their ranks, as
-/// on two ranks here, a solve right behind a product with `G` completes that, too.
+/// factor is spread a solve adds two exchanges, a model of it four; where all blocks of branches belong to their ranks,
+/// as on two ranks here, a solve right behind a product with `G` completes that, too.
 #[test]
 fn ranks_that_keep_parts_of_vectors_compute_the_same_bits() {
     for (n, cells, perturbation, ranks) in [
@@ -271,8 +271,8 @@ fn ranks_that_keep_parts_of_vectors_compute_the_same_bits() {
     }
 }
 
-/// Of a factor that is spread a rank holds its branches and the top. That of methods without active sets gives the bits of
-/// one process, too: a half solve tells sums and unknowns, a transposed one unknowns.
+/// Of a factor that is spread a rank holds its branches and the top. That of methods without active sets gives the bits
+/// of one process, too: a half solve tells sums and unknowns, a transposed one unknowns.
 #[test]
 fn ranks_hold_their_branches_of_a_factor() {
     let changing = Brick::of(5, 1, 0.0);

@@ -18,7 +18,8 @@ impl GroupNames {
     /// Tag of the facets in the surface group of this name.
     ///
     /// # Errors
-    /// [`GmshError::UnknownName`] with the names that there are, [`GmshError::RepeatedName`] if two groups have this one.
+    /// [`GmshError::UnknownName`] with the names that there are, [`GmshError::RepeatedName`] if two groups have this
+    /// one.
     pub fn surface(&self, name: &str) -> Result<FacetTag, GmshError> {
         look_up("surface", &self.surfaces, name).map(FacetTag)
     }
@@ -26,7 +27,8 @@ impl GroupNames {
     /// Region of the tetrahedra in the volume group of this name.
     ///
     /// # Errors
-    /// [`GmshError::UnknownName`] with the names that there are, [`GmshError::RepeatedName`] if two groups have this one.
+    /// [`GmshError::UnknownName`] with the names that there are, [`GmshError::RepeatedName`] if two groups have this
+    /// one.
     pub fn volume(&self, name: &str) -> Result<u32, GmshError> {
         look_up("volume", &self.volumes, name)
     }

@@ -25,8 +25,8 @@ pub fn write_vtu(
     write_cells(path.as_ref(), mesh, |_| true, point_fields, cell_fields)
 }
 
-/// Writes those tetrahedra that are `kept`, if any, as a piece with the nodes that they use. The fields are those of the
-/// mesh.
+/// Writes those tetrahedra that are `kept`, if any, as a piece with the nodes that they use. The fields are those of
+/// the mesh.
 pub(super) fn write_cells(
     path: &Path,
     mesh: &TetMesh,

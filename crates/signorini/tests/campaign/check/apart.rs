@@ -11,8 +11,9 @@
 //! | forces of a foundation: stiffness times displacement | forces |
 //!
 //! Where contact gives way, the gap counts compliance times pressure, and slips are without compliance times friction
-//! stress. Forces between curved sides act where facets are, not where sides are, and a couple on one of them makes up for
-//! it: it is taken from the library, for moments must balance; so are gaps at the start, as far as the bumps allow them.
+//! stress. Forces between curved sides act where facets are, not where sides are, and a couple on one of them makes up
+//! for it: it is taken from the library, for moments must balance; so are gaps at the start, as far as the bumps allow
+//! them.
 
 mod points;
 

@@ -1,5 +1,5 @@
-//! Scenes of bodies meshed apart, parts of whose sides are rigid couplings: free, held, moved or loaded; also one that holds
-//! two bodies together.
+//! Scenes of bodies meshed apart, parts of whose sides are rigid couplings: free, held, moved or loaded; also one that
+//! holds two bodies together.
 
 use super::bodies::side;
 use super::{Shaft, apart, settings};

@@ -1,6 +1,6 @@
-//! Scenes of round bodies meshed apart: discs and washers on one another, whose rims quadratic edges follow, and sleeves
-//! around one another, whose sides are curved out of their plane. They are tied or touch, and may be carried along or
-//! turned as a whole.
+//! Scenes of round bodies meshed apart: discs and washers on one another, whose rims quadratic edges follow, and
+//! sleeves around one another, whose sides are curved out of their plane. They are tied or touch, and may be carried
+//! along or turned as a whole.
 
 use super::bodies::side;
 use super::{Frame, bare, settings};

@@ -2,8 +2,9 @@
 //!
 //! Each rank eliminates its branches, the regions outside of all branches (the *top*) every rank does. A region is
 //! worked on by the same operations wherever that is, and takes what the regions within leave in the same order, so
-//! bits do not depend on ranks. A factorisation tells once what branches do to the top, a solve likewise, and its result.
-//! Where all blocks of branches belong to their ranks, a solve begins with what each rank has of the right side.
+//! bits do not depend on ranks. A factorisation tells once what branches do to the top, a solve likewise, and its
+//! result. Where all blocks of branches belong to their ranks, a solve begins with what each rank has of the right
+//! side.
 
 use crate::processes::exchange::Exchange;
 use crate::projector::split::front::Front;

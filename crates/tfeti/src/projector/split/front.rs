@@ -119,7 +119,8 @@ impl Child<'_> {
 mod tests {
     use super::*;
 
-    /// The border of a child in any order: each entry of its lower triangle is added once, to the lower triangle of the front.
+    /// The border of a child in any order: each entry of its lower triangle is added once, to the lower triangle of the
+    /// front.
     #[test]
     fn parts_take_what_belongs_to_their_columns() {
         let (width, height) = (18, 48);

@@ -45,7 +45,8 @@ impl SplitBase {
         }
     }
 
-    /// `out = L^-1 y` where nothing changes, `L` Cholesky's factor in its order of the unknowns, which keep their places.
+    /// `out = L^-1 y` where nothing changes, `L` Cholesky's factor in its order of the unknowns, which keep their
+    /// places.
     pub(crate) fn half_solve(&self, factor: &SplitFactor, y: &mut [f64], out: &mut [f64], work: &mut [f64]) {
         let (work, rest) = work.split_at_mut(self.bunches.work());
         self.eliminate::<Tile>(factor, y, work, rest, false);
