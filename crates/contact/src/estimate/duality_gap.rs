@@ -58,7 +58,7 @@ impl Weights {
             let mut sums = vec![0.0; model.discrete.decomposition.nodes()];
             for (k, node) in model.discrete.decomposition.torn_nodes().enumerate() {
                 if let Some(node) = node {
-                    sums[node as usize] += model.copies().weight(k);
+                    sums[node as usize] += model.tfeti.all_copy_stiffness().weight(k);
                 }
             }
             sums
@@ -114,7 +114,7 @@ impl Solved<'_> {
         let weights = self.caches.weights.get_or_init(|| Weights::new(model));
         let motions = self.motions();
         let offset = &*self.offset(&motions);
-        let mut v = tfeti.mean_by(model.copies(), &self.recovered.torn);
+        let mut v = tfeti.mean_by(model.tfeti.all_copy_stiffness(), &self.recovered.torn);
         let mean = (tfeti.subdomains() > 1).then(|| tfeti.nodal_mean(&self.recovered.torn));
         self.couple(&motions, &mut v);
         weights.sprung.begin(offset, &mut v);
@@ -205,7 +205,7 @@ impl Solved<'_> {
 
     /// What an energy is compared with where the body is at rest, J.
     fn scale_at_rest(&self, torn: &[f64]) -> f64 {
-        let (model, copies) = (self.model, self.model.copies());
+        let (model, copies) = (self.model, self.model.tfeti.all_copy_stiffness());
         let force = self.problem.forces(model);
         let (mut alone, mut moved) = (0.0_f64, 0.0);
         let rigid = (model.tfeti.torn_range(model.discrete.couplings.first - 1)).end / 3;

@@ -10,7 +10,7 @@ use crate::settings::Settings;
 use crate::tolerances::NO_LOAD;
 use signorini_fem_mesh::vec3::{moved, norm, sub};
 use signorini_qp::{ProductSet, Segment};
-use signorini_tfeti::internal::{CopyStiffness, Dependency};
+use signorini_tfeti::internal::Dependency;
 use signorini_tfeti::{FreeMotion, LoadResponse, RowWeights, Tfeti, TfetiBuilder, TfetiError, TiedRows};
 use std::ops::Range;
 use std::sync::OnceLock;
@@ -113,7 +113,7 @@ impl Model {
             let square = |&node: &u32| {
                 let copies = self.discrete.decomposition.copies(node as usize).iter();
                 let elastic = copies.filter(|copy| (copy.subdomain as usize) < couplings.first);
-                let stiffness: f64 = elastic.map(|copy| self.copies().of(copy)).sum();
+                let stiffness: f64 = elastic.map(|copy| self.tfeti.all_copy_stiffness().of(copy)).sum();
                 (stiffness * norm(at(node))).powi(2)
             };
             *out = nodes.iter().map(square).sum::<f64>().sqrt() / value.abs();
@@ -154,12 +154,6 @@ impl Model {
             [displacement.map(|u| u / unit), rotation]
         })
         .collect()
-    }
-
-    /// Stiffness of the copies of each node: weighs them in the estimate of the algebraic error, and scales
-    /// certificates.
-    pub(crate) fn copies(&self) -> &CopyStiffness {
-        self.tfeti.all_copy_stiffness()
     }
 
     /// The rigid motions that supports leave to the bodies.

@@ -54,7 +54,7 @@ pub(super) fn sizes(m: &Measured<'_>) -> Vec<Sizes> {
     let bodies = &model.bodies;
     let mut out = vec![Sizes::default(); bodies.count().max(1)];
     // where nothing moves, what its load would do to a single node is the scale
-    let copies = model.copies();
+    let copies = model.tfeti.all_copy_stiffness();
     let of_subdomains = model.tfeti.of_subdomains(|subdomain| {
         let range = model.tfeti.torn_range(subdomain);
         let (u, residual) = (&m.u[range.clone()], &m.residual[range.clone()]);

@@ -109,8 +109,8 @@ impl Simulation {
         let (mut report, recovered) = match unloaded {
             Some(recovered) => (tried, recovered),
             None => {
-                let (report, recovered) = self.solve_from(starts, state, way, (tried, &told))?;
-                (report, self.stand(state, recovered, told)?)
+                let (report, recovered) = self.solve_from(starts, state, way, (tried, told.as_ref()))?;
+                (report, self.stand(state, recovered, told.unwrap_or_default())?)
             }
         };
         let (model, problem) = (&self.model, &self.problem);
@@ -139,15 +139,15 @@ impl Simulation {
     }
 
     /// Solves from one start after another as long as the step is lost; from the iterate of what was tried before, if
-    /// that converged, in place of the first one.
+    /// that converged, in place of the first one. Where loads end, it was told where bodies stand: then without forces,
+    /// too.
     fn solve_from(
         &mut self,
         starts: &[(bool, Attempt)],
         state: &State,
         way: &Way,
-        (tried, told): (StepReport, &Targets),
+        (tried, told): (StepReport, Option<&Targets>),
     ) -> Result<(StepReport, Recovered), ContactError> {
-        let unloads = self.unloads(way)?;
         let mut sets_out = tried.status.converged();
         let (mut report, mut recovered) = (tried, std::mem::take(&mut self.spare));
         for &(line, attempt) in starts {
@@ -165,7 +165,9 @@ impl Simulation {
                 break;
             }
             // friction that nearly locks bodies lets active sets run in circles where forces vanish, too
-            if unloads && let Some(left) = self.without_forces(state, told, &mut report)? {
+            if let Some(told) = told
+                && let Some(left) = self.without_forces(state, told, &mut report)?
+            {
                 report.status = StepStatus::Converged;
                 return Ok((report, left));
             }

@@ -33,7 +33,7 @@ pub(super) type Targets = Vec<(usize, f64)>;
 impl Simulation {
     /// The result of an increment at whose end no load acts that acted at its start, if forces vanish with the loads;
     /// else where bodies stand whose own forces do; and the report of the solves that tell, from whose iterate an
-    /// ordinary one sets out.
+    /// ordinary one sets out. Where loads do not end nothing is told.
     ///
     /// Without loads nothing gives forces a size, and active sets run in circles. A small part of the last loads does,
     /// and leaves the bodies where they stand without it. If a smaller part leaves more of the forces, friction locks
@@ -43,10 +43,12 @@ impl Simulation {
         state: &State,
         way: &Way,
         (line, attempt): (bool, Attempt),
-    ) -> Result<(StepReport, Option<Recovered>, Targets), ContactError> {
-        let (increment, mut report) = (way.increment(), StepReport::new());
-        if !self.unloads(way)? {
-            return Ok((report, None, Targets::new()));
+    ) -> Result<(StepReport, Option<Recovered>, Option<Targets>), ContactError> {
+        let (model, increment, mut report) = (&self.model, way.increment(), StepReport::new());
+        let unloaded = |start| self.problem.is_unloaded(model, start);
+        let loose = model.plan.effects.history && !model.loose_motions()?.is_empty();
+        if !loose || !increment.start.is_some_and(unloaded) {
+            return Ok((report, None, None));
         }
         self.start(state, way, line, attempt);
         let contact = self.model.tfeti.gluing().ranges().contact();
@@ -89,18 +91,10 @@ impl Simulation {
         let targets: Targets = points.flat_map(rows).map(|row| (row, last.rows[row])).collect();
         self.spare = last;
         if gone.contains(&false) {
-            return Ok((report, None, targets));
+            return Ok((report, None, Some(targets)));
         }
         let unloaded = self.without_forces(state, &targets, &mut report)?;
-        Ok((report, unloaded, targets))
-    }
-
-    /// Whether loads on bodies that contact alone holds end with an increment.
-    pub(super) fn unloads(&self, way: &Way) -> Result<bool, ContactError> {
-        let model = &self.model;
-        let loose = model.plan.effects.history && !model.loose_motions()?.is_empty();
-        let unloaded = |start| self.problem.is_unloaded(model, start);
-        Ok(loose && way.increment().start.is_some_and(unloaded))
+        Ok((report, unloaded, Some(targets)))
     }
 
     /// The result without any forces, with bodies where rows are closest to their targets, or those of the points that
