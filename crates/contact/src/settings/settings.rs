@@ -59,7 +59,9 @@ signorini_qp::settings! {
         /// what lies between ([`halvings`](crate::report::Counters::halvings),
         /// [`between`](crate::report::Counters::between)); the work of friction and obstacles is summed over it. With a
         /// difference formula of three displacements, unequal increments have their own weights. If the shortest
-        /// increment does not converge either, the step ends with its status. Static scenes have nothing to halve.
+        /// increment does not converge either, what is left of the step is taken in the longest ones, and the step ends
+        /// with its status; with wrong slip left from it, later steps are not halved. Static scenes have nothing to
+        /// halve.
         step_halving, with_step_halving: u32 = 0, in "[0, 20]";
         /// The processes that solve the scene together.
         ///

@@ -18,6 +18,8 @@ pub(super) struct Way {
     last: Option<u32>,
     /// What is passed, in shortest increments.
     passed: u64,
+    /// Whether a shortest increment failed: nothing is halved any more.
+    failed: bool,
 }
 
 impl Way {
@@ -30,6 +32,7 @@ impl Way {
             most,
             last,
             passed: 0,
+            failed: false,
         }
     }
 
@@ -65,18 +68,33 @@ impl Way {
         self.passed + self.length() < self.end()
     }
 
-    /// Halves it; `false` if it is the shortest there may be.
-    pub(super) fn halve(&mut self) -> bool {
-        let may = self.halved < self.most;
-        self.halved += u32::from(may);
-        may
+    /// After a failure, halves it. Where it is the shortest there may be, what is left of the step is taken in the
+    /// longest increments. `false` if the failed one stays.
+    pub(super) fn retry(&mut self) -> bool {
+        if self.failed {
+            return false;
+        }
+        self.failed = self.halved == self.most;
+        if !self.failed {
+            self.halved += 1;
+            return true;
+        }
+        let shortest = self.halved;
+        while self.halved > 0 && self.may_grow() {
+            self.halved -= 1;
+        }
+        self.halved < shortest
+    }
+
+    fn may_grow(&self) -> bool {
+        self.passed.is_multiple_of(2 * self.length())
     }
 
     /// Takes it. The next one is twice as long where it may begin.
     pub(super) fn pass(&mut self) {
         self.passed += self.length();
         self.last = Some(self.halved);
-        if self.halved > 0 && self.passed.is_multiple_of(2 * self.length()) {
+        if self.halved > 0 && self.may_grow() {
             self.halved -= 1;
         }
     }
@@ -92,10 +110,10 @@ pub(super) struct Before {
 }
 
 impl Before {
-    /// An increment that failed and was halved; `None` where its solver broke down.
-    pub(super) fn enter_halved(&mut self, failed: Option<StepReport>) {
+    /// An increment that failed and was replaced, by halves or longer ones; `None` where its solver broke down.
+    pub(super) fn enter_failed(&mut self, failed: Option<StepReport>, halved: bool) {
         let mut report = failed.unwrap_or_else(StepReport::new);
-        report.counters.halvings += 1;
+        report.counters.halvings += usize::from(halved);
         self.enter(report);
     }
 
@@ -154,7 +172,7 @@ mod tests {
         loop {
             let increment = way.increment();
             let length = increment.length.expect("a length");
-            if fails(increment.end, length) && way.halve() {
+            if fails(increment.end, length) && way.retry() {
                 continue;
             }
             ends.push(increment.end);
@@ -176,7 +194,8 @@ mod tests {
         assert_eq!(ends, [0.25, 0.375, 0.5, 0.75, 1.0]);
         assert_eq!((way.last, way.halved), (Some(2), 1));
         // limits hold
-        assert_eq!(walk(2, None, |_, _| true).0, [0.25, 0.5, 0.75, 1.0]);
+        assert_eq!(walk(2, None, |_, _| true).0, [1.0]);
+        assert_eq!(walk(3, None, |end, _| end > 0.3).0, [0.25, 0.375, 0.5, 1.0]);
         // the next step begins twice as long as the last one ended, and goes on growing
         assert_eq!(walk(3, Some(3), |_, _| false).0, [0.25, 0.5, 1.0]);
         assert_eq!(walk(1, Some(3), |_, _| false).0, [0.5, 1.0]);

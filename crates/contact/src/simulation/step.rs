@@ -47,14 +47,23 @@ impl Simulation {
         // not taken out: laws of the user may panic
         let mut state = self.state.clone();
         let last = (state.step() > 0).then_some(state.halved);
-        let mut way = Way::new(whole, self.settings.step_halving, last);
+        // what did not converge leaves wrong slip
+        let most = match state.unconverged_history() {
+            None => self.settings.step_halving,
+            Some(_) => 0,
+        };
+        let mut way = Way::new(whole, most, last);
         let mut before = Before::default();
         loop {
+            if way.halved() > 0 {
+                self.model.scene.check_histories(way.increment().end)?;
+            }
             let solved = self.solve_after(&state, &way);
             self.model.tfeti.check_processes()?;
             let converged = matches!(&solved, Ok(result) if result.report.status.converged());
-            if !converged && way.halve() {
-                before.enter_halved(solved.ok().map(|result| result.report));
+            let halved = way.halved();
+            if !converged && way.retry() {
+                before.enter_failed(solved.ok().map(|result| result.report), way.halved() > halved);
                 continue;
             }
             let mut result = solved?;
@@ -76,9 +85,6 @@ impl Simulation {
     /// Solves the increment that follows on a state.
     fn solve_after(&mut self, state: &State, way: &Way) -> Result<StepResult, ContactError> {
         let increment = way.increment();
-        if way.halved() > 0 {
-            self.model.scene.check_histories(increment.end)?;
-        }
         self.controller = state.controller;
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, Acting::All)?;
         // the line through the last two steps leads on where the loads have stopped, and astray where friction has

@@ -157,7 +157,8 @@ fn nothing_is_halved_unless_asked_for_or_needed() {
     let report = simulation.run(&mut Silent).expect("run");
     assert_eq!(report.failures.first().map(|f| (f.step, f.time)), Some((0, 1.0)));
     assert_eq!((report.steps, simulation.state().unconverged_history()), (4, Some(0)));
-    assert!(report.counters.halvings >= 1);
+    // none of the steps after it is halved, and nor is what is left of it
+    assert_eq!((report.counters.halvings, report.counters.between), (1, 0));
     let out = Settings::default().with_step_halving(21).with_tolerance(1e-6);
     let refused = Simulation::new(scene(&WHOLE, DifferenceFormula::PAPER), out).map(|_| ());
     assert!(refused.expect_err("21").to_string().contains("step_halving = 21"));
