@@ -1,20 +1,20 @@
 //! Names of the parts of a scene from those of the groups of its mesh file.
 
 use super::contact::Contact;
+use super::coupling::{Coupled, Coupling};
 use super::load::{Kind, Load};
 use super::scene::Scene;
-use super::support::{Place, Support};
+use super::support::Place;
 use crate::part::Part;
-use signorini_fem_mesh::{FacetTag, LoadDensity};
+use signorini_fem_mesh::FacetTag;
 use std::collections::HashMap;
 
 /// Names by the numbers of the scene.
 struct Groups {
     surfaces: HashMap<FacetTag, String>,
     volumes: HashMap<u32, String>,
-    contacts: Vec<Option<String>>,
-    supports: Vec<Option<String>>,
-    loads: Vec<Option<String>>,
+    /// Of what acts on surfaces, their names.
+    own: HashMap<Part, String>,
     /// The region around each node, and of each tetrahedron.
     nodes: Vec<Option<u32>>,
     tets: Vec<u32>,
@@ -22,7 +22,7 @@ struct Groups {
 
 impl Scene {
     /// Names from the groups of a mesh file, as `GroupNames` of a Gmsh file lists them: errors and warnings then begin
-    /// with those of the contacts, supports, loads, regions and nodes concerned. What is added to the scene later has
+    /// with those of the contacts, supports, springs, couplings, loads, regions and nodes concerned. What is added to the scene later has
     /// none. They take the place of names that were [given before](Self::with_names); of two names of a tag the last
     /// counts.
     ///
@@ -48,21 +48,50 @@ impl Scene {
             let names: Vec<&str> = tags.iter().filter_map(|t| surfaces.get(t)).map(|n| &**n).collect();
             (!names.is_empty()).then(|| names.join(", "))
         };
-        let contact = |contact: &Contact| {
-            let sides = [&contact.tags, &contact.partner]
-                .into_iter()
-                .filter_map(|tags| on(tags));
-            let sides: Vec<String> = sides.collect();
-            (!sides.is_empty()).then(|| format!("that of {}", sides.join(" and ")))
-        };
-        let support = |support: &Support| match &support.place {
-            Place::Tag(tag) => on(&[*tag]).map(|name| format!("that of {name}")),
+        let in_place = |place: &Place| match place {
+            Place::Tag(tag) => on(&[*tag]),
             Place::Nodes(_) => None,
         };
-        let load = |load: &Load| match &load.kind {
-            Kind::Density(density) => on(&loaded(density)).map(|name| format!("that on {name}")),
-            Kind::Eigenstrain(_) | Kind::Coupling(_) => None,
+        let contact = |contact: &Contact| {
+            let sides = [&contact.tags, &contact.partner].map(|tags| on(tags));
+            let sides: Vec<String> = sides.into_iter().flatten().collect();
+            (!sides.is_empty()).then(|| sides.join(" and "))
         };
+        let coupling = |coupling: &Coupling| match &coupling.coupled {
+            Coupled::Nodes(place) => in_place(place),
+            Coupled::Tied(index) => contact(self.contacts.get(*index)?),
+            Coupled::Point => None,
+        };
+        let load = |load: &Load| match &load.kind {
+            Kind::Density(density) => on(&[density.tag()?]),
+            Kind::Coupling(load) => coupling(self.couplings.get(load.coupling)?),
+            Kind::Eigenstrain(_) => None,
+        };
+        let own = (self
+            .contacts
+            .iter()
+            .enumerate()
+            .map(|(k, c)| (Part::Contact(k), contact(c))))
+        .chain(
+            self.supports
+                .iter()
+                .enumerate()
+                .map(|(k, s)| (Part::Support(k), in_place(&s.place))),
+        )
+        .chain(
+            self.springs
+                .iter()
+                .enumerate()
+                .map(|(k, s)| (Part::Spring(k), in_place(&s.place))),
+        )
+        .chain(
+            self.couplings
+                .iter()
+                .enumerate()
+                .map(|(k, c)| (Part::Coupling(k), coupling(c))),
+        )
+        .chain(self.loads.iter().enumerate().map(|(k, l)| (Part::Load(k), load(l))));
+        let own = own.filter_map(|(part, on)| Some((part, on?))).collect();
         let mut nodes = vec![None; self.mesh.points().len()];
         let mids = (0..self.mesh.tets().len()).map(|tet| self.mesh.mids().get(tet).into_iter().flatten());
         let corners = self.mesh.tets().iter().zip(mids).zip(self.mesh.regions());
@@ -73,9 +102,7 @@ impl Scene {
                 .for_each(|&n| nodes[n as usize] = Some(*region));
         }
         let groups = Groups {
-            contacts: self.contacts.iter().map(contact).collect(),
-            supports: self.supports.iter().map(support).collect(),
-            loads: self.loads.iter().map(load).collect(),
+            own,
             nodes,
             tets: self.mesh.regions().to_vec(),
             volumes: volumes
@@ -88,30 +115,19 @@ impl Scene {
     }
 }
 
-/// The facets that a load acts on.
-fn loaded(density: &LoadDensity) -> Vec<FacetTag> {
-    match density {
-        LoadDensity::Traction(tag, _)
-        | LoadDensity::TractionField(tag, _)
-        | LoadDensity::Pressure(tag, _)
-        | LoadDensity::Force(tag, _)
-        | LoadDensity::Moment(tag, _) => vec![*tag],
-        _ => Vec::new(),
-    }
-}
-
 impl Groups {
     fn name(&self, part: Part) -> Option<String> {
         let within = |region: &u32| self.volumes.get(region).map(|name| format!("in {name}"));
         match part {
-            Part::Contact(index) => self.contacts.get(index)?.clone(),
-            Part::Support(index) => self.supports.get(index)?.clone(),
-            Part::Load(index) => self.loads.get(index)?.clone(),
+            Part::Load(_) => self.own.get(&part).map(|on| format!("that on {on}")),
+            Part::Contact(_) | Part::Support(_) | Part::Spring(_) | Part::Coupling(_) => {
+                self.own.get(&part).map(|of| format!("that of {of}"))
+            }
             Part::Node(node) => self.nodes.get(node as usize)?.as_ref().and_then(within),
             Part::Tet(tet) => self.tets.get(tet).and_then(within),
             Part::Region(region) => self.volumes.get(&region).cloned(),
             Part::Tag(tag) => self.surfaces.get(&tag).cloned(),
-            Part::Spring(_) | Part::Coupling(_) | Part::Equation(_) | Part::Step(_) => None,
+            Part::Equation(_) | Part::Step(_) => None,
         }
     }
 }

@@ -60,3 +60,22 @@ fn errors_name_bodies_loads_and_supports() {
         assert!(error.contains(" is in pad"), "{error}");
     }
 }
+
+#[test]
+fn errors_name_springs_and_couplings() {
+    let scene = || {
+        let side = Coupling::rigid(brick::X_MAX, [1.0; 3]).with_axis([0.0; 3]);
+        Scene::new(block([1.0; 3], [2; 3]), uniform(1e9, 0.3))
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_coupling(side)
+    };
+    let groups = |scene: Scene| scene.with_groups([("side", brick::X_MAX), ("ground", brick::X_MIN)], []);
+    let told = |scene: Scene| refused(&groups(scene)).to_string();
+    let coupling = told(scene());
+    assert!(coupling.starts_with("coupling 0 is that of side: "), "{coupling}");
+    let spring = told(scene().with_spring(Spring::normal(brick::X_MIN, -1.0)));
+    assert!(spring.starts_with("spring 0 is that of ground: "), "{spring}");
+    let force = Load::on_coupling(0, [f64::NAN; 3], [0.0; 3]);
+    let load = told(scene().with_load(force.with_history(History::constant(f64::NAN))));
+    assert!(load.starts_with("load 0 is that on side: "), "{load}");
+}

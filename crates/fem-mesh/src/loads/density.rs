@@ -78,6 +78,18 @@ impl LoadDensity {
         Self::Moment(tag, value)
     }
 
+    /// The facets that it acts on; `None` for volumes and nodes.
+    pub fn tag(&self) -> Option<FacetTag> {
+        match self {
+            Self::Traction(tag, _)
+            | Self::TractionField(tag, _)
+            | Self::Pressure(tag, _)
+            | Self::Force(tag, _)
+            | Self::Moment(tag, _) => Some(*tag),
+            Self::Body(_) | Self::BodyField(_) | Self::NodalForces(_) => None,
+        }
+    }
+
     /// Forces at single nodes.
     pub fn nodal_forces(forces: Vec<(u32, [f64; 3])>) -> Self {
         Self::NodalForces(forces)
