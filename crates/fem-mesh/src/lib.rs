@@ -115,7 +115,10 @@ pub mod internal {
     pub use crate::errors::{number, place};
     pub use crate::files::replace_file;
     pub use crate::loads::interpolate;
-    pub use crate::mesh::{EDGES, TET_FACES, cylindrical, facet_normals, facet_shape, facet_shares, tag_list};
+    pub use crate::loads::tet_forces;
+    pub use crate::mesh::{
+        EDGES, TET_FACES, cylindrical, facet_area_shares, facet_normals, facet_shape, facet_shares, tag_list,
+    };
     pub use crate::quadrature::triangle;
     pub use crate::tables::{DisjointSets, Lists, ascending, distinct};
 }

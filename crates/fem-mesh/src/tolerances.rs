@@ -19,6 +19,9 @@ pub(crate) const MID_OFF: f64 = 0.25;
 pub(crate) const CURVED: f64 = 1e-3;
 /// How far outside of a tetrahedron a point may be, in barycentric coordinates, and still count.
 pub(crate) const OUTSIDE: f64 = 1e-9;
+/// Newton steps to the coordinates of a place in a curved tetrahedron, and the change of coordinates that is none.
+pub(crate) const PLACINGS: usize = 20;
+pub(crate) const PLACED: f64 = 1e-13;
 
 // Materials
 

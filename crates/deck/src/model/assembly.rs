@@ -255,7 +255,7 @@ fn weight(part: &Model, prefix: usize) -> u64 {
     let named = |name: &str| (NAME + prefix + name.len()) / THING;
     let sets = part.nsets.iter().chain(part.elsets.iter()).map(|(name, set)| {
         let members = set.iter().map(|(member, _)| match member {
-            Member::Set(name) => named(name),
+            Member::Set(name, _) => named(name),
             Member::One(_) | Member::Range { .. } => 1,
         });
         named(name) + members.sum::<usize>()
@@ -388,7 +388,7 @@ impl Scope<'_> {
                             to: self.shifted(*to.min(&self.largest)).min(u64::from(LARGEST)) as u32,
                             step: *step,
                         },
-                        Member::Set(name) => Member::Set(format!("{}{name}", self.used)),
+                        Member::Set(name, before) => Member::Set(format!("{}{name}", self.used), *before),
                     };
                     members.push((member, location.clone()));
                 }

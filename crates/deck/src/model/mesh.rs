@@ -159,6 +159,10 @@ pub(super) fn set(model: &mut Model, card: &Card, key: &'static str) -> Result<(
     card.flag("INTERNAL")?;
     let set = card.need(key)?;
     let generate = card.flag("GENERATE")?;
+    let sets = match key {
+        "NSET" => &mut model.nsets,
+        _ => &mut model.elsets,
+    };
     let mut members = Vec::new();
     for line in &card.lines {
         if generate {
@@ -168,15 +172,15 @@ pub(super) fn set(model: &mut Model, card: &Card, key: &'static str) -> Result<(
         for field in line.fields() {
             let member = match label(field) {
                 Some(number) => Member::One(number),
-                None => Member::Set(set_name(line, field)?),
+                None => {
+                    let name = set_name(line, field)?;
+                    let before = sets.position(&name).map(|other| sets.at(other).len());
+                    Member::Set(name, before)
+                }
             };
             members.push((member, line.location.clone()));
         }
     }
-    let sets = match key {
-        "NSET" => &mut model.nsets,
-        _ => &mut model.elsets,
-    };
     sets.entry(set.name).append(&mut members);
     Ok(())
 }

@@ -115,8 +115,13 @@ impl Element {
 #[derive(Debug, Clone)]
 pub(crate) enum Member {
     One(u32),
-    Range { from: u32, to: u32, step: u32 },
-    Set(String),
+    Range {
+        from: u32,
+        to: u32,
+        step: u32,
+    },
+    /// Another set with so many of its entries, those of the cards before; `None` if none is known yet.
+    Set(String, Option<usize>),
 }
 
 /// A set of nodes or elements: its members, each with its place and word.
@@ -182,6 +187,7 @@ pub(crate) struct Amplitude {
 #[derive(Debug, Clone)]
 pub(crate) struct Interaction {
     pub(crate) location: Location,
+    pub(crate) behavior: Option<Location>,
     pub(crate) friction: Option<f64>,
     /// The word that ties all pairs with it.
     pub(crate) tied: Option<Word>,

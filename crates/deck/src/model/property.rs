@@ -55,11 +55,13 @@ pub(super) fn density(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     let line = card.only_line(wanted)?;
     let fields = line.at_most(2, wanted)?;
     let value = line.real(&fields, 0, wanted)?;
-    if value <= 0.0 || material.density.is_some() {
+    if value <= 0.0 {
         return Err(line.part(fields[0]).expected(wanted));
     }
-    material.density = Some(value);
-    Ok(())
+    match material.density.replace(value) {
+        Some(_) => Err(card.word.cannot("the material has a density already; keep one")),
+        None => Ok(()),
+    }
 }
 
 pub(super) fn section(model: &mut Model, card: &Card) -> Result<(), DeckError> {
@@ -127,6 +129,7 @@ pub(super) fn interaction(model: &mut Model, card: &Card) -> Result<(), DeckErro
     }
     let interaction = Interaction {
         location: card.word.location.clone(),
+        behavior: None,
         friction: None,
         tied: None,
         compliance: [0.0; 2],
@@ -138,6 +141,10 @@ pub(super) fn interaction(model: &mut Model, card: &Card) -> Result<(), DeckErro
 pub(super) fn behavior(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&["PRESSURE-OVERCLOSURE"])?;
     let interaction = of_interaction(model, card)?;
+    let first = interaction.behavior.replace(card.word.location.clone());
+    if let Some(first) = first {
+        return Err(twice(card, &first));
+    }
     let law = card.value("PRESSURE-OVERCLOSURE")?;
     match law.as_ref().map_or("HARD", |law| &law.name) {
         "LINEAR" => {}

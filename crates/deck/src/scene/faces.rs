@@ -8,6 +8,7 @@ use std::collections::HashMap;
 
 use signorini_fem_mesh::internal::{TET_FACES, ascending, distinct};
 use signorini_fem_mesh::mesh::divide_face;
+use signorini_fem_mesh::vec3::Vec3;
 use signorini_fem_mesh::{Facet, FacetTag};
 
 use super::boundary::Boundary;
@@ -322,18 +323,13 @@ impl Known<'_> {
 }
 
 impl Face {
-    /// The nodes that share the force of a constant pressure evenly.
-    pub(super) fn loaded(&self, raw: &Raw) -> [u32; 3] {
-        raw.loaded(self.tet, self.nodes)
-    }
-
     /// The nodes that carry a constant traction, each with its area.
     pub(super) fn areas(&self, raw: &Raw) -> Vec<(u32, f64)> {
         raw.areas(self.tet, self.nodes)
     }
 
-    /// Its area along the outward normal.
-    pub(super) fn area_vector(&self, raw: &Raw) -> [f64; 3] {
-        raw.area_vector(self.tet, self.nodes)
+    /// The nodes that carry a constant pressure, each with its area along the outward normal.
+    pub(super) fn area_vectors(&self, raw: &Raw) -> Vec<(u32, Vec3)> {
+        raw.area_vectors(self.tet, self.nodes)
     }
 }

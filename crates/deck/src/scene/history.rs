@@ -112,6 +112,11 @@ impl Track {
         }
     }
 
+    /// The first step that says something.
+    pub(super) fn first_step(&self) -> Option<usize> {
+        self.events.first().map(|event| event.0)
+    }
+
     /// Whether the last value follows an amplitude in total time.
     pub(super) fn follows(&self, timeline: &Timeline) -> bool {
         let last = self.events.iter().rev().find_map(|event| event.1);
@@ -331,6 +336,11 @@ impl Histories {
             return Ok(None);
         };
         let mut points = track.points(timeline, reference);
+        if points.is_empty() {
+            return Err(track
+                .word
+                .cannot("a value acts in steps, and there are none; give it behind a *STEP, or give none"));
+        }
         if track.base != 0.0 {
             // factors of the base become those of the first rise
             points.iter_mut().for_each(|p| p.1 -= 1.0);

@@ -5,7 +5,7 @@ use std::collections::btree_map::Entry;
 
 use signorini_contact::Load;
 use signorini_fem_mesh::internal::distinct;
-use signorini_fem_mesh::vec3::{Vec3, unit};
+use signorini_fem_mesh::vec3::{Vec3, scale, unit};
 use signorini_fem_mesh::{FacetTag, LoadDensity};
 
 use super::faces::{FaceTable, Known};
@@ -17,8 +17,7 @@ use super::volume::Volume;
 use crate::error::{DeckError, Word};
 use crate::model::{Components, Condition, Conditions, CouplingLaw, DistributedKind, FORCE, Given, Target};
 
-/// Most different pressures that get tags of their own. More become forces at nodes, which are the same for
-/// linear elements.
+/// Most different pressures that get tags of their own. More become the same forces at nodes.
 const PRESSURES: usize = 100;
 
 /// Forces at nodes that share a history, by its position, and their place among all.
@@ -134,9 +133,8 @@ impl Loads {
         if groups.len() > PRESSURES {
             for (face, value, history, order) in of_face {
                 let face = &faces.list[face as usize];
-                let area = face.area_vector(known.raw);
-                for node in face.loaded(known.raw) {
-                    self.force(history, order, node, area.map(|a| -value * a / 3.0));
+                for (node, area) in face.area_vectors(known.raw) {
+                    self.force(history, order, node, scale(-value, area));
                 }
             }
             return Ok(());

@@ -5,10 +5,10 @@ use std::ops::Range;
 use std::path::Path;
 
 use signorini_contact::{ContactError, Part};
-use signorini_fem_mesh::internal::{EDGES, Lists, TET_FACES, distinct, facet_shares};
+use signorini_fem_mesh::internal::{EDGES, Lists, TET_FACES, distinct, facet_area_shares, facet_shares, tet_forces};
 use signorini_fem_mesh::mesh::{Cell, CellShape, Division};
-use signorini_fem_mesh::vec3::{add, area_vector, norm, scale, sub, tet_volume};
-use signorini_fem_mesh::{Facet, MeshError, TetMesh};
+use signorini_fem_mesh::vec3::{Vec3, add, area_vector, dot, norm, scale, tet_volume};
+use signorini_fem_mesh::{Facet, LoadError, MeshError, TetMesh};
 
 use super::numbers::{Numbers, Sets};
 use super::rigid::RigidBodies;
@@ -296,33 +296,17 @@ impl Raw {
         self.first_added() as usize..self.uncut()
     }
 
-    /// Shares of a tetrahedron in a force per volume that is constant in it, as far as its edges are straight.
-    pub(super) fn shares(&self, tet: u32) -> Vec<(u32, f64)> {
-        let corners = self.tets[tet as usize];
-        match self.mids.get(tet as usize) {
-            None => corners.map(|n| (n, 0.25)).into(),
-            Some(mids) => {
-                let corners = corners.into_iter().map(|n| (n, -0.05));
-                corners.chain(mids.iter().map(|&n| (n, 0.2))).collect()
-            }
-        }
-    }
-
-    /// The same of one that grows linearly, given at the corners.
-    pub(super) fn linear_shares(&self, tet: u32, given: [[f64; 3]; 4]) -> Vec<(u32, [f64; 3])> {
-        let corners = self.tets[tet as usize];
-        let sum = given.into_iter().fold([0.0; 3], add);
-        let own = corners.into_iter().zip(given);
-        match self.mids.get(tet as usize) {
-            None => own.map(|(n, f)| (n, scale(0.05, add(sum, f)))).collect(),
-            Some(mids) => {
-                let corners = own.map(|(n, f)| (n, scale(1.0 / 60.0, sub(f, sum))));
-                let ends = |[a, b]: [usize; 2]| add(given[a], given[b]);
-                let mids = mids.iter().zip(EDGES);
-                let mids = mids.map(|(&n, edge)| (n, scale(1.0 / 30.0, add(sum, ends(edge)))));
-                corners.chain(mids).collect()
-            }
-        }
+    /// Forces of the nodes of a tetrahedron under a force per volume.
+    pub(super) fn tet_forces(
+        &self,
+        tet: u32,
+        density: impl Fn(Vec3) -> Vec3 + Sync,
+    ) -> Result<Vec<(u32, Vec3)>, LoadError> {
+        let at = |node: u32| self.points[node as usize];
+        let (corners, mids) = (self.tets[tet as usize], self.mids.get(tet as usize));
+        let forces = tet_forces(&corners.map(at), mids.map(|mids| mids.map(at)).as_ref(), density)?;
+        let nodes = corners.into_iter().chain(mids.into_iter().flatten().copied());
+        Ok(nodes.zip(forces).collect())
     }
 
     /// Nodes that share the force on a face of a tetrahedron evenly: its corners, or the nodes on its edges.
@@ -332,17 +316,36 @@ impl Raw {
 
     /// The nodes of a face that carry a constant traction on it, each with its area.
     pub(super) fn areas(&self, tet: u32, face: [u32; 3]) -> Vec<(u32, f64)> {
-        let Some(mids) = self.mids_of(tet, face) else {
-            let third = norm(self.area_vector(tet, face)) / 3.0;
-            return face.map(|node| (node, third)).into();
+        let (all, points) = match self.quadratic_face(tet, face) {
+            Some(quadratic) => quadratic,
+            None => {
+                let third = norm(self.area_vector(tet, face)) / 3.0;
+                return face.map(|node| (node, third)).into();
+            }
         };
-        let [a, b, c] = face;
-        let nodes = [a, b, c, mids[0], mids[1], mids[2]];
-        let areas = facet_shares(&nodes.map(|n| self.points[n as usize]));
+        let areas = facet_shares(&points);
         // corners of straight ones have none but rounding
         let least = NO_AREA * areas.iter().sum::<f64>();
         let carries = |(_, area): &(u32, f64)| area.abs() > least;
-        nodes.into_iter().zip(areas).filter(carries).collect()
+        all.into_iter().zip(areas).filter(carries).collect()
+    }
+
+    /// The same along the outward normal.
+    pub(super) fn area_vectors(&self, tet: u32, face: [u32; 3]) -> Vec<(u32, Vec3)> {
+        let out = self.area_vector(tet, face);
+        let Some((all, points)) = self.quadratic_face(tet, face) else {
+            return face.map(|node| (node, scale(1.0 / 3.0, out))).into();
+        };
+        let areas = facet_area_shares(&points);
+        let sign = dot(areas.into_iter().fold([0.0; 3], add), out).signum();
+        all.into_iter().zip(areas.map(|area| scale(sign, area))).collect()
+    }
+
+    /// Corners and mid-nodes of a face of a quadratic tetrahedron, and where they are.
+    fn quadratic_face(&self, tet: u32, face: [u32; 3]) -> Option<([u32; 6], [Vec3; 6])> {
+        let ([a, b, c], [d, e, f]) = (face, self.mids_of(tet, face)?);
+        let nodes = [a, b, c, d, e, f];
+        Some((nodes, nodes.map(|n| self.points[n as usize])))
     }
 
     /// A face of a tetrahedron as triangles between neighbouring nodes.
@@ -363,10 +366,6 @@ impl Raw {
             EDGES.iter().position(is).map_or(ends[0], |edge| mids[edge])
         };
         Some([[a, b], [b, c], [c, a]].map(between))
-    }
-
-    pub(super) fn volume(&self, tet: u32) -> f64 {
-        tet_volume(&self.tet_points(tet))
     }
 
     /// The mesh; `name` says what a part is in the deck.

@@ -48,6 +48,19 @@ pub(super) struct Table<'a> {
     sets: Vec<Vec<u32>>,
 }
 
+/// The members of a set that are found so far.
+#[derive(Debug, Clone, Default)]
+struct Found {
+    /// Positions, each once.
+    members: Vec<u32>,
+    /// How many there are after each entry of the set.
+    ends: Vec<usize>,
+    taken: HashSet<(usize, usize)>,
+}
+
+/// Of no set.
+const NOT_YET: u32 = u32::MAX;
+
 /// All numbers and sets.
 #[derive(Debug)]
 pub(super) struct Sets<'a> {
@@ -96,44 +109,19 @@ impl<'a> Table<'a> {
 
     /// Finds the members of each set; `room` is left for them.
     fn resolve(&mut self, room: &mut u64) -> Result<(), DeckError> {
-        const NOT_YET: u32 = u32::MAX;
-        let what = self.what;
-        let unknown = |location: &Location, word: String| Word::new(location, word).fault(Fault::UnknownNumber(what));
+        let mut found: Vec<Found> = vec![Found::default(); self.names.len()];
         let mut last = vec![NOT_YET; self.numbers.0.len()];
-        for (index, (_, set)) in self.names.iter().enumerate() {
-            let mut members = Vec::new();
-            let mut add = |position: u32| {
-                if std::mem::replace(&mut last[position as usize], index as u32) != index as u32 {
-                    members.push(position);
-                }
-            };
-            let mut taken = HashSet::new();
-            for (member, location) in set {
-                match member {
-                    Member::One(number) => match self.numbers.get(*number) {
-                        Some(position) => add(position),
-                        None => return Err(unknown(location, number.to_string())),
-                    },
-                    Member::Range { from, to, step } => {
-                        let mut inside = self.numbers.range(*from, *to, *step).peekable();
-                        if inside.peek().is_none() {
-                            return Err(unknown(location, format!("{from}, {to}, {step}")));
-                        }
-                        inside.for_each(&mut add);
-                    }
-                    Member::Set(name) => {
-                        let word = Word::new(location, name);
-                        let other = self.names.find("set", name, &word)?;
-                        if other >= index {
-                            let why = "a set may name only sets that are defined before it; move the other one up";
-                            return Err(word.cannot(why));
-                        }
-                        if taken.insert(other) {
-                            self.sets[other].iter().copied().for_each(&mut add);
-                        }
-                    }
+        for index in 0..found.len() {
+            // those that it waits for, with the number of their members that are wanted
+            let mut waiting = vec![(index, self.names.at(index).len())];
+            while let Some(&(set, wanted)) = waiting.last() {
+                match self.add_members((set, wanted), &mut found, &mut last)? {
+                    Some(first) => waiting.push(first),
+                    None => _ = waiting.pop(),
                 }
             }
+        }
+        for (Found { mut members, .. }, (_, set)) in found.into_iter().zip(self.names.iter()) {
             members.sort_unstable();
             match room.checked_sub(members.len() as u64) {
                 Some(left) => *room = left,
@@ -149,6 +137,66 @@ impl<'a> Table<'a> {
             self.sets.push(members);
         }
         Ok(())
+    }
+
+    /// Goes on with the members of a set up to the wanted ones; another set and its members if these come first. `last`
+    /// says of each position to which set it was added last.
+    fn add_members(
+        &self,
+        (set, wanted): (usize, usize),
+        found: &mut [Found],
+        last: &mut [u32],
+    ) -> Result<Option<(usize, usize)>, DeckError> {
+        let unknown =
+            |location: &Location, word: String| Word::new(location, word).fault(Fault::UnknownNumber(self.what));
+        let mut own = std::mem::take(&mut found[set]);
+        own.members
+            .iter()
+            .for_each(|member| last[*member as usize] = set as u32);
+        while own.ends.len() < wanted {
+            let members = &mut own.members;
+            let mut add = |position: u32| {
+                if std::mem::replace(&mut last[position as usize], set as u32) != set as u32 {
+                    members.push(position);
+                }
+            };
+            let (member, location) = &self.names.at(set)[own.ends.len()];
+            match member {
+                Member::One(number) => match self.numbers.get(*number) {
+                    Some(position) => add(position),
+                    None => return Err(unknown(location, number.to_string())),
+                },
+                Member::Range { from, to, step } => {
+                    let mut inside = self.numbers.range(*from, *to, *step).peekable();
+                    if inside.peek().is_none() {
+                        return Err(unknown(location, format!("{from}, {to}, {step}")));
+                    }
+                    inside.for_each(&mut add);
+                }
+                Member::Set(name, before) => {
+                    let word = Word::new(location, name);
+                    let other = self.names.find("set", name, &word)?;
+                    // those of instances stand elsewhere in the deck
+                    let all = (other < set).then(|| self.names.at(other).len());
+                    let Some(before) = before.or(all) else {
+                        let why = "a set may name only sets that are defined before it; move the other one up";
+                        return Err(word.cannot(why));
+                    };
+                    // of its own it has all
+                    if other != set && before > 0 && !own.taken.contains(&(other, before)) {
+                        let Some(&end) = found[other].ends.get(before - 1) else {
+                            found[set] = own;
+                            return Ok(Some((other, before)));
+                        };
+                        found[other].members[..end].iter().copied().for_each(&mut add);
+                        own.taken.insert((other, before));
+                    }
+                }
+            }
+            own.ends.push(own.members.len());
+        }
+        found[set] = own;
+        Ok(None)
     }
 
     /// The sets by name, with what the positions in each are to be taken for.

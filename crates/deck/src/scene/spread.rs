@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use nalgebra::{Matrix3, Vector3};
-use signorini_fem_mesh::vec3::{Vec3, add, cross, norm, scale, sub};
+use signorini_fem_mesh::vec3::{Vec3, add, cross, scale, sub};
 
 use super::couplings::Coupling;
 use super::faces::{FaceTable, Known};
@@ -22,7 +22,7 @@ pub(super) struct Spread {
     inverse: Matrix3<f64>,
 }
 
-/// Nodes of the surface of a coupling, with their parts of its area: none at the corners of quadratic faces.
+/// Nodes of the surface of a coupling, with their parts of its area: none at the corners of plane quadratic faces.
 pub(super) fn coupled_nodes(
     coupling: &Coupling,
     Known { raw, sections, .. }: Known,
@@ -31,10 +31,8 @@ pub(super) fn coupled_nodes(
     sections.check_outside(coupling.surface, &coupling.word)?;
     let mut nodes = BTreeMap::new();
     for face in faces.of_surface(coupling.surface as u32) {
-        let part = norm(face.area_vector(raw)) / 3.0;
         let corners = face.nodes.map(|n| (n, 0.0));
-        let loaded = face.loaded(raw).map(|n| (n, part));
-        for (node, part) in corners.into_iter().chain(loaded) {
+        for (node, part) in corners.into_iter().chain(face.areas(raw)) {
             *nodes.entry(node).or_default() += part;
         }
     }

@@ -1,6 +1,6 @@
 //! `*DLOAD` in the volume of elements: gravity, forces per volume, centrifugal forces.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 use signorini_fem_mesh::LoadDensity;
 use signorini_fem_mesh::vec3::{Vec3, cross, dot, norm, scale, sub, unit};
@@ -118,6 +118,8 @@ impl Volume {
         histories: &mut Histories,
         mut force: impl FnMut(usize, usize, u32, Vec3),
     ) -> Result<Vec<(usize, LoadDensity, usize)>, DeckError> {
+        self.check_forces(known)?;
+        let mut sections = None;
         let mut bodies = Vec::new();
         type Group = (Target, Kind, usize);
         let mut groups: BTreeMap<Group, (usize, Vec3, &Track)> = BTreeMap::new();
@@ -139,8 +141,13 @@ impl Volume {
             }
             let densities = match kind {
                 Kind::Force => vec![1.0; elements.len()],
-                Kind::Gravity | Kind::Centrifugal(_) => known.densities(&elements, track)?,
+                Kind::Gravity | Kind::Centrifugal(_) => known.densities(&mut sections, &elements, track)?,
             };
+            let pulls_in = |(_, factor): &(f64, f64)| value[0] * factor < 0.0;
+            if matches!(kind, Kind::Centrifugal(_)) && histories.at(history).points().iter().any(pulls_in) {
+                let why = "the square of an angular velocity is not negative, but its amplitude makes it so";
+                return Err(track.word.cannot(why));
+            }
             let same = densities.iter().all(|d| *d == densities[0]);
             let whole = same && elements.len() == raw.tets.len();
             if whole {
@@ -156,27 +163,43 @@ impl Volume {
                 continue;
             }
             for (&element, density) in elements.iter().zip(densities) {
-                let parts: Vec<(u32, Vec3)> = match kind {
+                let forces = match kind {
                     Kind::Centrifugal(axis) => {
-                        let factor = density * value[0] * raw.volume(element);
-                        let arms = raw.tet_points(element).map(|x| arm(x, self.axes[axis]));
-                        let parts = raw.linear_shares(element, arms).into_iter();
-                        parts.map(|(node, part)| (node, scale(factor, part))).collect()
+                        let (axis, factor) = (self.axes[axis], density * value[0]);
+                        raw.tet_forces(element, move |x| scale(factor, arm(x, axis)))
                     }
-                    Kind::Force | Kind::Gravity => {
-                        let share = |part: f64| part * density * raw.volume(element);
-                        let parts = raw.shares(element).into_iter();
-                        parts
-                            .map(|(node, part)| (node, value.map(|v| share(part) * v)))
-                            .collect()
-                    }
+                    Kind::Force | Kind::Gravity => raw.tet_forces(element, |_| scale(density, value)),
                 };
-                for (node, part) in parts {
+                for (node, part) in forces.map_err(|error| track.word.cannot(error.to_string()))? {
                     force(history, order, node, part);
                 }
             }
         }
         Ok(bodies)
+    }
+}
+
+impl Volume {
+    /// Forces per volume add up within a step; CalculiX replaces those of earlier steps element by element, which are
+    /// those of the same target here.
+    fn check_forces(&self, Known { sets, .. }: Known) -> Result<(), DeckError> {
+        let mut of_element: HashMap<(u32, usize), &Track> = HashMap::new();
+        for ((target, kind, component), track) in &self.tracks.0 {
+            if *kind != Kind::Force {
+                continue;
+            }
+            for element in sets.elements.find(target, &track.word)? {
+                let before = of_element.insert((element, *component), track);
+                if let Some(before) = before.filter(|before| before.first_step() != track.first_step()) {
+                    let later = if before.order < track.order { track } else { before };
+                    return Err(later.word.cannot(
+                        "some of these elements have such a force from another step, by another set; name the same set \
+                        in both steps, or give sets without common elements",
+                    ));
+                }
+            }
+        }
+        Ok(())
     }
 }
 
@@ -187,12 +210,14 @@ fn arm(x: Vec3, [point, along]: Axis) -> Vec3 {
 }
 
 impl Known<'_> {
-    /// Densities of elements, that of the material of their section.
-    fn densities(self, elements: &[u32], track: &Track) -> Result<Vec<f64>, DeckError> {
+    /// Densities of elements, that of the material of their section; `known` are the sections, once they are asked for.
+    fn densities(self, known: &mut Option<Vec<u32>>, elements: &[u32], track: &Track) -> Result<Vec<f64>, DeckError> {
         let Known { model, raw, sets, .. } = self;
-        let sections = sections(raw, sets)?;
-        let sections =
-            sections.ok_or_else(|| (track.word).cannot("forces of the mass need materials; give *SOLID SECTION"))?;
+        if known.is_none() {
+            *known = sections(raw, sets)?;
+        }
+        let sections = (known.as_ref())
+            .ok_or_else(|| (track.word).cannot("forces of the mass need materials; give *SOLID SECTION"))?;
         let mut of_section = Vec::with_capacity(model.sections.len());
         for section in &model.sections {
             of_section.push((model.material(section)?.density, &section.material.name));

@@ -293,3 +293,13 @@ fn elements_of_second_order_are_read_with_their_nodes() {
         mixed.ignored()[0]
     );
 }
+
+/// Cards of one name add up, in the order of the deck.
+#[test]
+fn sets_take_what_stands_before() {
+    let sets = "*NSET, NSET=A\n1\n*NSET, NSET=B\n2\n*NSET, NSET=A\nB\n*NSET, NSET=B\n3\n*NSET, NSET=C\nA, B\n\
+        *NSET, NSET=A\nC\n";
+    let deck = read(&cube(sets)).expect("deck");
+    let of = |name: &str| deck.node_set(name).expect("set").to_vec();
+    assert_eq!((of("A"), of("B"), of("C")), (vec![0, 1, 2], vec![1, 2], vec![0, 1, 2]));
+}

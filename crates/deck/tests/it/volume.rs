@@ -1,7 +1,8 @@
 //! Loads of the volume.
 
 use signorini_contact::Scene;
-use signorini_fem_mesh::{Brick, Decomposition, LoadDensity, TetMesh, assemble_load};
+use signorini_fem_mesh::mesh::BoundaryFacet;
+use signorini_fem_mesh::{Brick, Decomposition, TetMesh, assemble_load};
 
 use crate::write::{STEEL, mesh, read};
 
@@ -15,6 +16,30 @@ fn bar(order: usize) -> TetMesh {
     }
 }
 
+/// A quadratic one with a curved top.
+fn curved(cells: [usize; 3]) -> TetMesh {
+    let bar = Brick::new([3.0, 1.0, 0.5], cells).build().expect("a bar");
+    let bulge = |[x, y, z]: [f64; 3]| [x, y, z * (1.0 + 0.4 * (1.0 - (2.0 * y - 1.0).powi(2)))];
+    bar.raise_order().expect("quadratic").map_points(bulge).expect("curved")
+}
+
+/// The nodal forces of all loads.
+fn forces(bar: &TetMesh, scene: &Scene) -> Vec<f64> {
+    let one = Decomposition::boxes(bar, [1, 1, 1]).expect("one subdomain");
+    let mut sum = vec![0.0; 3 * bar.points().len()];
+    for load in scene.loads() {
+        let density = load.density().expect("a density");
+        let vectors = assemble_load(scene.mesh(), &one, density).expect("load");
+        sum.iter_mut().zip(&vectors[0]).for_each(|(s, v)| *s += v);
+    }
+    sum
+}
+
+fn assert_same(a: &[f64], b: &[f64]) {
+    let scale = a.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+    assert!(scale > 0.0 && a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-12 * scale));
+}
+
 fn scene(bar: &TetMesh, sets: &str, loads: &str) -> Scene {
     let step = format!("*BOUNDARY\nN1, 1, 3\n*STEP\n*STATIC\n*DLOAD\n{loads}*END STEP\n");
     let deck = format!("{}{STEEL}{sets}{step}", mesh(bar));
@@ -23,44 +48,48 @@ fn scene(bar: &TetMesh, sets: &str, loads: &str) -> Scene {
 
 /// On a part of the elements the forces at nodes are those of the field that the whole mesh has, element by element.
 #[test]
-fn centrifugal_forces_of_parts_add_up_to_those_of_the_whole() {
-    for order in [1, 2] {
-        let bar = bar(order);
-        let whole = scene(&bar, "", &format!("ALL, {SPIN}\n"));
-        let half = bar.tets().len() / 2;
+fn loads_of_parts_add_up_to_those_of_the_whole() {
+    for bar in [bar(1), bar(2), curved([6, 2, 1])] {
+        let (half, all) = (bar.tets().len() / 2, bar.tets().len());
         let sets = format!(
-            "*ELSET, ELSET=A, GENERATE\n1, {half}\n*ELSET, ELSET=B, GENERATE\n{}, {}\n",
+            "*ELSET, ELSET=A, GENERATE\n1, {half}\n*ELSET, ELSET=B, GENERATE\n{}, {all}\n",
             half + 1,
-            bar.tets().len()
         );
-        let parts = scene(&bar, &sets, &format!("A, {SPIN}\nB, {SPIN}\n"));
-        let forces = |scene: &Scene| {
-            let mut sum = vec![0.0; 3 * bar.points().len()];
-            for load in scene.loads() {
-                match load.density() {
-                    Some(LoadDensity::NodalForces(forces)) => {
-                        for (node, force) in forces {
-                            (0..3).for_each(|c| sum[3 * *node as usize + c] += force[c]);
-                        }
-                    }
-                    Some(density @ LoadDensity::BodyField(_)) => {
-                        let one = Decomposition::boxes(&bar, [1, 1, 1]).expect("one subdomain");
-                        let vectors = assemble_load(&bar, &one, density).expect("load");
-                        sum.iter_mut().zip(&vectors[0]).for_each(|(s, v)| *s += v);
-                    }
-                    other => panic!("{other:?}"),
-                }
+        for load in [SPIN, "GRAV, 9.81, 0.6, 0., -0.8", "BY, 3."] {
+            let whole = forces(&bar, &scene(&bar, "", &format!("ALL, {load}\n")));
+            let parts = forces(&bar, &scene(&bar, &sets, &format!("A, {load}\nB, {load}\n")));
+            assert_same(&whole, &parts);
+            if load == SPIN && bar == self::bar(bar.order()) {
+                // density, square of the angular velocity, volume, and the distance of the centre from the axis
+                let along: f64 = parts.iter().step_by(3).sum();
+                let exact = 7.8e-9 * 4e6 * 1.5 * (1.5 - 0.25);
+                assert!((along - exact).abs() < 1e-12 * exact, "{along} {exact}");
             }
-            sum
-        };
-        let (whole, parts) = (forces(&whole), forces(&parts));
-        let scale = whole.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-        assert!(whole.iter().zip(&parts).all(|(a, b)| (a - b).abs() < 1e-12 * scale));
-        // density, square of the angular velocity, volume, and the distance of the centre from the axis
-        let along: f64 = parts.iter().step_by(3).sum();
-        let exact = 7.8e-9 * 4e6 * 1.5 * (1.5 - 0.25);
-        assert!((along - exact).abs() < 1e-12 * exact, "{along} {exact}");
+        }
     }
+}
+
+/// Pressures that are too many for tags of their own are the same on curved faces.
+#[test]
+fn many_pressures_are_those_of_few() {
+    let bar = curved([7, 3, 1]);
+    let faces = bar.boundary_facets();
+    let load = |pressure: &dyn Fn(usize) -> f64| {
+        let line = |(k, face): (usize, &BoundaryFacet)| {
+            let corners = bar.tets()[face.tet as usize];
+            let opposite = corners.iter().position(|n| !face.nodes.contains(n)).expect("a corner");
+            let number = [3, 4, 2, 1][opposite];
+            format!("{}, P{number}, {:e}\n", face.tet + 1, pressure(k))
+        };
+        forces(
+            &bar,
+            &scene(&bar, "", &faces.iter().enumerate().map(line).collect::<String>()),
+        )
+    };
+    assert!(faces.len() > 100);
+    let few = load(&|_| 2.0);
+    let many = load(&|k| 2.0 * (1.0 + 1e-15 * k as f64));
+    assert_same(&few, &many);
 }
 
 /// The same line as the axis in another step, by another point and the other way round, is the same load.

@@ -2,9 +2,10 @@
 
 use crate::element::{Piece, integral};
 use crate::material::Materials;
-use crate::mesh::{TetMesh, extent};
-use crate::tolerances::OUTSIDE;
-use crate::vec3::{sub, tet_volume};
+use crate::mesh::{EDGES, TetMesh, extent, shape, tangents};
+use crate::quadrature;
+use crate::tolerances::{OUTSIDE, PLACED, PLACINGS};
+use crate::vec3::{add, scale, sub, tet_volume};
 
 use super::strain::{FieldError, nodal_vectors};
 
@@ -34,7 +35,7 @@ impl<'m> Locator<'m> {
             tets: vec![Vec::new(); boxes.iter().product()],
         };
         for tet in 0..mesh.tets().len() {
-            let (low, high) = extent(mesh.tet_points(tet));
+            let (low, high) = extent(hull(mesh, tet));
             let (from, to) = (locator.grid_box(low), locator.grid_box(high));
             for i in from[0]..=to[0] {
                 for j in from[1]..=to[1] {
@@ -61,15 +62,45 @@ impl<'m> Locator<'m> {
     }
 
     /// The tetrahedron at a point with the point's barycentric coordinates; `None` outside of the
-    /// mesh. On faces the tetrahedron with the smallest number. Tetrahedra count as straight.
+    /// mesh. On faces the tetrahedron with the smallest number.
     fn locate(&self, point: [f64; 3]) -> Option<(usize, [f64; 4])> {
         let candidates = &self.tets[self.place(self.grid_box(point))];
         candidates.iter().find_map(|&tet| {
-            let weights = barycentric(&self.mesh.tet_points(tet as usize), point);
+            let weights = self.coordinates(tet as usize, point);
             let inside = weights.iter().all(|w| *w >= -OUTSIDE);
             inside.then_some((tet as usize, weights))
         })
     }
+
+    /// The barycentric coordinates of a point in a tetrahedron, of a curved one by Newton's method.
+    fn coordinates(&self, tet: usize, point: [f64; 3]) -> [f64; 4] {
+        let mut l = barycentric(&self.mesh.tet_points(tet), point);
+        if self.mesh.order() == 1 {
+            return l;
+        }
+        let nodes = self.mesh.quadratic_points(tet);
+        for _ in 0..PLACINGS {
+            let missing = sub(point, quadrature::at(&nodes, &shape(&l)));
+            let [own, others @ ..] = barycentric(&tangents(&nodes, &l), missing);
+            let change = [own - 1.0, others[0], others[1], others[2]];
+            if change.iter().all(|c| c.abs() <= PLACED) {
+                break;
+            }
+            l = std::array::from_fn(|i| l[i] + change[i]);
+        }
+        l
+    }
+}
+
+/// Points in whose convex hull a tetrahedron is: of a curved one the control points of its edges.
+fn hull(mesh: &TetMesh, tet: usize) -> Vec<[f64; 3]> {
+    let corners = mesh.tet_points(tet);
+    let control = |(&[a, b], &mid): (&[usize; 2], &u32)| {
+        let straight = scale(0.5, add(corners[a], corners[b]));
+        sub(scale(2.0, mesh.points()[mid as usize]), straight)
+    };
+    let mids = mesh.mids().get(tet).into_iter().flatten();
+    corners.into_iter().chain(EDGES.iter().zip(mids).map(control)).collect()
 }
 
 fn barycentric(points: &[[f64; 3]; 4], x: [f64; 3]) -> [f64; 4] {

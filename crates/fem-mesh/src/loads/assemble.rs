@@ -98,6 +98,16 @@ fn forces<'a, const N: usize>(
 }
 
 impl Density<'_> {
+    /// Forces of the nodes of a quadratic tetrahedron.
+    fn quadratic_forces(&self, points: &[Vec3; 10], rule: &[([f64; 4], f64)]) -> Result<[Vec3; 10], LoadError> {
+        let at = |(l, weight): &([f64; 4], f64)| {
+            let shape = shape(l);
+            let volume = tet_volume(&tangents(points, l));
+            ((shape, quadrature::at(points, &shape), [0.0; 3], volume), *weight)
+        };
+        forces(rule.iter().map(at), |_| *self)
+    }
+
     /// Forces of the nodes of a simplex of the given measure (area or volume).
     fn nodal_forces<const N: usize>(
         &self,
@@ -120,6 +130,26 @@ impl Density<'_> {
     }
 }
 
+/// Forces of the corners, and of the mid-nodes if there are any, of a tetrahedron under a force per volume.
+///
+/// # Errors
+/// [`LoadError::NotFinite`] if the force is not finite somewhere.
+pub fn tet_forces(
+    corners: &[Vec3; 4],
+    mids: Option<&[Vec3; 6]>,
+    density: impl Fn(Vec3) -> Vec3 + Sync,
+) -> Result<Vec<Vec3>, LoadError> {
+    let rule = quadrature::tetrahedron();
+    let density = |place: Vec3, _: Vec3| density(place);
+    let density = Density::Varying(&density);
+    let Some(mids) = mids else {
+        let forces = density.nodal_forces(corners, [0.0; 3], tet_volume(corners), &rule)?;
+        return Ok(forces.into());
+    };
+    let points = std::array::from_fn(|k| if k < 4 { corners[k] } else { mids[k - 4] });
+    Ok(density.quadratic_forces(&points, &rule)?.into())
+}
+
 fn finite(place: [f64; 3], value: [f64; 3]) -> Result<[f64; 3], LoadError> {
     if is_finite(value) {
         Ok(value)
@@ -140,12 +170,7 @@ fn body(mesh: &TetMesh, decomposition: &Decomposition, density: Density<'_>) -> 
         let mut vector = vec![0.0; subdomain.dofs()];
         for (&element, tet) in subdomain.elements.iter().zip(subdomain.quadratic_tets()) {
             let points = mesh.quadratic_points(element as usize);
-            let at = |(l, weight): &([f64; 4], f64)| {
-                let shape = shape(l);
-                let volume = tet_volume(&tangents(&points, l));
-                ((shape, quadrature::at(&points, &shape), [0.0; 3], volume), *weight)
-            };
-            accumulate(&mut vector, &tet, forces(rule.iter().map(at), |_| density)?);
+            accumulate(&mut vector, &tet, density.quadratic_forces(&points, &rule)?);
         }
         if mesh.order() == 2 {
             return Ok(vector);

@@ -14,7 +14,7 @@ mod function;
 mod history;
 mod moment;
 
-pub use assemble::assemble_load;
+pub use assemble::{assemble_load, tet_forces};
 pub use density::{LoadDensity, LoadError};
 pub use eigenstrain::assemble_eigenstrain;
 pub use function::Function;

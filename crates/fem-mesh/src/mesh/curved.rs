@@ -69,11 +69,23 @@ pub(crate) fn curved_facet(points: &[Vec3; 6], l: &[f64; 3]) -> (Vec3, Vec3) {
 
 /// The areas that nodes of a facet have in a constant traction: integrals of their shape functions.
 pub fn facet_shares(points: &[Vec3; 6]) -> [f64; 6] {
-    let mut out = [0.0; 6];
+    facet_integrals(points, |area| [norm(area)]).map(|[share]| share)
+}
+
+/// The area vectors that nodes of a facet have in a constant pressure: the same integrals along the normal.
+pub fn facet_area_shares(points: &[Vec3; 6]) -> [Vec3; 6] {
+    facet_integrals(points, |area| area)
+}
+
+/// Integrals of the shape functions with a measure that an area vector has.
+fn facet_integrals<const K: usize>(points: &[Vec3; 6], measure: impl Fn(Vec3) -> [f64; K]) -> [[f64; K]; 6] {
+    let mut out = [[0.0; K]; 6];
     for (l, weight) in quadrature::triangle() {
-        let measure = weight * norm(curved_facet(points, &l).1);
-        for (share, shape) in out.iter_mut().zip(facet_shape(&l)) {
-            *share += measure * shape;
+        let measure = measure(curved_facet(points, &l).1);
+        for (sums, shape) in out.iter_mut().zip(facet_shape(&l)) {
+            sums.iter_mut()
+                .zip(measure)
+                .for_each(|(sum, measure)| *sum += weight * measure * shape);
         }
     }
     out

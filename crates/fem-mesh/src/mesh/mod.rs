@@ -35,7 +35,7 @@ pub use tet_mesh::{BoundaryFacet, Facet, FacetTag, TetMesh};
 pub(crate) use check::extent;
 pub(crate) use curved::{NODES, curved_facet, shape, tangents};
 #[doc(hidden)]
-pub use curved::{facet_normals, facet_shape, facet_shares};
+pub use curved::{facet_area_shares, facet_normals, facet_shape, facet_shares};
 #[doc(hidden)]
 pub use cylindrical::cylindrical;
 pub(crate) use faces::{NONE, connected_sets, face_each_other, face_nodes};

@@ -227,6 +227,23 @@ fn two_meshes_of_the_same_linear_field_do_not_differ() {
     assert!(zero < 1e-20 * own && (all - own).abs() < 1e-9 * own);
 }
 
+/// In a curved mesh, too, a point has the strain of the place where it is.
+#[test]
+fn a_curved_mesh_does_not_differ_from_itself() {
+    let bulge = |[x, y, z]: [f64; 3]| [x, y, z * (1.0 + 0.4 * (1.0 - (2.0 * x - 1.0).powi(2)))];
+    let mesh = Brick::new([1.0; 3], [2; 3]).build().expect("brick");
+    let mesh = mesh
+        .raise_order()
+        .expect("quadratic")
+        .map_points(bulge)
+        .expect("curved");
+    let field = |p: &[f64; 3]| [p[0] * p[1], p[2] * p[2] - p[0], 0.3 * p[1] * p[2]];
+    let u: Vec<f64> = mesh.points().iter().flat_map(field).collect();
+    let own = signorini_fem_mesh::fields::strain_energy(&mesh, &material(), &u).expect("energy");
+    let zero = energy_of_difference(&mesh, &material(), &u, &mesh, &u).expect("difference");
+    assert!(zero < 1e-20 * own, "{zero:e} {own:e}");
+}
+
 /// Along all edges wanted lengths grow by at most half the distance; the error that they predict is the target; where
 /// the error is, tetrahedra are smaller.
 #[test]

@@ -188,6 +188,13 @@ fn contact() {
         "LINEAR with the slope",
     );
     let linear = format!("{law}*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=LINEAR\n");
+    let hard = "*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD";
+    behind(
+        &format!("{linear}100.\n{hard}\n"),
+        hard,
+        "*SURFACE BEHAVIOR",
+        "a second time",
+    );
     behind(&format!("{linear}0., 1.\n"), "0., 1.", "0.", "positive");
     behind(&format!("{law}*FRICTION\n0.3, -1e6\n"), "0.3, -1e6", "-1e6", "positive");
     behind(&format!("{law}*FRICTION\n-0.3\n"), "-0.3", "-0.3", "at least zero");

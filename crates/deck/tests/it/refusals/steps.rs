@@ -12,6 +12,7 @@ fn supports() {
     behind("*BOUNDARY\nN5, SYMM\n", "N5, SYMM", "SYMM", "XSYMM");
     behind("*BOUNDARY\nN5, PINNED, 1\n", "N5, PINNED, 1", "1", "nothing after");
     behind("*BOUNDARY\n99, 1\n", "99, 1", "99", "no node");
+    behind("*BOUNDARY\nN5, 3, 3, 0.1\n", "N5, 3, 3, 0.1", "N5", "behind a *STEP");
     inside("*BOUNDARY\nN6, 1, 6, 0.1\n", "N6, 1, 6, 0.1", "6", "no rotations");
     inside(
         "*BOUNDARY\nN6, 1, 1, 0.1\nN6, 1, 1, 0.2\n",
@@ -39,12 +40,19 @@ fn loads() {
         let word = if word.is_empty() { turning } else { word };
         inside(&format!("*DLOAD\n{turning}\n"), turning, word, part);
     }
+    let back = "*AMPLITUDE, NAME=BACK\n0., 0., 1., -1.\n";
+    let turning = "ALL, CENTRIF, 1., 0., 0., 0., 0., 0., 1.";
+    let steps = in_step(&format!("*DLOAD, AMPLITUDE=BACK\n{turning}\n"));
+    behind(&format!("{back}{steps}"), turning, "ALL", "its amplitude makes it so");
     let other = "ALL, CENTRIF, 1., 1., 0., 0., 0., 0., 1.";
     let both = format!("*DLOAD\nALL, CENTRIF, 1., 0., 0., 0., 0., 0., 1.\n{other}\n");
     inside(&both, other, "ALL", "about another axis");
     let held = "*BOUNDARY, FIXED";
     inside(&format!("{held}\nN6, 1, 1, 2.\n"), held, "FIXED", "remove the value");
     inside("*DLOAD\nALL, P1, 1.\n", "ALL, P1, 1.", "ALL", "inside the body");
+    let some = "1, BY, 2.";
+    let next = format!("*DLOAD\nALL, BY, 1.\n*END STEP\n*STEP\n*STATIC\n*DLOAD\n{some}\n");
+    inside(&next, some, "1", "the same set");
     inside("*DLOAD\nALL, P1, 1., 2.\n", "ALL, P1, 1., 2.", "2.", "a value");
     let nowhere = "ALL, GRAV, 9.8, 0., 0., 0.";
     inside(&format!("*DLOAD\n{nowhere}\n"), nowhere, nowhere, "not zero");
