@@ -52,12 +52,10 @@ pub(crate) const LAYER: f64 = 1e-6;
 /// The same of springs where supports hold a subdomain, from which on a motion is held: eigenvalues between the two
 /// make no matrix that is safe to invert.
 pub(crate) const HELD_MOTION: f64 = 1e-3;
-/// Components of a free motion that is described, relative to its length.
+/// Components of a free motion that is described, or that contact rows stop, relative to its length.
 pub(crate) const MOVING: f64 = 1e-9;
 /// Work on a free motion, relative to the norms of both, above which a load is not in balance with it.
 pub(crate) const WORK: f64 = 1e-9;
-/// Largest entry of the row of a motion that is rounding, over that of all motions that only contact stops.
-pub(crate) const ROUNDED_MODE: f64 = 1e-13;
 /// Weight of support rows that leaves the question alone whether they hold the bodies.
 pub(crate) const SUPPORTED: f64 = 0.01;
 /// Error in the equality of a solve with a factor in single precision with which steps are projected, relative.

@@ -96,7 +96,8 @@ impl Simulation {
         let falls_back = matches!(self.settings.method, Method::ActiveSet(_)) && !self.model.points.is_empty();
         // with a formula of more steps the rate is yet to fall; estimates judge what was solved
         let is_one_step = (self.problem.formula).is_some_and(|formula| formula.is_one_step());
-        let stands = rests && is_one_step && self.settings.accuracy == Accuracy::Tolerance;
+        let by_tolerance = self.settings.accuracy == Accuracy::Tolerance;
+        let stands = rests && is_one_step && by_tolerance;
         let effects = &self.model.plan.effects;
         let moves = effects.history && (effects.motion || effects.moving_obstacle);
         let settles = falls_back && state.step() == 0 && moves && !self.model.loose_motions()?.is_empty();
@@ -119,6 +120,10 @@ impl Simulation {
                 (report, self.stand(state, recovered, told.unwrap_or_default())?)
             }
         };
+        // bodies that stand elsewhere now
+        if by_tolerance && recovered.certificate.largest() <= self.settings.tolerance {
+            report.status = StepStatus::Converged;
+        }
         let (model, problem) = (&self.model, &self.problem);
         let certificate = &recovered.certificate;
         let unbalanced = certificate.equilibrium.relative() >= certificate.largest();

@@ -410,3 +410,42 @@ fn the_first_brick_of_a_row_is_pushed() {
         .force[0];
     assert!((pushed / (0.3 * 78.0) - 1.0).abs() < 1e-6, "{pushed}");
 }
+
+/// What rounding leaves of normals along a plane stops no motion there: a stiff body that only slides, on a soft one, is
+/// solved as soon as one that is held, wherever they are.
+#[test]
+fn a_motion_along_a_frictionless_plane_is_stopped_by_nothing() {
+    let both = with_second(&block([1.0; 3], [3; 3]), &lifted(&block([1.0; 3], [2; 3]), 1.0));
+    let (sin, cos) = 0.7_f64.sin_cos();
+    for (by, turned) in [(0.0, false), (0.0, true), (1e4, true)] {
+        let place = |[x, y, z]: [f64; 3]| match turned {
+            true => [cos * x + sin * z + by, y - by, cos * z - sin * x + by],
+            false => [x, y, z],
+        };
+        let mesh = both.map_points(place).expect("a mesh");
+        let up = match turned {
+            true => [sin, 0.0, cos],
+            false => [0.0, 0.0, 1.0],
+        };
+        let regions = mesh.components();
+        let law = |young| Hooke::isotropic(young, 0.3).expect("a law");
+        let laws = Materials::new(vec![(0, law(1e2)), (1, law(2e5))]).expect("laws");
+        let scene = Scene::new(mesh.with_regions(regions).expect("regions"), laws)
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_support(Support::partial(second(brick::Z_MAX), Directions::Vectors(vec![up])))
+            .with_contact(Contact::between(second(brick::Z_MIN), brick::Z_MAX))
+            .with_load(Load::traction(second(brick::Y_MIN), up.map(|c| -0.02 * c)));
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        let result = simulation.step().expect("a step");
+        assert!(
+            result.report().status.converged(),
+            "{by} {turned}: {}",
+            result.report().status
+        );
+        assert!(
+            result.report().counters.products <= 60,
+            "{:?}",
+            result.report().counters
+        );
+    }
+}

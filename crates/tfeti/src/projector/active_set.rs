@@ -9,7 +9,7 @@ use crate::projector::levels::{Basis, row_weights};
 use crate::projector::split::factor::SplitFactor;
 use crate::projector::split::front::Front;
 use crate::projector::split::fronts::ContactWeights;
-use crate::tolerances::{ROUNDED_MODE, ROUNDED_STEP, SHORT_ROWS, WORK};
+use crate::tolerances::{MOVING, ROUNDED_STEP, SHORT_ROWS, WORK};
 use signorini_qp::internal::{LineWeight, LooseMode};
 use signorini_qp::vector::{dot, norm};
 use signorini_qp::{EqualityProjector, QpError};
@@ -133,10 +133,10 @@ impl ActiveSetProjector {
         let mut loose: Vec<_> = motions
             .map(|motion| coarse.loose_mode(&motion.amplitudes, contact_rows))
             .collect();
-        // a motion that no contact row holds must not ask for a balance by what rounding leaves of its row
+        // a motion that no contact row holds must not ask for a balance by what rounding leaves of its row; rows are of
+        // length one, and displacements of a motion, too
         let largest = |mode: &LooseMode| mode.row.iter().fold(0.0, |most: f64, (_, c)| most.max(c.abs()));
-        let rounding = ROUNDED_MODE * loose.iter().map(largest).fold(0.0, f64::max);
-        let held_by_none = loose.iter_mut().filter(|mode| largest(mode) <= rounding);
+        let held_by_none = loose.iter_mut().filter(|mode| largest(mode) <= MOVING);
         held_by_none.for_each(|mode| mode.row.clear());
         // weights that are added to those that hold every body leave the matrix better conditioned
         let large = coarse.rows() >= SHORT_ROWS;
