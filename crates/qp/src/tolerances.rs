@@ -217,6 +217,8 @@ pub(crate) const PRESSED: f64 = 0.5;
 /// Most Newton steps, and most halvings of one.
 pub(crate) const NEWTON_STEPS: usize = 50;
 pub(crate) const HALVINGS: usize = 30;
+/// Work of the right side on a mode, over the norms of both, that is rounding.
+pub(crate) const ROUNDED_WORK: f64 = 1e-12;
 /// Imbalance, over the absolute values of its terms, that is rounding, and up to which a point counts as balanced.
 pub(crate) const NO_IMBALANCE: f64 = 1e-14;
 pub(crate) const BALANCED: f64 = 1e-10;

@@ -83,9 +83,10 @@ pub(crate) fn friction_could_hold(
         let [mut rest, mut missing] = [load.clone(), load.clone()];
         vector::subtract(&pressed, &mut rest);
         vector::subtract(&held, &mut missing);
-        // pressure alone is in balance with the loads, or all is
+        // pressure alone is in balance with the loads, or all is; or what loads leave along these motions is rounding
         let size = load.iter().chain(&pressed).fold(0.0_f64, |size, v| size.max(v.abs()));
-        let small = |rest: &[f64]| vector::norm(rest) <= NEAR_BALANCE * size;
+        let least = (NEAR_BALANCE * size).max(ROUNDING * vector::norm(e));
+        let small = |rest: &[f64]| vector::norm(rest) <= least;
         if small(&rest) || small(&missing) {
             continue;
         }

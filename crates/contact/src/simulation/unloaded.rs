@@ -6,11 +6,11 @@ use super::simulation::Simulation;
 use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model, nearest};
 use crate::report::StepReport;
-use crate::result::{ContactState, Recovered};
+use crate::result::{ContactState, Recovered, Sizes};
 use crate::solve::Attempt;
 use crate::state::State;
 use crate::step::{Acting, entry_or_zero};
-use crate::tolerances::{LOCKED, NULL_RANK, PARTS_LEFT, ROUNDING, VANISHING};
+use crate::tolerances::{LOCKED, NULL_RANK, PARTS_LEFT, REST, ROUNDING, VANISHING};
 use nalgebra::{DMatrix, DVector};
 use signorini_qp::vector;
 use signorini_tfeti::FreeMotion;
@@ -132,18 +132,21 @@ impl Simulation {
     /// The points with contact forces of more than rounding.
     fn touching<'a>(&'a self, recovered: &'a Recovered) -> impl Iterator<Item = &'a ConstrainedPoint> {
         let (model, problem) = (&self.model, &self.problem);
-        let rests = (0..problem.peaks.len()).map(|body| problem.rest(body));
-        let rounding = ROUNDING * rests.fold(0.0, f64::max);
+        let sizes = recovered.sizes.iter().enumerate();
+        let rest = |(body, own): (usize, &Sizes)| problem.rest(body).max(REST * own.peak().multipliers);
+        let rests: Vec<f64> = sizes.map(rest).collect();
+        let rounding = ROUNDING * rests.iter().copied().fold(0.0, f64::max);
         let points = model.points.iter().zip(&recovered.points);
         let touching = points.filter(move |(point, at)| {
-            let own = self.settings.tolerance * problem.rest(model.bodies.of_row(point.row));
+            let own = self.settings.tolerance * rests[model.bodies.of_row(point.row)];
             at.state != ContactState::Open && -at.normal_force > own.max(rounding)
         });
         touching.map(|(point, _)| point)
     }
 
     /// Moves bodies without contact forces to where, in the mean, points touch and stick that were pressed in the last
-    /// state; if none of them was, to where they stick. They stay as they are if that violates conditions.
+    /// state; if none of them was, to where they stick, or as far as they overlap. They stay as they are if that violates
+    /// conditions.
     ///
     /// Bodies of which it is `told` where next to no load leaves them stand there.
     pub(super) fn stand(
@@ -177,6 +180,9 @@ impl Simulation {
         targets.extend(own().filter(pressed).flat_map(rows).map(offset));
         if targets.is_empty() {
             targets = own().flat_map(|p| p.along().map(|along| offset(along.1))).collect();
+        }
+        if targets.is_empty() {
+            targets = own().map(|p| (p.row, recovered.rows[p.row])).collect();
         }
         // what rounding leaves of forces there is none
         let mut lambda = self.iterate.lambda.clone();

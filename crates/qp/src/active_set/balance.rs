@@ -22,7 +22,7 @@
 //! | `s` | `y - a c b` |
 
 use crate::problem::{Constrained, LooseMode, ProductSet, for_constrained, for_discs, solve_cholesky};
-use crate::tolerances::{BALANCED, HALVINGS, NEWTON_DECREASE, NEWTON_STEPS, NO_IMBALANCE, SHIFT};
+use crate::tolerances::{BALANCED, HALVINGS, NEWTON_DECREASE, NEWTON_STEPS, NO_IMBALANCE, ROUNDED_WORK, SHIFT};
 
 /// The search for the amplitudes.
 pub(crate) struct Search<'a> {
@@ -50,10 +50,19 @@ pub(crate) struct Search<'a> {
 
 impl<'a> Search<'a> {
     pub(crate) fn new(modes: &'a [LooseMode], set: &'a ProductSet, e: &[f64], (y, a): (&'a [f64], &[f64])) -> Self {
-        // what no component holds cannot be balanced, and need not: projectors refuse a right side that works on it
-        let side = |m: &LooseMode| match m.row.is_empty() {
-            true => 0.0,
-            false => m.amplitudes.iter().zip(e).map(|(a, e)| a * e).sum(),
+        // what no component holds cannot be balanced, and need not: projectors refuse a right side that works on it; nor
+        // can rounding be that pulls
+        let side = |m: &LooseMode| {
+            let terms = || m.amplitudes.iter().zip(e).filter(|(a, _)| **a != 0.0);
+            let squares = terms().fold([0.0, 0.0], |[aa, ee], (a, e)| [aa + a * a, ee + e * e]);
+            let (work, size) = (
+                terms().map(|(a, e)| a * e).sum::<f64>(),
+                (squares[0] * squares[1]).sqrt(),
+            );
+            match m.row.is_empty() || work.abs() <= ROUNDED_WORK * size {
+                true => 0.0,
+                false => work,
+            }
         };
         let mut a = a.to_vec();
         let mut start: Vec<usize> = (0..a.len()).collect();
