@@ -67,7 +67,7 @@
 //! | `*SURFACE` | `NAME`, `TYPE=ELEMENT`, `INTERNAL` | faces `S1` to `S6` of elements or sets, on the boundary, or without a number all that are there, or those of triangles; `SPOS`, `SNEG` of rigid facets |
 //! | | `TYPE=NODE` | the faces on the boundary whose corners are all among these nodes and sets; a node on none of them is refused |
 //! | `*MATERIAL` | `NAME` | |
-//! | `*ELASTIC` | `TYPE=ISO`, `ORTHO`, `ENGINEERING CONSTANTS`, `ANISO` | numbers of one temperature |
+//! | `*ELASTIC` | `TYPE=ISO`, `ORTHO`, `ENGINEERING CONSTANTS`, `ANISO` | numbers of one temperature; above Poisson's ratio 0.4 quadratic tetrahedra take the mean of the volume strain, against locking |
 //! | `*DENSITY` | | for gravity |
 //! | `*EXPANSION` | `TYPE=ISO`, `ORTHO`, `ZERO` | constant coefficients; `ZERO` says nothing then |
 //! | `*INITIAL CONDITIONS` | `TYPE=TEMPERATURE` | temperatures without stress, else zero |

@@ -32,3 +32,6 @@ pub(crate) const BEFORE: f64 = 0.7;
 /// Cosine of the angle between the normal of a section that is given and that of its faces, below which its sides would
 /// slide rather than part.
 pub(crate) const ALONG_SECTION: f64 = 0.1;
+
+/// Value of a mid-node off the mean of those at the ends of its edge, over the largest value, that is told.
+pub(crate) const BENT: f64 = 1e-3;

@@ -88,7 +88,8 @@ pub(super) fn law(model: &mut Model, card: &Card, rigid: bool) -> Result<(), Dec
         (first..=last).for_each(|c| on[c as usize - 1] = true);
     }
     if rigid && !on[..3].iter().all(|on| *on) {
-        let why = "a surface of which some components move freely is not here; give 1 to 3, or hold its nodes";
+        let why = "a surface of which some components move freely is not here; give 1 to 3, or hold its nodes, or let \
+            single components follow a node by *EQUATION";
         return Err(card.lines[0].cannot(why));
     }
     let last = model.couplings.last_mut().filter(|last| last.law.is_none());

@@ -14,7 +14,7 @@ use super::numbers::{Numbers, Sets};
 use super::rigid::RigidBodies;
 use crate::error::{DeckError, Fault, Word};
 use crate::model::{Ignored, Kind, Model};
-use crate::tolerances::NO_AREA;
+use crate::tolerances::{BENT, NO_AREA};
 
 /// The mesh before its facets are known: elastic tetrahedra, without nodes that none of them uses.
 #[derive(Debug)]
@@ -307,6 +307,20 @@ impl Raw {
         let forces = tet_forces(&corners.map(at), mids.map(|mids| mids.map(at)).as_ref(), density)?;
         let nodes = corners.into_iter().chain(mids.into_iter().flatten().copied());
         Ok(nodes.zip(forces).collect())
+    }
+
+    /// Whether values of nodes are not linear along edges of tetrahedra whose mid-nodes the deck has.
+    pub(super) fn is_bent(&self, values: &[f64]) -> bool {
+        let largest = values.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+        let at = |node: u32| values[node as usize];
+        let mut edges = self.tets.iter().zip(&self.mids).flat_map(|(corners, mids)| {
+            let ends = EDGES.iter().map(|edge| edge.map(|end| corners[end]));
+            ends.zip(mids.iter().copied())
+        });
+        edges.any(|([a, b], mid)| {
+            let bent = (at(mid) - 0.5 * (at(a) + at(b))).abs();
+            bent > BENT * largest && !self.new_nodes().contains(&(mid as usize))
+        })
     }
 
     /// Nodes that share the force on a face of a tetrahedron evenly: its corners, or the nodes on its edges.

@@ -107,11 +107,14 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
         let why = "no material of a section has *EXPANSION";
         ignored.extend(fields.groups.values().map(|(track, _)| Ignored::new(&track.word, why)));
     }
-    let mut out = Vec::new();
+    let (mut out, mut told) = (Vec::new(), None);
     for (history, (track, nodes_of)) in &fields.groups {
         let mut rises = vec![0.0; nodes];
         for (node, rise) in nodes_of {
             raw.with_copies(*node).for_each(|node| rises[node as usize] += rise);
+        }
+        if told.is_none() && raw.is_bent(&rises) {
+            told = Some(&track.word);
         }
         let warm = |strain: [f64; 6]| Eigenstrain::new(strain).with_factors(rises.clone());
         let strains: Vec<Eigenstrain> = match laws[..] {
@@ -125,5 +128,8 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
         let load = |strain| Load::eigenstrain(strain).with_history(fields.histories.at(*history));
         out.extend(strains.into_iter().map(|strain| (load(strain), track.word.clone())));
     }
+    let why = "temperatures on edges that are not the mean of those at their ends: they are linear along edges here, as in \
+        C3D10T";
+    ignored.extend(told.map(|word| Ignored::new(word, why)));
     Ok(out)
 }

@@ -168,3 +168,31 @@ fn what_a_temperature_cannot_say() {
     let error = refused("*INITIAL CONDITIONS, TYPE=STRESS\nALL, 1.\n", heat);
     assert!(error.contains("TYPE=TEMPERATURE alone is read"), "{error}");
 }
+
+/// Temperatures of nodes on edges that the elements do not take are told, once; linear fields are not.
+#[test]
+fn bent_temperatures_are_told() {
+    let quadratic = Brick::new([1.0; 3], [1; 3])
+        .build()
+        .expect("cube")
+        .raise_order()
+        .expect("quadratic");
+    let deck = |temperature: &dyn Fn(&[f64; 3]) -> f64| {
+        let nodes = quadratic.points().iter().enumerate();
+        let lines: String = nodes
+            .map(|(n, p)| format!("{}, {:e}\n", n + 1, temperature(p)))
+            .collect();
+        let law = "*MATERIAL, NAME=STEEL\n*ELASTIC\n2e5, 0.3\n*EXPANSION\n12e-6\n\
+            *SOLID SECTION, ELSET=ALL, MATERIAL=STEEL\n";
+        let steps = format!("*BOUNDARY\nN1, 1, 3\n*STEP\n*STATIC\n*TEMPERATURE\n{lines}*END STEP\n");
+        read(&format!("{}{law}{steps}", mesh(&quadratic))).expect("deck")
+    };
+    let told = |deck: signorini_deck::Deck| {
+        deck.ignored()
+            .iter()
+            .filter(|i| i.to_string().contains("C3D10T"))
+            .count()
+    };
+    assert_eq!(told(deck(&|p| 100.0 * p[0] * p[0])), 1);
+    assert_eq!(told(deck(&|p| 100.0 * p[0] - 30.0 * p[2])), 0);
+}
