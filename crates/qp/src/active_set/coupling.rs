@@ -7,7 +7,8 @@
 //! that make `pᵀ r` vanish, and directions are kept conjugate by the product just made (Polak and Ribière). What is
 //! left for the move to the next set is of second order, so that nearly nothing is lost by it.
 
-use crate::problem::{ConvexSet, EqualityProjector, ProductSet, for_discs};
+use crate::error::QpError;
+use crate::problem::{Constrained, ConvexSet, EqualityProjector, ProductSet, for_constrained, for_discs};
 use crate::tolerances::{COUPLED_GROWTH, COUPLED_LEAST, COUPLED_LOST, COUPLED_NEAR, COUPLED_STEPS, COUPLED_WAIT};
 
 use super::blocks::ActiveSet;
@@ -22,6 +23,30 @@ pub struct RadiusSlope {
     pub component: usize,
     /// Derivative of the radius.
     pub slope: f64,
+}
+
+/// By component: which one the radius of the block that begins there follows, and how. No slope is as good as zero.
+///
+/// # Errors
+/// [`QpError::Slope`] for one that is not finite, or of or after nothing, or the second of a block.
+pub(crate) fn slope_table(set: &ProductSet, slopes: &[RadiusSlope]) -> Result<Vec<Option<(usize, f64)>>, QpError> {
+    let mut has_radius = vec![false; set.constrained()];
+    for_constrained(set, |block| match block {
+        Constrained::Disc { i, .. } => has_radius[i] = true,
+        Constrained::Bound { i, lower, upper, .. } => has_radius[i] = lower == -upper,
+    });
+    let mut table = vec![None; has_radius.len()];
+    for &RadiusSlope { disc, component, slope } in slopes {
+        let valid = has_radius.get(disc) == Some(&true) && component < set.dim() && slope.is_finite();
+        if !valid || table[disc].is_some() {
+            return Err(QpError::Slope { disc, component, slope });
+        }
+        table[disc] = Some((component, slope));
+    }
+    Ok(table
+        .into_iter()
+        .map(|entry| entry.filter(|(_, slope)| *slope != 0.0))
+        .collect())
 }
 
 /// The slopes of one problem, and memory for the coupled step.
@@ -53,10 +78,10 @@ impl Coupling {
     }
 
     /// Makes ready for a solve with so many `constrained` components.
-    pub(crate) fn start(&mut self, set: &ProductSet, constrained: usize) {
+    pub(crate) fn start(&mut self, set: &ProductSet, constrained: usize) -> Result<(), QpError> {
         (self.on, self.failed, self.from) = (false, self.slopes.is_empty(), 0);
         if self.failed {
-            return;
+            return Ok(());
         }
         let n = set.dim();
         if self.step.len() != n {
@@ -64,22 +89,11 @@ impl Coupling {
             self.step = vec![0.0; n];
         }
         self.growth.resize(constrained, 0.0);
+        let table = slope_table(set, &self.slopes)?;
         self.by_disc.clear();
-        // slopes usually come in the order of the discs
-        let mut next = 0;
-        let (slopes, by_disc) = (&self.slopes, &mut self.by_disc);
-        for_discs(set, |first, _, _| {
-            let found = match slopes.get(next) {
-                Some(slope) if slope.disc == first => Some(next),
-                _ => slopes.iter().position(|s| s.disc == first),
-            };
-            by_disc.push(found.and_then(|k| {
-                next = k + 1;
-                let s = &slopes[k];
-                (s.component < n && s.slope.is_finite()).then_some((s.component, s.slope))
-            }));
-        });
+        for_discs(set, |first, _, _| self.by_disc.push(table[first]));
         self.failed = self.by_disc.iter().all(Option::is_none);
+        Ok(())
     }
 
     /// Whether a radius follows a component that is not zero.
@@ -162,14 +176,14 @@ mod tests {
         assert!(!begins(true, 1e-9, 0), "for the rest of the solve");
     }
 
-    /// Discs are found in any order; those without a slope, or with one that means nothing, stand alone.
+    /// Discs are found in any order; those without a slope stand alone, and slopes that mean nothing are refused.
     #[test]
     fn discs_follow_the_components_that_slopes_name() {
         let segments = vec![Segment::upper(vec![0.0; 2]), Segment::discs(vec![1.0; 3])];
         let set = ProductSet::new(segments).expect("set");
         let slope = |disc, component, slope| RadiusSlope { disc, component, slope };
         let mut coupling = Coupling::default();
-        coupling.start(&set, 8);
+        coupling.start(&set, 8).expect("slopes");
         assert!(coupling.failed, "nothing follows");
         for (slopes, expected) in [
             (
@@ -180,15 +194,16 @@ mod tests {
                 vec![slope(4, 1, -0.4), slope(2, 0, -0.3)],
                 [Some((0, -0.3)), Some((1, -0.4)), None],
             ),
-            (
-                vec![slope(2, 8, -0.3), slope(4, 7, -0.3), slope(6, 0, f64::NAN)],
-                [None, Some((7, -0.3)), None],
-            ),
+            (vec![slope(4, 7, -0.3)], [None, Some((7, -0.3)), None]),
         ] {
             coupling.set(&slopes);
-            coupling.start(&set, 8);
+            coupling.start(&set, 8).expect("slopes");
             assert!(!coupling.failed);
             assert_eq!(coupling.by_disc, expected);
+        }
+        for bad in [slope(2, 8, -0.3), slope(3, 0, -0.3), slope(6, 0, f64::NAN)] {
+            coupling.set(&[slope(4, 7, -0.3), bad]);
+            assert!(matches!(coupling.start(&set, 8), Err(QpError::Slope { .. })));
         }
     }
 

@@ -32,6 +32,7 @@ mod weights;
 mod workspace;
 
 pub use coupling::RadiusSlope;
+pub(crate) use coupling::slope_table;
 pub use problem::{ActiveSetPoint, ActiveSetProblem};
 pub use settings::{ActiveSetReport, ActiveSetSettings};
 pub use solver::active_set;

@@ -119,10 +119,10 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         ActiveSetPoint { x, ax, known }: ActiveSetPoint<'s>,
         settings: &'s ActiveSetSettings,
         work: &'s mut ActiveSetWorkspace<A, M>,
-    ) -> Self {
+    ) -> Result<Self, QpError> {
         let constrained = set.constrained();
         work.resize(constrained);
-        work.coupling.start(set, constrained);
+        work.coupling.start(set, constrained)?;
         work.length = 0.0;
         (work.shortest, work.steepest) = (f64::INFINITY, 0.0);
         (work.leapt, work.leap) = (false, 0.0);
@@ -135,7 +135,7 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
             work.ap[..constrained].fill(0.0);
             problem.operator.norm(&work.ap) == 0.0
         };
-        Self {
+        Ok(Self {
             shape: set.shape().collect(),
             told: false,
             ax_known: known,
@@ -175,7 +175,7 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
                 step: NATURAL_STEP,
                 ahead: false,
             },
-        }
+        })
     }
 
     /// Whether constrained components are more than rounding.

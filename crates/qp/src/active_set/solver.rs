@@ -52,7 +52,7 @@ pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrecon
     work: &mut ActiveSetWorkspace<A, M>,
 ) -> Result<ActiveSetReport, QpError> {
     check(problem, projector, set.set, &point, (settings, work))?;
-    let mut run = Run::new(problem, projector, set, point, settings, work);
+    let mut run = Run::new(problem, projector, set, point, settings, work)?;
     let status = solve(&mut run)?;
     Ok(run.finish(status))
 }
@@ -72,7 +72,7 @@ pub fn enter_active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSet
     work: &mut ActiveSetWorkspace<A, M>,
 ) -> Result<ActiveSetReport, QpError> {
     check(problem, projector, set.set, &point, (settings, work))?;
-    let mut run = Run::new(problem, projector, set, point, settings, work);
+    let mut run = Run::new(problem, projector, set, point, settings, work)?;
     run.start()?;
     run.enter()?;
     run.at.report.status = Status::IterationLimit;

@@ -48,7 +48,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             ax: &mut ax,
             known: false,
         };
-        let mut trial = Run::new(at.problem, at.projector, moving, point, &settings, &mut work);
+        let mut trial = Run::new(at.problem, at.projector, moving, point, &settings, &mut work)?;
         trial.is_trial = true;
         let status = match solve(&mut trial) {
             // it ran away, or its sets do not hold every mode
@@ -117,7 +117,7 @@ mod tests {
             known: true,
         };
         let moving = MovingSet::fixed(&mut set);
-        let mut run = Run::new(&problem, &mut projector, moving, point, &few, &mut work);
+        let mut run = Run::new(&problem, &mut projector, moving, point, &few, &mut work).expect("slopes");
         run.start().expect("a start");
         assert_eq!(go_on(&mut run).expect("a limit"), Status::IterationLimit);
         if tries {

@@ -79,7 +79,7 @@ impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
 
     /// Tells how the hook moves the radii, for the solves to come: conjugate gradients then take this along instead
     /// of meeting it at each change of the active set. Optional; a disc without a slope is moved by the hook alone.
-    /// The solution does not depend on it. Slopes in the order of the discs are found fastest.
+    /// The solution does not depend on it. The next solve refuses slopes that are not finite, or of no disc.
     pub fn set_slopes(&mut self, slopes: &[RadiusSlope]) {
         self.coupling.set(slopes);
     }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::active_set::RadiusSlope;
+use crate::active_set::{RadiusSlope, slope_table};
 use crate::error::QpError;
 use crate::problem::{Constrained, ProductSet, for_constrained};
 use crate::tolerances::{BEYOND, ROUNDED};
@@ -172,7 +172,7 @@ impl Cones {
     /// Puts fixed components of `x` where the set has them. The radii of the set, and intervals that slopes tell of,
     /// are those at `x`. What has one bound and is on it rests there, unless that is so everywhere.
     pub(crate) fn new(set: &ProductSet, slopes: &[RadiusSlope], x: &mut [f64]) -> Result<Self, QpError> {
-        let slope_of = slope_table(set, slopes, x.len())?;
+        let slope_of = slope_table(set, slopes)?;
         let before = x.to_vec();
         let (mut rests, mut held) = (vec![false; x.len()], vec![None; x.len()]);
         let mut some_do_not = false;
@@ -285,27 +285,6 @@ impl Cones {
     pub(crate) fn holds(&self, x: &[f64]) -> bool {
         self.all.iter().all(|cone| cone.value(x) > 0.0)
     }
-}
-
-/// By component: which one the radius of the block that begins there follows, and how. No slope is as good as zero.
-fn slope_table(set: &ProductSet, slopes: &[RadiusSlope], n: usize) -> Result<Vec<Option<(usize, f64)>>, QpError> {
-    let mut has_radius = vec![false; n];
-    for_constrained(set, |block| match block {
-        Constrained::Disc { i, .. } => has_radius[i] = true,
-        Constrained::Bound { i, lower, upper, .. } => has_radius[i] = lower == -upper,
-    });
-    let mut table = vec![None; n];
-    for &RadiusSlope { disc, component, slope } in slopes {
-        let valid = has_radius.get(disc) == Some(&true) && component < n && slope.is_finite();
-        if !valid || table[disc].is_some() {
-            return Err(QpError::Slope { disc, component, slope });
-        }
-        table[disc] = Some((component, slope));
-    }
-    Ok(table
-        .into_iter()
-        .map(|entry| entry.filter(|(_, slope)| *slope != 0.0))
-        .collect())
 }
 
 #[cfg(test)]

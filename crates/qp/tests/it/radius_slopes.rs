@@ -2,7 +2,9 @@
 
 use crate::common::{Random, from_zero};
 use signorini_qp::active_set::{ActiveSetReport, RadiusSlope};
-use signorini_qp::{ActiveSetSettings, DenseOperator, DenseProjector, MovingSet, ProductSet, Segment, Status, vector};
+use signorini_qp::{
+    ActiveSetSettings, DenseOperator, DenseProjector, MovingSet, ProductSet, QpError, Segment, Status, vector,
+};
 
 /// Normals that press, a disc each whose radius is a coefficient times its normal, and free components; `G` acts on the
 /// latter only. All discs slide.
@@ -102,5 +104,27 @@ fn a_set_that_slides_is_solved_to_any_accuracy() {
         let (_, report) = sliding(seed, 0.3, false, 1e-9);
         assert_eq!(report.status, Status::Converged, "seed {seed}");
         assert!(report.products() <= 15 * report.active_sets, "seed {seed}");
+    }
+}
+
+/// What cannot follow is refused, and not left out.
+#[test]
+fn bad_slopes_are_refused() {
+    let a = DenseOperator::new(3, vec![2.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0]).expect("a matrix");
+    let solve = |disc, component, slope| {
+        let segments = vec![Segment::upper(vec![0.0]), Segment::discs(vec![1.0])];
+        let mut set = ProductSet::new(segments).expect("a set");
+        let mut projector = DenseProjector::new(0, 3, Vec::new()).expect("no rows");
+        let slopes = [RadiusSlope { disc, component, slope }];
+        let settings = ActiveSetSettings::default();
+        let moving = MovingSet::fixed(&mut set);
+        from_zero(&a, &mut projector, moving, (&[1.0; 3], &[]), &settings, (true, &slopes)).map(|_| ())
+    };
+    assert!(solve(1, 0, -0.3).is_ok());
+    for (disc, component, slope) in [(0, 0, -0.3), (2, 0, -0.3), (9, 0, -0.3), (1, 3, -0.3), (1, 0, f64::NAN)] {
+        assert!(
+            matches!(solve(disc, component, slope), Err(QpError::Slope { .. })),
+            "{disc} {component} {slope}"
+        );
     }
 }
