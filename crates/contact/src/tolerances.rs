@@ -16,6 +16,9 @@ pub(crate) const FORCE_ROUNDING: f64 = 1e-8;
 /// smaller.
 pub(crate) const REACHED: f64 = 1e-14;
 
+/// Gap of contacts that are not to close, over the largest displacement that loads and supports make in rows.
+pub(crate) const OPENED: f64 = 1e6;
+
 /// Part of the earlier sizes that a vanishing quantity is measured against.
 pub(crate) const REST: f64 = 1e-3;
 

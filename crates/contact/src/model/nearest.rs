@@ -11,7 +11,11 @@ const STEPS: usize = 3;
 /// The `w` that minimises `|T w - t|` subject to `N w <= n`, of pairs `[T, N]` and `[t, n]`; `None` if there is none.
 pub(crate) fn nearest(columns: &[DMatrix<f64>; 2], wanted: &[DVector<f64>; 2]) -> Option<DVector<f64>> {
     let ([near, room], [target, gap]) = (columns, wanted);
-    let svd = near.clone().svd(true, true);
+    // as many rows as columns: with fewer, motions that no target determines would be left out
+    let rows = near.nrows().max(near.ncols());
+    let near = near.clone().resize_vertically(rows, 0.0);
+    let target = &target.clone().resize_vertically(rows, 0.0);
+    let svd = near.svd(true, true);
     let largest = svd.singular_values.max();
     let mut way = svd.solve(target, NULL_RANK * largest).ok()?;
     // steps of length one in what targets determine; what they do not moves as if they determined little of it
@@ -69,6 +73,11 @@ mod tests {
                 "{x} {y}"
             );
         }
+        // what no target determines moves, too
+        let [one, both] = [&[1.0, 0.0][..], &[0.0, -1.0]].map(|row| DMatrix::from_row_slice(1, 2, row));
+        let wanted = [DVector::from_vec(vec![3.0]), DVector::from_vec(vec![-0.5])];
+        let found = nearest(&[one, both], &wanted).expect("a place");
+        assert!((found - DVector::from_vec(vec![3.0, 0.5])).norm() < 1e-9);
         let none = DVector::from_vec(vec![-1.0, -1.0, 1.0]);
         assert!(nearest(&[near.clone(), room.clone()], &[DVector::zeros(2), none]).is_none());
     }

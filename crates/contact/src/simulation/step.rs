@@ -100,7 +100,9 @@ impl Simulation {
         let stands = rests && is_one_step && by_tolerance;
         let effects = &self.model.plan.effects;
         let moves = effects.history && (effects.motion || effects.moving_obstacle);
-        let settles = falls_back && state.step() == 0 && moves && !self.model.loose_motions()?.is_empty();
+        let loose = self.model.loose_motions()?;
+        let settles = falls_back && state.step() == 0 && moves && !loose.is_empty();
+        let balanced = falls_back && !loose.is_empty() && self.problem.is_balanced(loose);
         let starts = match (two_starts, falls_back) {
             (false, _) if settles => &[(line, Attempt::First), (line, Attempt::Settled)][..],
             (false, _) => &[(line, Attempt::Whole)],
@@ -116,7 +118,7 @@ impl Simulation {
         let (mut report, recovered) = match unloaded {
             Some(recovered) => (tried, recovered),
             None => {
-                let (report, recovered) = self.solve_from(starts, state, way, (tried, told.as_ref()))?;
+                let (report, recovered) = self.solve_from(starts, state, way, (tried, told.as_ref()), balanced)?;
                 (report, self.stand(state, recovered, told.unwrap_or_default())?)
             }
         };
@@ -158,9 +160,19 @@ impl Simulation {
         state: &State,
         way: &Way,
         (tried, told): (StepReport, Option<&Targets>),
+        mut balanced: bool,
     ) -> Result<(StepReport, Recovered), ContactError> {
         let mut sets_out = tried.status.converged();
-        let (mut report, mut recovered) = (tried, std::mem::take(&mut self.spare));
+        let mut report = tried;
+        // what stood apart goes on to, mostly
+        if balanced && !sets_out && self.stood_apart(state) {
+            balanced = false;
+            if let Some(apart) = self.apart(state, way, &mut report)? {
+                report.status = StepStatus::Converged;
+                return Ok((report, apart));
+            }
+        }
+        let mut recovered = std::mem::take(&mut self.spare);
         for &(line, attempt) in starts {
             self.spare = recovered;
             self.controller = state.controller;
@@ -181,6 +193,14 @@ impl Simulation {
             {
                 report.status = StepStatus::Converged;
                 return Ok((report, left));
+            }
+            if std::mem::take(&mut balanced) {
+                let (kept, lost) = (self.iterate.clone(), report.status);
+                if let Some(apart) = self.apart(state, way, &mut report)? {
+                    report.status = StepStatus::Converged;
+                    return Ok((report, apart));
+                }
+                (self.iterate, report.status) = (kept, lost);
             }
         }
         Ok((report, recovered))

@@ -129,6 +129,52 @@ impl Simulation {
         }))
     }
 
+    /// The result without contact forces, where loads do no work on what contact alone stops: bodies then stand apart, or
+    /// touch without force, and active sets run in circles. `None` if that is no solution; the iterate is then lost.
+    pub(super) fn apart(
+        &mut self,
+        state: &State,
+        way: &Way,
+        report: &mut StepReport,
+    ) -> Result<Option<Recovered>, ContactError> {
+        self.start(state, way, false, Attempt::First);
+        let contact = self.model.tfeti.gluing().ranges().contact();
+        self.iterate.lambda[contact].fill(0.0);
+        self.iterate.known = false;
+        let problem = Arc::make_mut(&mut self.problem);
+        problem.open(&self.model);
+        let solved = self.solve_once(self.settings.tolerance)?;
+        Arc::make_mut(&mut self.problem).prepare(&self.model, state, way.increment(), Acting::All)?;
+        let (next, old) = solved;
+        let converged = next.status.converged();
+        *report = std::mem::replace(report, StepReport::new()).resumed(next);
+        if !converged {
+            self.spare = old;
+            return Ok(None);
+        }
+        let (model, problem) = (&self.model, &self.problem);
+        let lambda = problem.multipliers(&self.iterate.lambda);
+        let recovered = Recovered::new(model, problem, &lambda, &self.iterate.alpha, old)?;
+        report.counters.products += 1;
+        let stands = self.stand(state, recovered, Targets::new())?;
+        if stands.certificate.largest() <= self.settings.tolerance {
+            return Ok(Some(stands));
+        }
+        self.spare = stands;
+        Ok(None)
+    }
+
+    /// Whether no contact force acted in the last state; at rest none did.
+    pub(super) fn stood_apart(&self, state: &State) -> bool {
+        let small = |p: &ConstrainedPoint| self.settings.tolerance * self.problem.rest(self.model.bodies.of_row(p.row));
+        let forces = self
+            .model
+            .points
+            .iter()
+            .map(|p| (state.lambda[0].get(p.row).copied().unwrap_or(0.0), small(p)));
+        forces.into_iter().all(|(force, small)| -force <= small)
+    }
+
     /// The points with contact forces of more than rounding.
     fn touching<'a>(&'a self, recovered: &'a Recovered) -> impl Iterator<Item = &'a ConstrainedPoint> {
         let (model, problem) = (&self.model, &self.problem);

@@ -16,7 +16,7 @@ pub(crate) struct Task<'a> {
 }
 
 /// Iterate of a step in and out of a solver.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub(crate) struct Iterate {
     /// Multipliers.
     pub(crate) lambda: Vec<f64>,

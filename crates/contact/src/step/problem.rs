@@ -4,12 +4,12 @@ use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model};
 use crate::scene::{Contact, DifferenceFormula, Increment, Pose, Scene};
 use crate::state::{Peak, State};
-use crate::tolerances::{FORCE_ROUNDING, REACHED, REST, ROUNDING};
+use crate::tolerances::{FORCE_ROUNDING, OPENED, REACHED, REST, ROUNDING};
 use crate::vec3::dot;
 use signorini_fem_mesh::History;
 use signorini_qp::vector;
-use signorini_tfeti::LoadResponse;
 use signorini_tfeti::internal::zeros;
+use signorini_tfeti::{FreeMotion, LoadResponse};
 use std::borrow::Cow;
 
 /// Data of one step.
@@ -124,6 +124,22 @@ impl StepProblem {
         self.linear.resize(rows, 0.0);
         vector::difference(&self.offset, &self.load, &mut self.linear);
         self.find_friction(model, state)
+    }
+
+    /// Opens all contacts: gaps beyond all that bodies move by.
+    pub(crate) fn open(&mut self, model: &Model) {
+        let largest = self.linear.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
+        for point in &model.points {
+            self.offset[point.row] += OPENED * largest;
+            self.linear[point.row] += OPENED * largest;
+        }
+    }
+
+    /// Whether the loads do no work, but rounding, on any motion that contact alone stops.
+    pub(crate) fn is_balanced(&self, motions: &[FreeMotion]) -> bool {
+        let least = ROUNDING * vector::norm(&self.rhs);
+        let works = |m: &FreeMotion| vector::dot(&m.amplitudes, &self.rhs).abs() > least * vector::norm(&m.amplitudes);
+        !motions.iter().any(works)
     }
 
     /// How far the loads have grown along themselves since a time, over what they were then: 0 if they stayed, infinite

@@ -449,3 +449,36 @@ fn a_motion_along_a_frictionless_plane_is_stopped_by_nothing() {
         );
     }
 }
+
+/// A body that nothing presses is squeezed and bulges into the one below: it stands apart, at the first step and later.
+#[test]
+fn what_nothing_presses_stands_apart() {
+    let both = with_second(&block([1.0; 3], [3; 3]), &lifted(&block([1.0; 3], [2; 3]), 1.0));
+    let regions = both.components();
+    let law = |young| Hooke::isotropic(young, 0.3).expect("a law");
+    for (stiff, friction) in [(2e5, 0.0), (2e5, 0.3), (1e2, 0.0)] {
+        let laws = Materials::new(vec![(0, law(1e2)), (1, law(stiff))]).expect("laws");
+        let contact = Contact::between(second(brick::Z_MIN), brick::Z_MAX);
+        let scene = Scene::new(both.clone().with_regions(regions.clone()).expect("regions"), laws)
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_contact(match friction {
+                0.0 => contact,
+                _ => contact.with_friction(Friction::coulomb(friction)),
+            })
+            .with_load(Load::pressure(second(brick::Y_MIN), 1.0).with_history(History::ramp(1.0, 1.0).expect("a ramp")))
+            .with_load(Load::pressure(second(brick::Y_MAX), 1.0).with_history(History::ramp(1.0, 1.0).expect("a ramp")))
+            .with_analysis(Analysis::quasistatic(1.0, 3));
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        while !simulation.is_finished() {
+            let result = simulation.step().expect("a step");
+            assert!(
+                result.report().status.converged(),
+                "{stiff} {friction}: {}",
+                result.report().status
+            );
+            let (products, points) = (result.report().counters.products, result.points());
+            assert!(products <= 20, "{stiff} {friction}: {products}");
+            assert!(points.iter().all(|p| p.normal_force.abs() < 1e-9), "{stiff} {friction}");
+        }
+    }
+}
