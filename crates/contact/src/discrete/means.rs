@@ -7,7 +7,7 @@
 
 use super::creases::around;
 use super::partners::{Partner, Partners};
-use super::side::{Sides, mean_place};
+use super::side::{Sides, mean_place, rounded};
 use crate::error::ContactError;
 use crate::scene::{Contact, Gap};
 use crate::tolerances::{JUMP, OVERSHOT};
@@ -107,7 +107,7 @@ impl<'a> Means<'a> {
         let measured = |node: u32| {
             self.partners.get(&node).map_or(0.0, |&to| {
                 let gap = vector::dot(&sub(place(to), place(node)), &frame.normal);
-                if gap.abs() <= self.rounding { 0.0 } else { gap }
+                rounded(gap, self.rounding)
             })
         };
         let gap = mean_gap(self.mesh, (index, contact), &own, &frame.normal, measured)?;

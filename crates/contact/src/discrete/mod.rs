@@ -36,6 +36,6 @@ pub(crate) use extents::Extents;
 pub(crate) use faceted::FacetedOverlaps;
 pub(crate) use points::{ContactPoint, of_contact};
 pub(crate) use scene::DiscreteScene;
-pub(crate) use side::mean_place;
+pub(crate) use side::{mean_place, rounded};
 pub(crate) use supports::Supports;
 pub(crate) use turn::{beside, turned, turned_to};

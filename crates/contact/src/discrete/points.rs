@@ -12,7 +12,7 @@ use super::creases::{SurfaceSide, creases};
 use super::means::{MatchingMid, Means, mean, mean_gap};
 use super::normals::{along_axis, differ, shape_frames};
 use super::partners::{Paired, Partners, check_overlap};
-use super::side::{Sides, mean_place, turned};
+use super::side::{Sides, mean_place, rounded, turned};
 use crate::error::ContactError;
 use crate::mortar::MortarNode;
 use crate::scene::{Contact, Pose, Scene};
@@ -153,7 +153,7 @@ pub(super) fn conditions(
                     let inside = scene.mesh.order() == 1 && !contact.tied && gap < deepest - rounding;
                     let gap = if inside { deepest } else { gap };
                     let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
-                    measured = if gap.abs() <= weights * rounding { 0.0 } else { gap };
+                    measured = rounded(gap, weights * rounding);
                     mean.clone_from(&seen.own);
                     Some(Side::new(seen.partner.clone()))
                 }
@@ -176,6 +176,7 @@ pub(super) fn conditions(
                     }
                     Some(means) => means.point((local, &side.triangles), &frame)?,
                 };
+                let gap = rounded(gap, rounding);
                 let frame = along_axis(index, contact, node, frame)?;
                 out.push(ContactPoint {
                     centre: mean_place(&sides.own, place_of(&scene.mesh)),

@@ -118,3 +118,8 @@ pub(super) fn turned(side: Side, lever: [f64; 3], place: impl Fn(u32) -> [f64; 3
     let turn = turn.map(|m| m.transpose().into()).collect();
     side.with_turn(turn)
 }
+
+/// A gap that is not rounding of places.
+pub(crate) fn rounded(gap: f64, rounding: f64) -> f64 {
+    if gap.abs() <= rounding { 0.0 } else { gap }
+}

@@ -1,5 +1,6 @@
 //! The dual problem of one step: loads and offsets.
 
+use crate::discrete::rounded;
 use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model};
 use crate::scene::{Contact, DifferenceFormula, Increment, Pose, Scene};
@@ -186,7 +187,8 @@ impl StepProblem {
         let start = model.tangential_start();
         for point in &model.points {
             if effects.gap {
-                self.offset[point.row] += point.scale * self.gap(&model.scene, point, 0)?;
+                let gap = rounded(self.gap(&model.scene, point, 0)?, model.discrete.rounding);
+                self.offset[point.row] += point.scale * gap;
             }
             if let Some(formula) = formula {
                 for (_, k, scale) in point.along() {

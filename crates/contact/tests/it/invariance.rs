@@ -340,3 +340,72 @@ proptest! {
         compare_units(law, &settings, 10f64.powf(length), 10f64.powf(force), 10f64.powf(time));
     }
 }
+
+/// Two sectors of rings, one around the other, guided at their ends and below: supports and contact share nodes.
+#[test]
+fn rows_that_share_nodes_are_scaled_under_any_numbers() {
+    let mut all = Vec::new();
+    for seed in 0..30 {
+        let sector = |radius: f64| {
+            let flat = block([0.4, 1.0, 0.5], [1, 5, 1]);
+            let bend = |[x, y, z]: [f64; 3]| [(radius + x) * (1.3 * y).cos(), (radius + x) * (1.3 * y).sin(), z];
+            flat.map_points(bend).expect("a sector")
+        };
+        let (mesh, _) = renumbered(&with_second(&sector(0.6), &sector(1.0)), seed);
+        let mut scene = Scene::new(mesh, uniform(1e3, 0.3));
+        for tag in [|tag| tag, second] {
+            let along = |end| Support::components(tag(end), [false, true, false]).with_axis([0.0; 3], [0.0, 0.0, 1.0]);
+            scene = scene
+                .with_support(along(brick::Y_MIN))
+                .with_support(along(brick::Y_MAX))
+                .with_support(Support::components(tag(brick::Z_MIN), [false, false, true]));
+        }
+        let scene = scene
+            .with_contact(Contact::between(brick::X_MAX, second(brick::X_MIN)).with_friction(Friction::coulomb(0.3)))
+            .with_load(Load::pressure(brick::X_MIN, 0.5));
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        let result = simulation.step().expect("a step");
+        assert!(result.report().status.converged(), "{seed}: {}", result.report().status);
+        all.push(result.points().iter().map(|p| p.normal_force).sum::<f64>());
+    }
+    assert!(all.iter().all(|force| (force / all[0] - 1.0).abs() < 1e-5), "{all:?}");
+}
+
+/// What rounding leaves between a body and a tilted floor on which it lies is no gap: without loads nothing moves.
+#[test]
+fn a_body_at_rest_on_a_tilted_floor_stays() {
+    for (k, friction) in (0..24).flat_map(|k| [(k, 0.0), (k, 0.3)]) {
+        let ((s, c), (s2, c2)) = ((0.13 * f64::from(k)).sin_cos(), (0.06 * f64::from(k)).sin_cos());
+        let turn = |[x, y, z]: [f64; 3]| {
+            let [x, y, z] = [x, c * y - s * z, s * y + c * z];
+            [c2 * x - s2 * y, s2 * x + c2 * y, z]
+        };
+        let mesh = block([1.0, 1.0, 0.5], [3, 3, 1]).map_points(turn).expect("a mesh");
+        let along = |tag, way| Support::partial(tag, Directions::Vectors(vec![turn(way)]));
+        let later = History::table(vec![(0.0, 0.0), (0.5, 0.0), (1.0, 1.0)]).expect("a table");
+        let floor = Contact::half_space(brick::Z_MIN, [0.0; 3], turn([0.0, 0.0, 1.0]));
+        let ball = Obstacle::sphere(turn([0.5, 0.5, 3.6]), 3.0);
+        let scene = Scene::new(mesh, uniform(1e3, 0.3))
+            .with_support(along(brick::X_MIN, [1.0, 0.0, 0.0]))
+            .with_support(along(brick::Y_MIN, [0.0, 1.0, 0.0]))
+            .with_contact(match friction {
+                0.0 => floor,
+                _ => floor.with_friction(Friction::coulomb(friction)),
+            })
+            .with_contact(Contact::obstacle(brick::Z_MAX, ball).with_motion(turn([0.0, 0.0, -0.05]), later))
+            .with_analysis(Analysis::quasistatic(1.0, 2));
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        let result = simulation.step().expect("a step");
+        assert!(
+            result.report().status.converged(),
+            "{k} {friction}: {}",
+            result.report().status
+        );
+        let largest = result
+            .displacement()
+            .iter()
+            .flatten()
+            .fold(0.0, |most: f64, u| most.max(u.abs()));
+        assert!(largest < 1e-12, "{k} {friction}: {largest:e}");
+    }
+}

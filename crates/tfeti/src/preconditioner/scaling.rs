@@ -111,7 +111,8 @@ impl Scaling {
             for (k, (_, row)) in rows.iter().enumerate() {
                 matrix[k * (count + 1)] += gives_way.get(&(*row as usize)).copied().unwrap_or(0.0);
             }
-            if gluing.is_dependent(rows[0].0) {
+            let depends = |row: u32| gluing.node(row as usize).is_some_and(|node| gluing.is_dependent(node));
+            if rows.iter().any(|r| depends(r.1)) {
                 let size = (0..count).map(|k| matrix[k * (count + 1)]).fold(0.0, f64::max);
                 let contact = gluing.ranges().contact();
                 let part = match rows.iter().any(|r| contact.contains(&(r.1 as usize))) {
