@@ -22,9 +22,9 @@ struct Groups {
 
 impl Scene {
     /// Names from the groups of a mesh file, as `GroupNames` of a Gmsh file lists them: errors and warnings then begin
-    /// with those of the contacts, supports, springs, couplings, loads, regions and nodes concerned. What is added to the scene later has
-    /// none. They take the place of names that were [given before](Self::with_names); of two names of a tag the last
-    /// counts.
+    /// with those of the contacts, supports, springs, couplings, loads, regions and nodes concerned. What is added to
+    /// the scene later has none. They take the place of names that were [given before](Self::with_names); of two names
+    /// of a tag the last counts.
     ///
     /// ```
     /// use signorini_contact::{Contact, Plan, Scene, Settings};
@@ -67,31 +67,23 @@ impl Scene {
             Kind::Coupling(load) => coupling(self.couplings.get(load.coupling)?),
             Kind::Eigenstrain(_) => None,
         };
-        let own = (self
-            .contacts
-            .iter()
-            .enumerate()
-            .map(|(k, c)| (Part::Contact(k), contact(c))))
-        .chain(
-            self.supports
-                .iter()
-                .enumerate()
-                .map(|(k, s)| (Part::Support(k), in_place(&s.place))),
-        )
-        .chain(
-            self.springs
-                .iter()
-                .enumerate()
-                .map(|(k, s)| (Part::Spring(k), in_place(&s.place))),
-        )
-        .chain(
-            self.couplings
-                .iter()
-                .enumerate()
-                .map(|(k, c)| (Part::Coupling(k), coupling(c))),
-        )
-        .chain(self.loads.iter().enumerate().map(|(k, l)| (Part::Load(k), load(l))));
-        let own = own.filter_map(|(part, on)| Some((part, on?))).collect();
+        let mut own = HashMap::new();
+        let mut note = |part, on: Option<String>| on.and_then(|on| own.insert(part, on));
+        for (k, c) in self.contacts.iter().enumerate() {
+            note(Part::Contact(k), contact(c));
+        }
+        for (k, s) in self.supports.iter().enumerate() {
+            note(Part::Support(k), in_place(&s.place));
+        }
+        for (k, s) in self.springs.iter().enumerate() {
+            note(Part::Spring(k), in_place(&s.place));
+        }
+        for (k, c) in self.couplings.iter().enumerate() {
+            note(Part::Coupling(k), coupling(c));
+        }
+        for (k, l) in self.loads.iter().enumerate() {
+            note(Part::Load(k), load(l));
+        }
         let mut nodes = vec![None; self.mesh.points().len()];
         let mids = (0..self.mesh.tets().len()).map(|tet| self.mesh.mids().get(tet).into_iter().flatten());
         let corners = self.mesh.tets().iter().zip(mids).zip(self.mesh.regions());

@@ -6,6 +6,7 @@ use super::simulation::{Simulation, on_pool};
 use super::unloaded::Targets;
 use crate::error::ContactError;
 use crate::model::{Model, slides};
+use crate::plan::FrictionKind;
 use crate::report::StepReport;
 use crate::result::{ContactState, PointState, Recovered, Sizes, summarise};
 use crate::scene::{Friction, Increment};
@@ -102,7 +103,8 @@ impl Simulation {
         let moves = effects.history && (effects.motion || effects.moving_obstacle);
         let loose = self.model.loose_motions()?;
         let settles = falls_back && state.step() == 0 && moves && !loose.is_empty();
-        let balanced = falls_back && !loose.is_empty() && self.problem.is_balanced(loose);
+        let smooth = by_tolerance && falls_back && effects.friction == FrictionKind::None;
+        let balanced = smooth && !loose.is_empty() && self.problem.is_balanced(loose);
         let starts = match (two_starts, falls_back) {
             (false, _) if settles => &[(line, Attempt::First), (line, Attempt::Settled)][..],
             (false, _) => &[(line, Attempt::Whole)],
@@ -164,7 +166,7 @@ impl Simulation {
     ) -> Result<(StepReport, Recovered), ContactError> {
         let mut sets_out = tried.status.converged();
         let mut report = tried;
-        // what stood apart goes on to, mostly
+        // mostly bodies that stood apart still do
         if balanced && !sets_out && self.stood_apart(state) {
             balanced = false;
             if let Some(apart) = self.apart(state, way, &mut report)? {

@@ -129,8 +129,9 @@ impl Simulation {
         }))
     }
 
-    /// The result without contact forces, where loads do no work on what contact alone stops: bodies then stand apart, or
-    /// touch without force, and active sets run in circles. `None` if that is no solution; the iterate is then lost.
+    /// The result without contact forces, where loads do no work on what contact alone stops: bodies then stand apart,
+    /// or touch without force, and active sets run in circles. Without friction there are no other forces if that is a
+    /// solution. `None` if it is none; the iterate is then lost.
     pub(super) fn apart(
         &mut self,
         state: &State,
@@ -166,13 +167,9 @@ impl Simulation {
 
     /// Whether no contact force acted in the last state; at rest none did.
     pub(super) fn stood_apart(&self, state: &State) -> bool {
-        let small = |p: &ConstrainedPoint| self.settings.tolerance * self.problem.rest(self.model.bodies.of_row(p.row));
-        let forces = self
-            .model
-            .points
-            .iter()
-            .map(|p| (state.lambda[0].get(p.row).copied().unwrap_or(0.0), small(p)));
-        forces.into_iter().all(|(force, small)| -force <= small)
+        let small = |row: usize| self.settings.tolerance * self.problem.rest(self.model.bodies.of_row(row));
+        let force = |row: usize| state.lambda[0].get(row).copied().unwrap_or(0.0);
+        self.model.points.iter().all(|p| -force(p.row) <= small(p.row))
     }
 
     /// The points with contact forces of more than rounding.
@@ -191,8 +188,8 @@ impl Simulation {
     }
 
     /// Moves bodies without contact forces to where, in the mean, points touch and stick that were pressed in the last
-    /// state; if none of them was, to where they stick, or as far as they overlap. They stay as they are if that violates
-    /// conditions.
+    /// state; if none of them was, to where they stick, or as far as they overlap. They stay as they are if that
+    /// violates conditions.
     ///
     /// Bodies of which it is `told` where next to no load leaves them stand there.
     pub(super) fn stand(

@@ -411,8 +411,8 @@ fn the_first_brick_of_a_row_is_pushed() {
     assert!((pushed / (0.3 * 78.0) - 1.0).abs() < 1e-6, "{pushed}");
 }
 
-/// What rounding leaves of normals along a plane stops no motion there: a stiff body that only slides, on a soft one, is
-/// solved as soon as one that is held, wherever they are.
+/// What rounding leaves of normals along a plane stops no motion there: a stiff body that only slides, on a soft one,
+/// is solved as soon as one that is held, wherever they are.
 #[test]
 fn a_motion_along_a_frictionless_plane_is_stopped_by_nothing() {
     let both = with_second(&block([1.0; 3], [3; 3]), &lifted(&block([1.0; 3], [2; 3]), 1.0));
@@ -456,29 +456,25 @@ fn what_nothing_presses_stands_apart() {
     let both = with_second(&block([1.0; 3], [3; 3]), &lifted(&block([1.0; 3], [2; 3]), 1.0));
     let regions = both.components();
     let law = |young| Hooke::isotropic(young, 0.3).expect("a law");
-    for (stiff, friction) in [(2e5, 0.0), (2e5, 0.3), (1e2, 0.0)] {
+    for stiff in [2e5, 1e2] {
         let laws = Materials::new(vec![(0, law(1e2)), (1, law(stiff))]).expect("laws");
-        let contact = Contact::between(second(brick::Z_MIN), brick::Z_MAX);
         let scene = Scene::new(both.clone().with_regions(regions.clone()).expect("regions"), laws)
             .with_support(Support::fixed(brick::Z_MIN))
-            .with_contact(match friction {
-                0.0 => contact,
-                _ => contact.with_friction(Friction::coulomb(friction)),
-            })
-            .with_load(Load::pressure(second(brick::Y_MIN), 1.0).with_history(History::ramp(1.0, 1.0).expect("a ramp")))
-            .with_load(Load::pressure(second(brick::Y_MAX), 1.0).with_history(History::ramp(1.0, 1.0).expect("a ramp")))
+            .with_contact(Contact::between(second(brick::Z_MIN), brick::Z_MAX))
+            .with_load(Load::pressure(second(brick::Y_MIN), 1.0).with_history(ramp()))
+            .with_load(Load::pressure(second(brick::Y_MAX), 1.0).with_history(ramp()))
             .with_analysis(Analysis::quasistatic(1.0, 3));
         let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
         while !simulation.is_finished() {
             let result = simulation.step().expect("a step");
             assert!(
                 result.report().status.converged(),
-                "{stiff} {friction}: {}",
+                "{stiff}: {}",
                 result.report().status
             );
             let (products, points) = (result.report().counters.products, result.points());
-            assert!(products <= 20, "{stiff} {friction}: {products}");
-            assert!(points.iter().all(|p| p.normal_force.abs() < 1e-9), "{stiff} {friction}");
+            assert!(products <= 20, "{stiff}: {products}");
+            assert!(points.iter().all(|p| p.normal_force.abs() < 1e-9), "{stiff}");
         }
     }
 }

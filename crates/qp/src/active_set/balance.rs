@@ -50,8 +50,8 @@ pub(crate) struct Search<'a> {
 
 impl<'a> Search<'a> {
     pub(crate) fn new(modes: &'a [LooseMode], set: &'a ProductSet, e: &[f64], (y, a): (&'a [f64], &[f64])) -> Self {
-        // what no component holds cannot be balanced, and need not: projectors refuse a right side that works on it; nor
-        // can rounding be that pulls
+        // what no component holds cannot be balanced, and need not: projectors refuse a right side that works on it;
+        // nor can rounding be that pulls
         let side = |m: &LooseMode| {
             let terms = || m.amplitudes.iter().zip(e).filter(|(a, _)| **a != 0.0);
             let squares = terms().fold([0.0, 0.0], |[aa, ee], (a, e)| [aa + a * a, ee + e * e]);
