@@ -195,7 +195,7 @@ mod tests {
         assert_eq!((way.last, way.halved), (Some(2), 1));
         // limits hold
         assert_eq!(walk(2, None, |_, _| true).0, [1.0]);
-        assert_eq!(walk(3, None, |end, _| end > 0.3).0, [0.25, 0.375, 0.5, 1.0]);
+        assert_eq!(walk(3, None, |end, _| end > 0.3).0, [0.25, 0.5, 1.0]);
         // the next step begins twice as long as the last one ended, and goes on growing
         assert_eq!(walk(3, Some(3), |_, _| false).0, [0.25, 0.5, 1.0]);
         assert_eq!(walk(1, Some(3), |_, _| false).0, [0.5, 1.0]);
