@@ -32,7 +32,8 @@ signorini_fem_mesh::errors! {
         At { location: Location, word: String, fault: Box<Fault> } = "{location}: {word}: {fault}";
         Mesh { path: PathBuf, source: MeshError } =
             "the elements of {} make no mesh: {source}", path.display();
-        NoElements { path: PathBuf } = "{} has no elements; it needs *ELEMENT of solid elements, for instance TYPE=C3D4 or C3D10", path.display();
+        NoElements { path: PathBuf } =
+            "{} has no elements; it needs *ELEMENT of solid elements, for instance TYPE=C3D4 or C3D10", path.display();
         NoSection { path: PathBuf } =
             "{} has no *SOLID SECTION: it is a mesh, not a scene; give it *MATERIAL, *ELASTIC and *SOLID SECTION, or \
             take only its mesh", path.display();

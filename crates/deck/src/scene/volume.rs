@@ -177,9 +177,7 @@ impl Volume {
         }
         Ok(bodies)
     }
-}
 
-impl Volume {
     /// Forces per volume add up within a step; CalculiX replaces those of earlier steps element by element, which are
     /// those of the same target here.
     fn check_forces(&self, Known { sets, .. }: Known) -> Result<(), DeckError> {
