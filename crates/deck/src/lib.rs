@@ -86,6 +86,7 @@
 //! | `*KINEMATIC` | | the surface has the displacement and the small rotation of the node, whose components 1 to 6 are held, moved, loaded or free |
 //! | `*PRE-TENSION SECTION` | `SURFACE`, `NODE` | a bolt is cut at faces between elements, all on one side, and its parts move towards each other along the mean normal, or one given, under the force or the displacement of component 1 of the node; CalculiX is wrong here for tetrahedra |
 //! | `*EQUATION` | | a sum of components 1 to 3 of nodes, or of each node of sets, by ascending numbers, times coefficients is zero; nodes without elements are [points](signorini_contact::Coupling::point), held, moved, loaded or free; nodes of rigid bodies and couplings are refused |
+//! | `*MPC` | | `PLANE` and `STRAIGHT`: nodes stay in one plane or on one line, by equations |
 //! | `*TRANSFORM` | `NSET`, `TYPE=R`, `C` | axes of nodes, along which their supports and forces are |
 //! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT`, `FIXED` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `XASYMM` and so on; rotations held at zero are ignored on solids; what is `FIXED` stays where the steps before left it, not read of rigid bodies, couplings and nodes of equations; a displacement before the first step is reached in that |
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |

@@ -72,6 +72,26 @@ pub fn area_vector(p: &[Vec3; 3]) -> Vec3 {
     scale(0.5, cross(sub(p[1], p[0]), sub(p[2], p[0])))
 }
 
+/// Three points far from one another, by their places, and how far the third is from the line through the others, over
+/// their distance. `None` without points; not a number if all are one.
+pub fn far_apart(points: &[Vec3]) -> Option<([usize; 3], f64)> {
+    let farthest = |from: &dyn Fn(Vec3) -> f64| {
+        let all = points.iter().enumerate().map(|(k, p)| (k, from(*p)));
+        all.reduce(|best, next| if next.1 > best.1 { next } else { best })
+    };
+    let from = |origin: Vec3| {
+        farthest(&|p| {
+            let arm = sub(p, origin);
+            dot(arm, arm)
+        })
+    };
+    let first = from(*points.first()?)?.0;
+    let (second, square) = from(points[first])?;
+    let axis = sub(points[second], points[first]);
+    let (third, off) = farthest(&|p| norm(cross(axis, sub(p, points[first]))))?;
+    Some(([first, second, third], off / square))
+}
+
 /// Mean of the points.
 pub fn centroid<const N: usize>(p: &[Vec3; N]) -> Vec3 {
     let sum = p.iter().fold([0.0; 3], |s, &x| add(s, x));

@@ -146,7 +146,7 @@ impl Assembly {
                 return match (key, reader(key)) {
                     ("BOUNDARY" | "INITIALCONDITIONS" | "STEP", _) => Err(card.word.cannot(BEHIND)),
                     ("RIGIDBODY" | "COUPLING" | "PRE-TENSIONSECTION", _) => no_numbers(card).map(|()| false),
-                    ("EQUATION", _) => no_single_nodes(card).map(|()| false),
+                    ("EQUATION" | "MPC", _) => no_single_nodes(card).map(|()| false),
                     (_, Some(read)) if key != "SOLIDSECTION" => self.own(model, card, read).map(|()| true),
                     _ => Ok(false),
                 };
@@ -294,8 +294,11 @@ fn no_numbers(card: &Card) -> Result<(), DeckError> {
 fn no_single_nodes(card: &Card) -> Result<(), DeckError> {
     for line in &card.lines {
         let fields = line.fields();
-        // the number of terms stands alone
-        let nodes = fields.chunks(3).filter(|term| term.len() > 1).map(|term| term[0]);
+        let nodes: Vec<&str> = match card.key.as_str() {
+            "MPC" => fields[1..].to_vec(),
+            // the number of terms stands alone
+            _ => fields.chunks(3).filter(|term| term.len() > 1).map(|t| t[0]).collect(),
+        };
         if let Some(node) = nodes.into_iter().find(|node| label(node).is_some()) {
             return Err(line.part(node).cannot(ANY));
         }

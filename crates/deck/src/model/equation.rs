@@ -1,4 +1,4 @@
-//! `*EQUATION`: linear equations between displacements.
+//! `*EQUATION`, `*MPC`: linear equations between displacements.
 
 use super::Model;
 use super::mesh::target;
@@ -23,6 +23,48 @@ pub(crate) struct Term {
     /// From 0.
     pub(crate) component: usize,
     pub(crate) coefficient: f64,
+}
+
+/// Nodes that stay in one plane, or on one line.
+#[derive(Debug, Clone)]
+pub(crate) struct Flat {
+    /// The keyword, where their line is.
+    pub(crate) word: Word,
+    pub(crate) is_line: bool,
+    pub(crate) nodes: Vec<(Target, Word)>,
+}
+
+/// `*MPC`: the type and nodes; more of them behind a zero.
+pub(super) fn mpc(model: &mut Model, card: &Card) -> Result<(), DeckError> {
+    card.allow(&[])?;
+    let wanted = "PLANE or STRAIGHT, and nodes or sets of them";
+    let mut last: Option<Flat> = None;
+    for line in &card.lines {
+        let fields = line.fields();
+        let (first, nodes) = fields.split_first().ok_or_else(|| line.expected(wanted))?;
+        let is_line = first.eq_ignore_ascii_case("STRAIGHT");
+        if is_line || first.eq_ignore_ascii_case("PLANE") {
+            let word = Word::new(&line.location, &card.word.text);
+            model.flats.extend(last.replace(Flat {
+                word,
+                is_line,
+                nodes: Vec::new(),
+            }));
+        }
+        let flat = match (&mut last, *first) {
+            (Some(flat), "0") => flat,
+            (Some(flat), _) if flat.word.location == line.location => flat,
+            _ => return Err(line.part(first).expected(wanted)),
+        };
+        for node in nodes {
+            flat.nodes.push((target(line, node)?, line.part(node)));
+        }
+    }
+    if card.lines.is_empty() {
+        return Err(card.word.expected(wanted));
+    }
+    model.flats.extend(last);
+    Ok(())
 }
 
 /// `*EQUATION`: the number of terms, then these, some a line, and so on.

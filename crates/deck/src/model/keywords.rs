@@ -11,7 +11,7 @@ use crate::lexer::Card;
 /// What is read, as an error lists it.
 const READ: &str = "*HEADING, *NODE, *ELEMENT, *NSET, *ELSET, *SURFACE, *MATERIAL, *ELASTIC, *DENSITY, *EXPANSION, \
 *INITIAL CONDITIONS, *TEMPERATURE, *SOLID SECTION, *ORIENTATION, *TRANSFORM, *BOUNDARY, *CLOAD, *DLOAD, *DSLOAD, *AMPLITUDE, *CONTACT PAIR, \
-*CLEARANCE, *TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *PRE-TENSION SECTION, *EQUATION, *PART, *ASSEMBLY, *INSTANCE, \
+*CLEARANCE, *TIE, *RIGID BODY, *COUPLING, *DISTRIBUTING, *KINEMATIC, *PRE-TENSION SECTION, *EQUATION, *MPC, *PART, *ASSEMBLY, *INSTANCE, \
 *SURFACE INTERACTION, *SURFACE BEHAVIOR, *FRICTION, *STEP, *STATIC, *MODEL CHANGE, *END STEP, *INCLUDE, and requests for output, \
 which are ignored and reported";
 
@@ -47,8 +47,7 @@ const IDLE_PARAMETERS: [(&str, &str, &str); 14] = [
 ];
 
 /// Keywords of these programs that have no counterpart here, and what to do.
-const REFUSED: [(&str, &str); 8] = [
-    ("MPC", "equations between nodes are read as *EQUATION"),
+const REFUSED: [(&str, &str); 7] = [
     (
         "DISTRIBUTINGCOUPLING KINEMATICCOUPLING",
         "couplings are read of surfaces; give *COUPLING and behind it *DISTRIBUTING or *KINEMATIC",
@@ -162,6 +161,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         "KINEMATIC" => Some(|model, card| coupling::law(model, card, true)),
         "PRE-TENSIONSECTION" => Some(coupling::pretension),
         "EQUATION" => Some(equation::equation),
+        "MPC" => Some(equation::mpc),
         "TRANSFORM" => Some(transform::transform),
         // they come here only after a step has begun
         "PART" | "ENDPART" | "ASSEMBLY" | "ENDASSEMBLY" | "INSTANCE" | "ENDINSTANCE" => {

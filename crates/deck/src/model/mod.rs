@@ -26,7 +26,7 @@ use signorini_fem_mesh::{History, Hooke};
 use std::borrow::Cow;
 
 pub(crate) use coupling::{Coupling, CouplingLaw};
-pub(crate) use equation::{Equation, Term};
+pub(crate) use equation::{Equation, Flat, Term};
 pub(crate) use keywords::read;
 pub(crate) use names::Names;
 pub(crate) use orientation::Orientation;
@@ -283,6 +283,7 @@ pub(crate) struct Model {
     pub(crate) rigid: Vec<RigidBody>,
     pub(crate) couplings: Vec<Coupling>,
     pub(crate) equations: Vec<Equation>,
+    pub(crate) flats: Vec<Flat>,
     pub(crate) transforms: Vec<Transform>,
     /// Supports that hold before the first step.
     pub(crate) supports: Vec<Condition<Components>>,

@@ -5,6 +5,7 @@ use signorini_fem_mesh::vec3::scale;
 
 use super::between::Follower;
 use super::faces::Known;
+use super::flats;
 use super::points::Room;
 use super::supports::Supports;
 use crate::error::{DeckError, Word};
@@ -64,6 +65,9 @@ pub(super) fn equations(known: Known, supports: &Supports) -> Result<Vec<(Equati
             out.push((equation, given.word.clone()));
         }
     }
+    for given in &model.flats {
+        out.extend(flats::equations(known, given, &mut room)?);
+    }
     out.extend(supports.followers.iter().filter_map(|follower| follow(known, follower)));
     Ok(out)
 }
@@ -82,14 +86,20 @@ fn follow(known: Known, follower: &Follower) -> Option<(Equation, Word)> {
     Some((Equation::new(terms?), follower.word.clone()))
 }
 
+/// Refuses a node of the mesh with two displacements.
+pub(super) fn single(known: Known, word: &Word, node: u32) -> Result<(), DeckError> {
+    let label = known.raw.node_labels[node as usize];
+    match known.raw.with_copies(node).nth(1) {
+        None => Ok(()),
+        Some(_) => Err(word.cannot(format!(
+            "node {label} lies where a *PRE-TENSION SECTION cuts the body, and has two displacements; name another one"
+        ))),
+    }
+}
+
 /// What multiplies the displacement of a node of the mesh in a term.
 fn vector(known: Known, term: &Term, node: u32) -> Result<[f64; 3], DeckError> {
-    if known.raw.with_copies(node).nth(1).is_some() {
-        let label = known.raw.node_labels[node as usize];
-        return Err(term.word.cannot(format!(
-            "node {label} lies where a *PRE-TENSION SECTION cuts the body, and has two displacements; name another one"
-        )));
-    }
+    single(known, &term.word, node)?;
     let at = (node, known.raw.points[node as usize]);
     known.transforms.force(at, term.component, term.coefficient, &term.word)
 }

@@ -11,6 +11,7 @@ mod contacts;
 mod couplings;
 mod equations;
 mod faces;
+mod flats;
 mod held;
 mod history;
 mod loads;

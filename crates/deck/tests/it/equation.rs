@@ -227,7 +227,18 @@ fn what_is_refused() {
     }
     let unsorted = "*NSET, NSET=U, UNSORTED\n2, 1\n*EQUATION\n1\nU, 1, 1.\n";
     refused(unsorted, "U, 1, 1.", "U", "ascending numbers");
-    refused("*MPC\nBEAM, 1, 2\n", "*MPC", "*MPC", "as *EQUATION");
+    let flat = "PLANE or STRAIGHT, and nodes";
+    refused("*MPC\nBEAM, 1, 2\n", "BEAM, 1, 2", "BEAM", flat);
+    refused("*MPC\n0, 1, 2\n", "0, 1, 2", "0", flat);
+    refused("*MPC\n", "*MPC", "*MPC", flat);
+    refused("*MPC\nPLANE, 1, 2, 3\n", "PLANE, 1, 2, 3", "*MPC", "take STRAIGHT");
+    refused(
+        "*MPC\nSTRAIGHT, 1, 2, 3, 14\n",
+        "STRAIGHT, 1, 2, 3, 14",
+        "*MPC",
+        "node 14 is",
+    );
+    refused("*MPC\nPLANE, NOWHERE\n", "PLANE, NOWHERE", "NOWHERE", "there are: ");
     inside(
         "*EQUATION\n1\n1, 1, 1.\n",
         "*EQUATION",
@@ -259,4 +270,54 @@ fn what_is_refused() {
         error.contains("equation 1 is *EQUATION (") && error.contains("contradicts"),
         "{error}"
     );
+}
+
+/// Nodes of the end of a bar stay in a plane, those of an edge on a line, as in CalculiX 2.20 under small forces (these
+/// over 10,000; there planes turn by large angles). Both at once, of which it refuses what they have in common.
+#[test]
+fn planes_stay_planes_and_lines_stay_lines() {
+    let bar = Brick::new([4.0, 1.0, 1.0], [4, 2, 2]).build().expect("a bar");
+    let deck = |bar: &TetMesh, lines: &str| {
+        let pulled = step("*CLOAD\n45, 1, 3.\n45, 2, 1.\n45, 3, 2.\n");
+        format!("{}{STEEL}*MPC\n{lines}*BOUNDARY\nN1, 1, 3\n{pulled}", mesh(bar))
+    };
+    let (plane, line) = ("PLANE, N2\n", "straight, 32\n0, 33, 34, 35\n");
+    for (lines, printed) in [
+        (
+            plane,
+            [
+                [-8.839635e-9, 2.351461e-8, 8.254997e-8],
+                [-2.594821e-9, 2.746172e-9, 8.030778e-9],
+                [7.694313e-9, 2.531976e-8, 7.619242e-8],
+            ],
+        ),
+        (
+            line,
+            [
+                [-4.322498e-9, 2.379196e-8, 7.526151e-8],
+                [-2.497185e-9, 2.425647e-9, 6.953883e-9],
+                [8.297621e-9, 2.590394e-8, 6.916063e-8],
+            ],
+        ),
+    ] {
+        let (u, _) = solved(&deck(&bar, lines), &[45, 32, 20]);
+        for (found, printed) in u.iter().flatten().zip(printed.iter().flatten()) {
+            assert!(
+                (1e-4 * found - printed).abs() < 1e-6 * printed.abs(),
+                "{found:e} {printed:e}"
+            );
+        }
+    }
+    // mid-nodes of the edge, too
+    let fine = bar.raise_order().expect("quadratic");
+    let (u, _) = solved(
+        &deck(&fine, &format!("{plane}STRAIGHT, 32, 33, 34, 35\n")),
+        &[5, 15, 45, 25, 35, 32, 33, 34],
+    );
+    let middle = |a: [f64; 3], b: [f64; 3], c: usize| 0.5 * (a[c] + b[c]);
+    assert!((middle(u[0], u[2], 0) - u[3][0]).abs() < 1e-6 * u[3][0].abs());
+    for c in [1, 2] {
+        assert!((middle(u[4], u[6], c) - u[7][c]).abs() < 1e-6 * u[7][c].abs());
+        assert!((middle(u[5], u[7], c) - u[6][c]).abs() < 1e-6 * u[7][c].abs());
+    }
 }

@@ -4,7 +4,7 @@ use super::gluing::CopyEntry;
 use crate::error::TfetiError;
 use crate::tolerances::{ON_A_LINE, RIGID};
 use nalgebra::{SMatrix, SVector};
-use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, norm, sub};
+use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, far_apart, norm, sub};
 use signorini_fem_mesh::{Decomposition, TetMesh};
 
 /// A motion of a [rigid subdomain](Decomposition::with_rigid) that is held: the displacement of a point, which need not
@@ -35,7 +35,7 @@ pub(crate) struct RigidRow {
 /// Forces at three of some points, far from one another, with this force at a place and this moment: the smallest
 /// ones. `None` if all points lie on a line.
 pub fn forces_at_three(points: &[Vec3], place: Vec3, force: Vec3, moment: Vec3) -> Option<[(usize, Vec3); 3]> {
-    let chosen = far_apart(points)?;
+    let (chosen, _) = far_apart(points).filter(|far| far.1 > ON_A_LINE)?;
     let about = points[chosen[0]];
     let arms = chosen.map(|k| sub(points[k], about));
     let size = arms.iter().map(|arm| norm(*arm)).fold(0.0, f64::max);
@@ -83,23 +83,4 @@ impl RigidSupport {
             values: self.values.clone(),
         })
     }
-}
-
-/// Three points far from one another, by their places; `None` if all lie on a line.
-fn far_apart(points: &[Vec3]) -> Option<[usize; 3]> {
-    let farthest = |from: &dyn Fn(Vec3) -> f64| {
-        let all = points.iter().enumerate().map(|(k, p)| (k, from(*p)));
-        all.reduce(|best, next| if next.1 > best.1 { next } else { best })
-    };
-    let from = |origin: Vec3| {
-        farthest(&|p| {
-            let arm = sub(p, origin);
-            dot(arm, arm)
-        })
-    };
-    let first = from(*points.first()?)?.0;
-    let (second, square) = from(points[first])?;
-    let axis = sub(points[second], points[first]);
-    let (third, off) = farthest(&|p| norm(cross(axis, sub(p, points[first]))))?;
-    (off > ON_A_LINE * square).then_some([first, second, third])
 }
