@@ -63,7 +63,8 @@ pub(crate) const RAY: f64 = 1e-13;
 /// have nine digits.
 pub(crate) const RIM: f64 = 1e-9;
 
-/// Cosine between two facets of an obstacle below which their edge is sharp: beyond it their sides end.
+/// Cosine between two facets of an obstacle, or the normals of two contacts at a node, below which their edge is sharp:
+/// beyond it their sides end.
 pub(crate) const SHARP: f64 = 0.9;
 
 /// Cosine between a direction and the way to an obstacle of a function below which the place is taken to be beside it.

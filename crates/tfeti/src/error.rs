@@ -20,8 +20,8 @@ signorini_fem_mesh::errors! {
             "spring at node {node}: its stiffness is {stiffness}; it must be positive, and neither so small nor so \
             large that its inverse overflows or vanishes";
         RigidSupport { subdomain: usize } =
-            "subdomain {subdomain}: what of its rigid motion is held must be a component 0 to 5 of a subdomain without \
-            elements, about a finite point, with finite values";
+            "subdomain {subdomain}: what is held of a rigid motion must be a displacement along a unit vector or a \
+            rotation about one, of a subdomain without elements, at a finite point, with finite values";
         UnknownNode { place: String, node: u32, nodes: usize } =
             "{place}: node {node} does not exist, the mesh has nodes 0..{nodes}";
         EmptySupport { support: usize, what: &'static str } =
@@ -61,8 +61,8 @@ signorini_fem_mesh::errors! {
         Setting { name: &'static str, value: f64, range: &'static str } =
             "setting {name} = {value} is out of range: {range}";
         Memory { needed: u64, limit: u64 } =
-            "the generalised inverses need about {needed} bytes, the limit is {limit}; raise `memory_limit`, allow \
-            sharing, choose sparse inverses or smaller subdomains";
+            "the generalised inverses need about {needed} bytes, the limit is {limit}; raise \
+            InverseSettings::with_memory_limit, allow sharing, choose sparse inverses or smaller subdomains";
         CoarseSingular { pivot: usize } =
             "the coarse matrix G W G^T is not positive definite (pivot {pivot}); some subdomains are held by \
             interface rows of weight zero only";

@@ -11,10 +11,10 @@ use super::partners::Paired;
 use super::points::{ContactPoint, of_contact};
 use crate::error::ContactError;
 use crate::scene::{Closing, Gap, Scene};
-use crate::tolerances::{DEEP, DIGITS, FACETED, KINK, TOUCHING};
-use signorini_fem_mesh::internal::DisjointSets;
+use crate::tolerances::{DEEP, DIGITS, FACETED, KINK, SHARP, TOUCHING};
+use signorini_fem_mesh::internal::{DisjointSets, distinct};
 use signorini_fem_mesh::vec3::{add, cross, dot, norm, scale, sub};
-use signorini_fem_mesh::{Surface, TetMesh};
+use signorini_fem_mesh::{FacetTag, Surface, TetMesh};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -48,6 +48,7 @@ struct Faceted {
 }
 
 struct Side {
+    tags: Vec<FacetTag>,
     surface: Surface,
     bends: HashMap<u32, Bend>,
 }
@@ -86,25 +87,24 @@ pub(super) fn close_faceted(
     }
     let faceted = measured().map(|(index, paired)| {
         let contact = &scene.contacts[index];
-        let mut sides = vec![paired.surface.clone()];
+        let (own, partner) = match paired.swapped {
+            true => (&contact.partner, &contact.tags),
+            false => (&contact.tags, &contact.partner),
+        };
+        let mut sides = vec![Side::new(&scene.mesh, own, paired.surface.clone())];
         if matches!(contact.gap, Gap::Measured) {
-            let tags = match paired.swapped {
-                true => &contact.tags,
-                false => &contact.partner,
-            };
-            sides.push(Surface::new(&scene.mesh, tags)?);
+            let surface = Surface::new(&scene.mesh, partner)?;
+            sides.push(Side::new(&scene.mesh, partner, surface));
         }
         Ok::<_, ContactError>(Faceted {
             index,
             range: of_contact(conditions, index),
             closes: matches!(contact.closing, Closing::Faceted) && contact.gap_history.is_none(),
-            sides: sides
-                .into_iter()
-                .map(|surface| Side::new(&scene.mesh, surface))
-                .collect(),
+            sides,
         })
     });
-    let faceted = faceted.collect::<Result<Vec<_>, _>>()?;
+    let mut faceted = faceted.collect::<Result<Vec<_>, _>>()?;
+    unite(&scene.mesh, &mut faceted)?;
     let mut out = FacetedOverlaps::default();
     for group in groups(&faceted) {
         let overlaps = group
@@ -131,6 +131,28 @@ pub(super) fn close_faceted(
         out.pressing = out.pressing.or_else(first);
     }
     Ok(out)
+}
+
+/// Bends sides that go on smoothly in one another, as tags of one curve do, as one: at a rim that is none normals are
+/// those of both.
+fn unite(mesh: &TetMesh, faceted: &mut [Faceted]) -> Result<(), ContactError> {
+    let mut sides: Vec<&mut Side> = faceted.iter_mut().flat_map(|f| &mut f.sides).collect();
+    let mut sets = DisjointSets::new(sides.len());
+    for (k, j) in (0..sides.len()).flat_map(|j| (0..j).map(move |k| (k, j))) {
+        if sides[k].goes_on_in(sides[j]) {
+            sets.join(k, j);
+        }
+    }
+    let numbers = sets.numbers();
+    for set in 0..=numbers.iter().copied().max().unwrap_or(0) {
+        let of = || (0..numbers.len()).filter(|k| numbers[*k] == set);
+        if of().count() > 1 {
+            let tags = distinct(of().flat_map(|k| sides[k].tags.iter().copied()));
+            let bends = bends(mesh, &Surface::new(mesh, &tags)?);
+            of().for_each(|k| sides[k].bends.clone_from(&bends));
+        }
+    }
+    Ok(())
 }
 
 /// Contacts that share nodes, in their order; those that mean their overlaps alone.
@@ -214,38 +236,57 @@ impl Faceted {
 }
 
 impl Side {
-    fn new(mesh: &TetMesh, surface: Surface) -> Self {
-        let chords = Chords::new(mesh, &surface);
-        let mut corners = vec![Bend::default(); surface.nodes().len()];
-        let mut areas = vec![0.0; corners.len()];
-        let mut mids = Vec::new();
-        for (&facet, t) in surface.facets().iter().zip(surface.triangles()) {
-            let own = (mesh.order() == 2).then(|| mesh.facet_mids(facet as usize));
-            let edges = edges(*t);
-            let arcs = [0, 1, 2].map(|k| chords.arc(edges[k], own.map(|mids| mids[k])));
-            let area = norm(area_vector(mesh, &surface, t));
-            for n in t.map(|n| n as usize) {
-                corners[n].behind += area * arcs.iter().sum::<f64>() / 3.0;
-                corners[n].sagitta = arcs.iter().map(|arc| arc.abs()).fold(corners[n].sagitta, f64::max);
-                areas[n] += area;
-            }
-            mids.extend(own.into_iter().flatten().zip(edges));
+    fn new(mesh: &TetMesh, tags: &[FacetTag], surface: Surface) -> Self {
+        Self {
+            tags: tags.to_vec(),
+            bends: bends(mesh, &surface),
+            surface,
         }
-        corners
-            .iter_mut()
-            .zip(areas)
-            .for_each(|(bend, area)| bend.behind /= area);
-        let mut bends: HashMap<u32, Bend> = surface.nodes().iter().copied().zip(corners.iter().copied()).collect();
-        bends.extend(mids.into_iter().map(|(mid, ends)| {
-            let [a, b] = ends.map(|end| corners[end as usize]);
-            let bend = Bend {
-                behind: 0.5 * (a.behind + b.behind),
-                sagitta: a.sagitta.max(b.sagitta),
-            };
-            (mid, bend)
-        }));
-        Self { surface, bends }
     }
+
+    /// Whether it shares nodes with another side, and nowhere across an edge.
+    fn goes_on_in(&self, other: &Self) -> bool {
+        let own = self.surface.nodes().iter().zip(self.surface.frames());
+        let cosines = own.filter_map(|(node, frame)| {
+            let local = other.surface.local(*node)?;
+            Some(dot(frame.normal, other.surface.frames()[local].normal))
+        });
+        cosines.reduce(f64::min).is_some_and(|least| least > SHARP)
+    }
+}
+
+/// How far the facets of a surface are from the curve at its nodes.
+fn bends(mesh: &TetMesh, surface: &Surface) -> HashMap<u32, Bend> {
+    let chords = Chords::new(mesh, surface);
+    let mut corners = vec![Bend::default(); surface.nodes().len()];
+    let mut areas = vec![0.0; corners.len()];
+    let mut mids = Vec::new();
+    for (&facet, t) in surface.facets().iter().zip(surface.triangles()) {
+        let own = (mesh.order() == 2).then(|| mesh.facet_mids(facet as usize));
+        let edges = edges(*t);
+        let arcs = [0, 1, 2].map(|k| chords.arc(edges[k], own.map(|mids| mids[k])));
+        let area = norm(area_vector(mesh, surface, t));
+        for n in t.map(|n| n as usize) {
+            corners[n].behind += area * arcs.iter().sum::<f64>() / 3.0;
+            corners[n].sagitta = arcs.iter().map(|arc| arc.abs()).fold(corners[n].sagitta, f64::max);
+            areas[n] += area;
+        }
+        mids.extend(own.into_iter().flatten().zip(edges));
+    }
+    corners
+        .iter_mut()
+        .zip(areas)
+        .for_each(|(bend, area)| bend.behind /= area);
+    let mut bends: HashMap<u32, Bend> = surface.nodes().iter().copied().zip(corners.iter().copied()).collect();
+    bends.extend(mids.into_iter().map(|(mid, ends)| {
+        let [a, b] = ends.map(|end| corners[end as usize]);
+        let bend = Bend {
+            behind: 0.5 * (a.behind + b.behind),
+            sagitta: a.sagitta.max(b.sagitta),
+        };
+        (mid, bend)
+    }));
+    bends
 }
 
 /// The edges of a surface as chords of arcs.

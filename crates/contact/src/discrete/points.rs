@@ -366,6 +366,7 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
             let shared = x.tags.iter().any(|t| y.tags.contains(t));
             if point.sides.own != other.sides.own {
                 point.sides.own = both(point, other);
+                point.closed = (point.area * point.closed + other.area * other.closed) / (point.area + other.area);
                 point.centre = mean_place(&point.sides.own, place_of(&scene.mesh));
             }
             point.area = if shared && point.surface != other.surface {
@@ -375,7 +376,8 @@ fn join(scene: &Scene, rounding: f64, point: &mut ContactPoint, other: &ContactP
             };
         }
         Ordering::Less => {
-            (point.surface, point.gap, point.area) = (other.surface, other.gap, other.area);
+            (point.surface, point.area) = (other.surface, other.area);
+            (point.gap, point.closed) = (other.gap, other.closed);
             (point.sides, point.centre) = (other.sides.clone(), other.centre);
             if x.friction_axis.is_some() || y.friction_axis.is_some() {
                 (point.frame, point.stretch) = (other.frame, other.stretch);

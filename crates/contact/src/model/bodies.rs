@@ -32,10 +32,7 @@ impl Bodies {
         }
         let number = |body: &u32| numbers[*body as usize];
         let subdomains: Vec<u32> = coarse.body_of().iter().map(number).collect();
-        let body = |row| {
-            let entries = gluing.row(row);
-            entries.first().map_or(0, |entry| subdomains[entry.0])
-        };
+        let body = |row| gluing.row(row).first().map_or(0, |entry| subdomains[entry.0]);
         Self {
             count,
             rows: (0..tfeti.dual_dim()).map(body).collect(),

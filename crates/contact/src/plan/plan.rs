@@ -83,7 +83,8 @@ impl Plan {
     pub fn new(scene: &Scene, settings: &Settings) -> Result<Self, ContactError> {
         let plan = |scene: &Scene| DiscreteScene::new(scene).and_then(|own| Ok(Self::of(scene, &own, settings)?.0));
         let all = || {
-            if !scene.has_spans() {
+            let locked = scene.couplings.iter().any(|c| c.locked != [None; 6]);
+            if !scene.has_spans() && !locked {
                 return plan(scene);
             }
             let mut scene = scene.clone();

@@ -63,7 +63,10 @@ impl fmt::Display for Plan {
         line("friction", self.friction_text())?;
         line("history", self.history_text())?;
         if self.stages > 1 {
-            line("stages", format!("{}, set up one after another", self.stages))?;
+            line(
+                "stages",
+                format!("{}, set up one after another, the next beside the last", self.stages),
+            )?;
         }
         line("dual", format!("{} rows, coarse {}", self.dual(), self.coarse))?;
         line("method", self.method.to_string())?;

@@ -30,8 +30,9 @@ pub struct StepReport {
     /// Estimates of the step's errors; only with an [`Accuracy`](crate::Accuracy) that needs them.
     pub accuracy: Option<AccuracyReport>,
     /// The first earlier step, from 0, that did not converge and on whose displacement this one depends: its slip is
-    /// part of the history of friction, which the certificate of this step cannot judge. Always `None` in scenes
-    /// without history (no friction, or static). The status of this step does not depend on it.
+    /// part of the history, which the certificate of this step cannot judge. `None` in scenes without history (see
+    /// [`State::unconverged_history`](crate::State::unconverged_history)). The status of this step does not depend on
+    /// it.
     pub unconverged_history: Option<usize>,
 }
 

@@ -101,7 +101,7 @@ fn judge(m: &Measured<'_>, sizes: &[Sizes], gap: &mut Violation) {
         };
         let normal = &condition.frame.normal;
         let pose = m.problem.obstacles[0].get(condition.surface);
-        let open = condition.gap_after(scene, &pose.copied().unwrap_or_default());
+        let open = pose.map_or(Ok(condition.gap), |pose| condition.gap_after(scene, pose));
         // no gap at all is no gap that holds
         let open = open.unwrap_or(f64::NAN) + model.discrete.rounding;
         let depth = condition.sides.way(normal, along) - open - model.given_way(point, m.lambda);

@@ -1,6 +1,6 @@
 //! What a step ended with: states of contact points (`points`), sums over them (`summary`), contact stresses
-//! (`surface_stress`), `reactions`, motions of couplings (`coupling_motion`), and the `certificate` of all conditions,
-//! measured by `certify`.
+//! (`surface_stress`), `reactions` with motions of couplings, and the `certificate` of all conditions, measured by
+//! `certify`.
 //!
 //! All of it follows from the recovered displacement and the multipliers; nothing relies on a solver's own report.
 //!
@@ -9,7 +9,6 @@
 
 mod certificate;
 mod certify;
-mod coupling_motion;
 mod points;
 mod reactions;
 mod recovered;
@@ -20,9 +19,8 @@ mod surface_stress;
 
 pub(crate) use certificate::contact_violation;
 pub use certificate::{Certificate, Violation};
-pub use coupling_motion::CouplingMotion;
 pub use points::{ContactState, PointState};
-pub use reactions::{EquationForce, NodalForce, Reactions, Resultant, SupportReaction};
+pub use reactions::{CouplingMotion, EquationForce, NodalForce, Reactions, Resultant, SupportReaction};
 pub(crate) use reactions::{nodal_reactions, reactions_about, tied_forces};
 pub(crate) use recovered::Recovered;
 pub(crate) use sanity::{Lengths, coarse_mesh, is_strained, warnings};

@@ -50,6 +50,16 @@ impl std::fmt::Debug for Simulation {
     }
 }
 
+/// Refuses what would be refused in a later stage, and makes the plans of these.
+fn plan_later_stages(scene: &Scene, settings: &Settings) -> Result<Vec<Plan>, ContactError> {
+    let plan = |stage: Stage| {
+        let mut scene = scene.clone();
+        scene.enter(&stage);
+        Ok(Simulation::set_up(scene, settings.clone())?.plan().clone())
+    };
+    scene.later_stages().map(plan).collect()
+}
+
 impl Simulation {
     /// Sets up: decomposition, stiffness, inverses, coarse problem, unit loads.
     ///
@@ -61,8 +71,10 @@ impl Simulation {
         let names = scene.names.clone();
         let set_up = || {
             let start = Instant::now();
+            // before the first one, so that two are not held; what is wrong with that is told first
+            let later = plan_later_stages(&scene, &settings);
             let mut first = Self::set_up(scene, settings)?;
-            let later = first.plan_later_stages()?;
+            let later = later?;
             if let Some(model) = Arc::get_mut(&mut first.model) {
                 model.plan.warn(&later);
             }
@@ -72,17 +84,6 @@ impl Simulation {
             Ok(first)
         };
         on_pool(set_up).map_err(|error| names.tell(error))
-    }
-
-    /// Refuses what would be refused in a later stage, and makes the plans of these.
-    fn plan_later_stages(&self) -> Result<Vec<Plan>, ContactError> {
-        let scene = &self.model.scene;
-        let plan = |stage: Stage| {
-            let mut scene = scene.clone();
-            scene.enter(&stage);
-            Ok(Self::set_up(scene, self.settings.clone())?.plan().clone())
-        };
-        scene.later_stages().map(plan).collect()
     }
 
     pub(super) fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {

@@ -367,4 +367,5 @@ pub(super) fn product(model: &Model, problem: &StepProblem, rows: &[f64], iterat
     model.tfeti.coarse().transpose_times(&iterate.alpha, out);
     vector::axpy(1.0, &problem.load, out);
     vector::axpby(1.0, rows, -1.0, out);
+    iterate.known = true;
 }

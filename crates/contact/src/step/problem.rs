@@ -106,7 +106,10 @@ impl StepProblem {
             vector::axpy(*factor, lambda, &mut self.handed_on);
         }
         let histories = model.discrete.supports.motions.iter();
-        let cases: Vec<(usize, f64)> = histories.map(|h| h.value(moved.unwrap_or(0.0))).enumerate().collect();
+        let cases: Vec<(usize, f64)> = histories
+            .map(|h| moved.map_or(0.0, |time| h.value(time)))
+            .enumerate()
+            .collect();
         self.offset = model.tfeti.prescribed_offsets(take(&mut self.offset), &cases);
         self.part_ties(model);
         self.prescribed_force = model.prescribed_force(&self.offset, &self.factors);

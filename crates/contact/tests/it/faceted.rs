@@ -183,3 +183,55 @@ fn straight_quadratic_elements_around_an_obstacle_press_nothing() {
     let told_of = told.iter().find(|w| matches!(w, Warning::FacetedOverlap { .. }));
     assert!(told_of.is_some(), "{told:?}");
 }
+
+/// A quarter bore of few straight quadratic elements around a rigid shaft of its radius: nothing presses where its tag
+/// is cut in two, each with a contact of its own, nor where another contact of the tag is further away, at rest or
+/// with motions of no length.
+#[test]
+fn overlaps_of_facets_do_not_depend_on_how_contacts_are_written() {
+    const UPPER: FacetTag = FacetTag(50);
+    let force = |cut: Option<usize>, away: bool, moves: bool| {
+        let bore = Brick::new([1.0; 3], [2, 4, 2]).build().expect("brick");
+        let upper = |x: [f64; 3], n: [f64; 3]| cut.is_some_and(|c| n[0] < -0.9 && x[c] > 0.5).then_some(UPPER);
+        let sides = |x: [f64; 3], n: [f64; 3]| {
+            let of = |k: usize| match n[k] {
+                low if low < -0.9 => Some([brick::X_MIN, brick::Y_MIN, brick::Z_MIN][k]),
+                high if high > 0.9 => Some([brick::X_MAX, brick::Y_MAX, brick::Z_MAX][k]),
+                _ => None,
+            };
+            upper(x, n).or_else(|| (0..3).find_map(of))
+        };
+        let place = |[r, a, z]: [f64; 3]| {
+            let angle = a * (0.4 + 0.6 * a) * std::f64::consts::FRAC_PI_2;
+            [(1.0 + r) * angle.cos(), (1.0 + r) * angle.sin(), z]
+        };
+        let bore = bore.tag_boundary(sides).map_points(place).expect("bore");
+        let contact = |tag: FacetTag, radius: f64| {
+            let contact = Contact::obstacle(tag, Obstacle::cylinder([0.0; 3], [0.0, 0.0, 1.0], radius));
+            match moves {
+                true => contact.with_motion([0.0; 3], History::ramp(1.0, 1.0).expect("ramp")),
+                false => contact,
+            }
+        };
+        let mut scene = Scene::new(bore.raise_order().expect("order 2"), uniform(2e11, 0.3))
+            .with_support(Support::components(brick::Y_MIN, [false, true, false]))
+            .with_support(Support::components(brick::Y_MAX, [true, false, false]))
+            .with_support(Support::components(brick::Z_MIN, [false, false, true]))
+            .with_analysis(Analysis::quasistatic(1.0, 1));
+        if away {
+            scene = scene.with_contact(contact(brick::X_MIN, 0.9));
+        }
+        scene = scene.with_contact(contact(brick::X_MIN, 1.0));
+        if cut.is_some() {
+            scene = scene.with_contact(contact(UPPER, 1.0));
+        }
+        let (_, results) = run(scene, Settings::default());
+        results[0].summary.normal_force
+    };
+    for moves in [false, true] {
+        for (cut, away) in [(None, false), (None, true), (Some(1), false), (Some(2), false)] {
+            let force = force(cut, away, moves);
+            assert!(force < 1.0, "{cut:?} {away} {moves}: {force:e}");
+        }
+    }
+}

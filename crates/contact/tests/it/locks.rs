@@ -37,6 +37,12 @@ fn a_locked_bolt_shares_what_pulls() {
             }
         }
     }
+    // the scene of the locked stage is planned as it was given
+    let given = || tightened(joint(0.2, 1), bolt().with_lock(AXIAL, 1.0), [0.0, 1.0, 1.0], pull());
+    let mut simulation = Simulation::new(given(), Settings::default()).expect("set-up");
+    contact_forces(&mut simulation);
+    let [again, fresh] = [simulation.scene(), &given()].map(|s| Plan::new(s, &Settings::default()).expect("plan"));
+    assert_eq!((again.dual(), again.effects), (fresh.dual(), fresh.effects));
     let [rises, falls] = [locked[3].0[0][2] - 1e4, 1e4 - locked[3].0[1][2]];
     assert!(rises > 200.0 && (rises + falls - 4e3).abs() < 1.0, "{rises} {falls}");
     assert_close(

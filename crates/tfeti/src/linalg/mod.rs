@@ -1,8 +1,8 @@
 //! Linear algebra of single matrices, independent of subdomains and `B`.
 //!
 //! Uses no other folder. `dense` and `sparse` are the only files that name the library behind them (faer). In go
-//! matrices by columns, out come factors, inverses and products with work memory of the caller; everything runs on the
-//! calling thread.
+//! matrices by columns, out come factors, inverses and products with work memory of the caller. Large factors are made by
+//! several threads, with the bits of one.
 //!
 //! `elimination` finds the pattern of a factor, `supernodes` and `tiles` store one for solves with one right-hand side
 //! (see `projector/split` for what they are worth) or, in `lanes`, with several, `block_rows` multiplies one matrix
