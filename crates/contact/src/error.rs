@@ -135,7 +135,7 @@ signorini_fem_mesh::errors! {
         Overlap { contact: usize, node: u32, partner: u32, depth: f64, size: f64 } =
             "contact {contact}: node {node} lies {depth:.3e} inside the other body, seen from its partner \
             {partner}, deeper than its facets are large ({size:.3e}); give sides that face each other across the \
-            gap; where Contact::between is to press them apart, tell how far by with_gap";
+            gap (ContactPair::find finds them on hooked bodies); where Contact::between is to press them apart, tell how far by with_gap";
         SameSide { contact: usize, tag: u32 } =
             "contact {contact}: the tag {tag} is on both sides; give each side its own (TetMesh::map_tags before \
             append keeps those of two bodies apart, NewPhysicalGroup of Gmsh's plugin Crack those of a crack)";
@@ -187,7 +187,7 @@ signorini_fem_mesh::errors! {
             or let the field contain the constant";
         TaggedSides { bodies: usize } =
             "pairs are looked for where the boundary has no tags, and that of {bodies} bodies has some everywhere but \
-            on one body at most; take the tags off the sides that may touch (TetMesh::tag_boundary), or name them \
+            on one body at most; take the tags off the sides that may touch (TetMesh::without_tags), or name them \
             (Contact::between)";
         TooLarge { part: Part, place: String, value: f64, unit: &'static str, most: f64 } =
             "{part}{place}: {value:e} {unit} are too much, squares of what follows from it would overflow (at most {most:e}); check \

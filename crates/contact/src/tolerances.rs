@@ -170,7 +170,7 @@ pub(crate) const NOT_MOVED: f64 = 1e-9;
 
 // ---- equilibrium of free bodies (model) ----
 
-/// Work on a free motion below this part of the size of the loads is rounding.
+/// Work on a free motion below this part of the size of the loads, or of a contact force, is rounding.
 pub(crate) const FREE_WORK: f64 = 1e-9;
 
 /// Length of the motion of a body, over that of the body that slides away, from which on a report names it as moving
@@ -393,6 +393,11 @@ pub(crate) const LARGE_STRAIN: f64 = 0.05;
 
 /// Slip of a step over the longest edge of the facets at the node from which on the point is past them.
 pub(crate) const LONG_SLIP: f64 = 1.0;
+
+/// Part of what loads do along a motion, over what they do along all of the body, below which it does not matter; and of
+/// the former from which on it is told that normal forces hold it by the tilt of facets.
+pub(crate) const TILT_MATTERS: f64 = 0.01;
+pub(crate) const HELD_BY_TILT: f64 = 0.2;
 
 /// Distance of the nearest point of a contact, over the longest side of the box around the body, above which it is
 /// rather a mistake in units.

@@ -26,7 +26,7 @@ pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
     // each body is judged alone, by its own loads, with those that it may touch
     let mut worst: Option<Escape> = None;
     for body in 0..model.bodies.count() {
-        let motions = of_body(model, body, motions);
+        let motions = loose_motions_of(model, body, motions);
         if motions.is_empty() {
             continue;
         }
@@ -76,7 +76,7 @@ pub(crate) fn friction_could_hold(
     });
     let all = model.loose_motions()?;
     for body in 0..model.bodies.count() {
-        let motions = of_body(model, body, all);
+        let motions = loose_motions_of(model, body, all);
         let work =
             |forces: &[f64]| -> Vec<f64> { motions.iter().map(|m| vector::dot(&m.amplitudes, forces)).collect() };
         let [load, pressed, held] = [e, &pressed, &held].map(work);
@@ -117,7 +117,7 @@ pub(crate) fn friction_could_hold(
 }
 
 /// Those of some motions that move a body.
-fn of_body<'a>(model: &Model, body: usize, motions: &'a [FreeMotion]) -> Vec<&'a FreeMotion> {
+pub(crate) fn loose_motions_of<'a>(model: &Model, body: usize, motions: &'a [FreeMotion]) -> Vec<&'a FreeMotion> {
     let group = |b: &BodyMotion| model.bodies.of_body(b.body) == body;
     motions.iter().filter(|m| m.bodies.iter().any(group)).collect()
 }
@@ -230,13 +230,15 @@ fn escape(
     Escape { step, force, error }
 }
 
-/// What multipliers of one do on the motions, by motion and row.
+/// What multipliers of one do on the motions, by motion and row; nothing where rounding alone says so, of motions and
+/// rows of length one.
 fn columns(model: &Model, motions: &[&FreeMotion]) -> Vec<Vec<f64>> {
     let coarse = model.tfeti.coarse();
     let mut scratch = coarse.scratch();
     let column = |motion: &&FreeMotion| {
         let mut out = vec![0.0; coarse.dim()];
         coarse.apply_transpose(&motion.amplitudes, &mut out, &mut scratch);
+        out.iter_mut().filter(|v| v.abs() <= FREE_WORK).for_each(|v| *v = 0.0);
         out
     };
     motions.iter().map(column).collect()
@@ -328,7 +330,12 @@ pub(crate) fn freed(
     found.map(|(_, free)| free)
 }
 
-/// The part that moves most in a sum of motions, and how: one of length one; its radius, and its length in the sum.
+/// The part that moves most in a sum of motions, and how.
+pub(crate) fn slide(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> Slide {
+    describe(model, motions, factors).0
+}
+
+/// The same, of length one; its radius, and its length in the sum.
 fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, f64, f64) {
     let subdomains = model.discrete.decomposition.subdomains();
     let mut parts: Vec<Part> = Vec::new();

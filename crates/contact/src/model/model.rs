@@ -156,6 +156,16 @@ impl Model {
         .collect()
     }
 
+    /// A rigid motion at the nodes.
+    pub(crate) fn nodal_motion(&self, motion: &FreeMotion) -> Vec<f64> {
+        let mut torn = vec![0.0; self.tfeti.torn_dim()];
+        for (subdomain, amplitudes) in motion.amplitudes.chunks_exact(6).enumerate() {
+            let own = &mut torn[self.tfeti.torn_range(subdomain)];
+            self.tfeti.kernel(subdomain).add_motion(1.0, amplitudes, own);
+        }
+        self.tfeti.nodal_mean(&torn)
+    }
+
     /// The rigid motions that supports leave to the bodies.
     pub(crate) fn loose_motions(&self) -> Result<&[FreeMotion], ContactError> {
         if let Some(known) = self.loose_motions.get() {

@@ -84,7 +84,7 @@ impl Plan {
         let plan = |scene: &Scene| DiscreteScene::new(scene).and_then(|own| Ok(Self::of(scene, &own, settings)?.0));
         let all = || {
             let locked = scene.couplings.iter().any(|c| c.locked != [None; 6]);
-            if !scene.has_spans() && !locked {
+            if scene.stages().len() == 1 && !locked {
                 return plan(scene);
             }
             let mut scene = scene.clone();

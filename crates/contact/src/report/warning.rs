@@ -16,9 +16,9 @@ signorini_fem_mesh::errors! {
     /// [plain](Self::plain) one.
     ///
     /// The thresholds are a tenth of the body for displacements, 0.05 for its rotation, 5 % for strains, an edge of a
-    /// facet for slips, 0.1 for the turn of normals, the body for gaps, a tenth of an overlap for the distance of
-    /// facets from their curve, 3 for coefficients, 0.45 for Poisson's ratios of linear tetrahedra and 10 % for the
-    /// error of the mesh. A body is as long as the longest side of the box around it; its rotation is that which fits
+    /// facet for slips, 0.1 for the turn of normals, a fifth of the loads for what tilted facets hold, the body for gaps,
+    /// a tenth of an overlap for the distance of facets from their curve, 3 for coefficients, 0.45 for Poisson's ratios
+    /// of linear tetrahedra and 10 % for the error of the mesh. A body is as long as the longest side of the box around it; its rotation is that which fits
     /// the displacements of its nodes best. Strain is measured per tetrahedron by the Frobenius norm; at clamped edges
     /// the strain of linear theory grows without bound as the mesh is refined.
     ///
@@ -52,6 +52,11 @@ signorini_fem_mesh::errors! {
             "step {step}: node {node} of contact {contact} at {} is displaced to where the normal of its obstacle is \
             another one by {turn:.1} degrees; it keeps the one that it began with, so forces are missing or \
             point aside there: make the way along the obstacle small against its radius of curvature", told(place);
+        HeldByTilt { step: usize, body: usize, node: u32, mode: String, share: f64 } =
+            "step {step}: normal forces hold {:.0} % of what pushes body {body} (with node {node}) along {mode}, by the tilt \
+            of facets that stand for a curve: smooth sides would slide there, and the finer the mesh the less they hold; \
+            support the body against it, give it friction that suffices, or give one side as an Obstacle to see what \
+            holds", 100.0 * share;
         LargeGap { contact: usize, node: u32, place: [f64; 3], gap: f64, extent: f64 } =
             "contact {contact} begins {:.3e} {} its obstacle even at the nearest node, {node} at {}, and the body is \
             {extent:.3e} long; look at the unit of the gap and at the places of the bodies",
@@ -107,7 +112,9 @@ impl Warning {
     /// The parts of the scene that it speaks of.
     pub fn parts(&self) -> Vec<Part> {
         match self.plain() {
-            Self::LargeDisplacement { step, node, .. } | Self::LargeRotation { step, node, .. } => {
+            Self::LargeDisplacement { step, node, .. }
+            | Self::LargeRotation { step, node, .. }
+            | Self::HeldByTilt { step, node, .. } => {
                 vec![Part::Step(*step), Part::Node(*node)]
             }
             Self::LargeStrain { step, tet, .. } | Self::CoarseMesh { step, tet, .. } => {
@@ -146,6 +153,7 @@ impl Warning {
             Self::LargeStrain { strain, .. } => format!("strain of {:.1} %", 100.0 * strain),
             Self::LongSlip { slip, .. } => format!("slip of {slip:.1e}"),
             Self::EdgeOverlap { overlap, .. } => format!("overlap of {overlap:.1e}"),
+            Self::HeldByTilt { share, .. } => format!("{:.0} % held by the tilt of facets", 100.0 * share),
             Self::TurnedNormal { turn, .. } => format!("normal turned by {turn:.1} degrees"),
             _ => return None,
         })

@@ -16,6 +16,7 @@ mod sanity;
 mod sizes;
 mod summary;
 mod surface_stress;
+mod tilt;
 
 pub(crate) use certificate::contact_violation;
 pub use certificate::{Certificate, Violation};

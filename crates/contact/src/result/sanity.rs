@@ -4,6 +4,7 @@
 
 use super::points::ContactState;
 use super::recovered::Recovered;
+use super::tilt::{held_by_tilt, spreads};
 use crate::discrete::{Extents, beside, mean_place, of_contact, turned, turned_to};
 use crate::model::Model;
 use crate::report::Warning;
@@ -29,6 +30,8 @@ pub(crate) struct Lengths {
     edges: Vec<Vec<f64>>,
     /// Centre of the nodes of each body, m, and the inverse of their moments of inertia about it.
     inertia: Vec<(Vector3<f64>, Matrix3<f64>)>,
+    /// What facets make of normals at the nodes of each contact surface.
+    pub(super) spreads: Vec<Vec<Matrix3<f64>>>,
 }
 
 impl Lengths {
@@ -57,6 +60,7 @@ impl Lengths {
             extents,
             thinnest: 1.0 / steepest,
             edges: edges.collect(),
+            spreads: spreads(model),
         }
     }
 }
@@ -84,10 +88,11 @@ fn inertia(mesh: &TetMesh, extents: &Extents) -> Vec<(Vector3<f64>, Matrix3<f64>
 pub(crate) fn warnings(
     model: &Model,
     lengths: &Lengths,
+    problem: &StepProblem,
     recovered: &Recovered,
-    step: usize,
     known: &[Warning],
 ) -> Vec<Warning> {
+    let step = problem.index;
     let mesh = &model.scene.mesh;
     let u = model.tfeti.nodal_mean(&recovered.torn);
     let mut out = Vec::new();
@@ -109,6 +114,9 @@ pub(crate) fn warnings(
     }
     if is_new(|w| matches!(w, Warning::TurnedNormal { .. })) {
         out.extend(turned_normal(model, recovered, &u, step));
+    }
+    if is_new(|w| matches!(w, Warning::HeldByTilt { .. })) {
+        out.extend(held_by_tilt(model, lengths, problem, recovered, step));
     }
     out
 }

@@ -85,6 +85,11 @@ impl Load {
         Self::new(LoadDensity::body(value))
     }
 
+    /// The same in a region only: the weight of a body, say.
+    pub fn body_in(region: u32, value: [f64; 3]) -> Self {
+        Self::new(LoadDensity::body_in(region, value))
+    }
+
     /// A force, N, and a moment, N m, on the reference point of a [coupling](crate::Coupling), by its number in the
     /// scene.
     pub fn on_coupling(coupling: usize, force: [f64; 3], moment: [f64; 3]) -> Self {

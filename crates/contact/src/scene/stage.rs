@@ -98,11 +98,9 @@ impl Scene {
         }
     }
 
-    /// The stages after the first that may hold less, as far as they are known beforehand: where something is locked is
-    /// not, which only holds more.
+    /// The stages after the first, as far as they are known beforehand: where something will be locked is not.
     pub(crate) fn later_stages(&self) -> impl Iterator<Item = Stage> {
-        let later = if self.has_spans() { self.stages() } else { Vec::new() };
-        later.into_iter().skip(1).map(|first| {
+        self.stages().into_iter().skip(1).map(|first| {
             let step = self.analysis.time(first).unwrap_or(0.0);
             let locked = self.couplings.iter().map(|coupling| {
                 let due = coupling.lockable().filter(|(_, time)| is_past(*time, step));

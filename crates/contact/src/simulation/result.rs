@@ -109,7 +109,7 @@ impl StepResult {
 
     /// The same without kinds already known.
     pub(super) fn warnings_but(&self, known: &[Warning]) -> Vec<Warning> {
-        let new = warnings(&self.model, self.lengths(), &self.recovered, self.step(), known);
+        let new = warnings(&self.model, self.lengths(), &self.problem, &self.recovered, known);
         new.into_iter().map(|w| w.told(&self.scene().names)).collect()
     }
 

@@ -235,3 +235,63 @@ fn overlaps_of_facets_do_not_depend_on_how_contacts_are_written() {
         }
     }
 }
+
+/// A quarter of a sleeve on a post, pressed evenly and pushed along the axis. On a cylinder of plane facets only friction
+/// holds it; where nodes are shifted along the circle, facets are tilted and hold it, which is told.
+#[test]
+fn what_tilted_facets_hold_is_told() {
+    let solve = |shift: f64, order: usize, coefficient: f64| {
+        let part = |radii: [f64; 2], cells: [usize; 3]| {
+            let place = |[r, a, z]: [f64; 3]| {
+                let layer = (z * cells[2] as f64).round() as i64;
+                let inside = (a * (1.0 - a)).min(0.05) * 20.0;
+                let angle = 0.5 * std::f64::consts::PI * (a + inside * shift * if layer % 2 == 0 { 1.0 } else { -1.0 });
+                let radius = radii[0] + r * (radii[1] - radii[0]);
+                [radius * angle.cos(), radius * angle.sin(), 8.0 * z]
+            };
+            let straight = block([1.0; 3], cells);
+            let mesh = straight.map_points(place).expect("quarter");
+            if order == 2 {
+                mesh.raise_order().expect("order 2")
+            } else {
+                mesh
+            }
+        };
+        let (post, sleeve) = (part([4.0, 10.0], [2, 9, 4]), part([10.0, 13.0], [1, 8, 4]));
+        let touch = Contact::between(brick::X_MAX, second(brick::X_MIN)).with_closed_gaps(0.1);
+        let touch = match coefficient {
+            0.0 => touch,
+            _ => touch.with_friction(Friction::coulomb(coefficient)),
+        };
+        let scene = Scene::new(with_second(&post, &sleeve), uniform(2e5, 0.3))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_support(Support::components(second(brick::Y_MIN), [false, true, false]))
+            .with_support(Support::components(second(brick::Y_MAX), [true, false, false]))
+            .with_load(Load::pressure(second(brick::X_MAX), 10.0))
+            .with_load(Load::force(second(brick::Z_MAX), [0.0, 0.0, 20.0]))
+            .with_contact(touch);
+        let mut simulation = Simulation::new(scene, Settings::default())?;
+        Ok::<_, ContactError>(simulation.step()?.warnings())
+    };
+    let told = |warnings: &[Warning]| {
+        let share = |w: &Warning| match w {
+            Warning::HeldByTilt { share, .. } => Some(*share),
+            _ => None,
+        };
+        warnings.iter().find_map(share)
+    };
+    for order in [1, 2] {
+        let refused = solve(0.0, order, 0.0);
+        assert!(
+            matches!(refused, Err(ContactError::NotHeld { .. })),
+            "{order} {refused:?}"
+        );
+        let frictionless = told(&solve(0.02, order, 0.0).expect("held"));
+        assert!(
+            frictionless.is_some_and(|share| (share - 1.0).abs() < 1e-3),
+            "{frictionless:?}"
+        );
+        let rough = solve(0.02, order, 0.3).expect("held");
+        assert_eq!(told(&rough), None, "{rough:?}");
+    }
+}

@@ -207,3 +207,21 @@ fn supports_of_both_sides_are_judged_together() {
     let moved = |tag| Support::fixed(rim(tag)).with_motion([0.0, 1e-4, 0.0], History::constant(1.0));
     scene(moved(FIRST), moved(SECOND), [true; 6]).expect("both move alike");
 }
+
+/// A load that nothing holds once a lock is on is refused before any step is solved.
+#[test]
+fn loads_of_locked_stages_are_checked_before() {
+    let aside = || Load::force(UPPER_TOP, [1e3, 0.0, 0.0]);
+    let set_up = |friction: f64| {
+        let scene = tightened(
+            joint(friction, 1),
+            bolt().with_lock(AXIAL, 1.0),
+            [0.0, 1.0, 0.0],
+            aside(),
+        );
+        Simulation::new(scene, Settings::default())
+    };
+    assert!(set_up(0.2).is_ok());
+    let error = set_up(0.0).expect_err("not held");
+    assert!(matches!(error, ContactError::NotHeld { .. }), "{error}");
+}

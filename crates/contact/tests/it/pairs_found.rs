@@ -187,10 +187,16 @@ fn bodies_with_tags_everywhere_are_refused() {
         );
         let text = error.to_string();
         assert!(
-            text.contains("tag_boundary") && text.contains("Contact::between"),
+            text.contains("without_tags") && text.contains("Contact::between"),
             "{text}"
         );
     }
+    // tags of whole surfaces are taken off, others stay
+    let mesh = joined(&[brick(0.0), brick(1.0).map_tags(|tag| FacetTag(tag.0 + 10))]);
+    let sides = [brick::Z_MAX, FacetTag(brick::Z_MIN.0 + 10)];
+    let (mesh, pairs) = ContactPair::find(mesh.without_tags(&sides), 1e-2).expect("pairs");
+    assert_eq!((pairs.len(), areas(&mesh, &pairs[0])), (1, [1.0; 2]));
+    assert_eq!(Surface::new(&mesh, &[brick::Z_MIN]).expect("bottom").total_area(), 1.0);
     // others may be told, and one body has none
     let mesh = joined(&[bare(brick(0.0)), brick(1.0), bare(brick(2.0))]);
     assert_eq!(ContactPair::find(mesh, 1e-2).expect("reach").1, []);

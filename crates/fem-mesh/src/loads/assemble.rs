@@ -29,8 +29,12 @@ pub fn assemble_load(
 ) -> Result<Vec<Vec<f64>>, LoadError> {
     expect_decomposition(mesh, decomposition)?;
     match load {
-        LoadDensity::Body(value) => body(mesh, decomposition, Density::Constant(*value)),
-        LoadDensity::BodyField(value) => body(mesh, decomposition, Density::Varying(&|x, _| value(x))),
+        LoadDensity::Body(value) => body(mesh, decomposition, None, Density::Constant(*value)),
+        LoadDensity::BodyField(value) => body(mesh, decomposition, None, Density::Varying(&|x, _| value(x))),
+        LoadDensity::BodyIn(region, value) => body(mesh, decomposition, Some(*region), Density::Constant(*value)),
+        LoadDensity::BodyFieldIn(region, value) => {
+            body(mesh, decomposition, Some(*region), Density::Varying(&|x, _| value(x)))
+        }
         LoadDensity::Traction(tag, value) => traction(mesh, decomposition, *tag, |_| Density::Constant(*value)),
         LoadDensity::TractionField(tag, value) => traction(mesh, decomposition, *tag, |_| Density::Varying(&**value)),
         LoadDensity::Pressure(tag, value) => {
@@ -164,18 +168,31 @@ pub(super) fn accumulate<const N: usize>(vector: &mut [f64], nodes: &[u32; N], f
     }
 }
 
-fn body(mesh: &TetMesh, decomposition: &Decomposition, density: Density<'_>) -> Result<Vec<Vec<f64>>, LoadError> {
+/// In a region, or everywhere.
+fn body(
+    mesh: &TetMesh,
+    decomposition: &Decomposition,
+    region: Option<u32>,
+    density: Density<'_>,
+) -> Result<Vec<Vec<f64>>, LoadError> {
+    let known = mesh.distinct_regions();
+    if let Some(region) = region.filter(|region| !known.contains(region)) {
+        return Err(LoadError::UnknownRegion { region, known });
+    }
+    let is_inside = |element: u32| region.is_none_or(|region| mesh.regions()[element as usize] == region);
     let rule = quadrature::tetrahedron();
     let of_subdomain = |subdomain: &Subdomain| {
         let mut vector = vec![0.0; subdomain.dofs()];
-        for (&element, tet) in subdomain.elements.iter().zip(subdomain.quadratic_tets()) {
+        let quadratic = subdomain.elements.iter().zip(subdomain.quadratic_tets());
+        for (&element, tet) in quadratic.filter(|(element, _)| is_inside(**element)) {
             let points = mesh.quadratic_points(element as usize);
             accumulate(&mut vector, &tet, density.quadratic_forces(&points, &rule)?);
         }
         if mesh.order() == 2 {
             return Ok(vector);
         }
-        for (&element, tet) in subdomain.elements.iter().zip(&subdomain.tets) {
+        let linear = subdomain.elements.iter().zip(&subdomain.tets);
+        for (&element, tet) in linear.filter(|(element, _)| is_inside(**element)) {
             let points = mesh.tet_points(element as usize);
             let volume = mesh.volume(element as usize);
             accumulate(

@@ -22,6 +22,10 @@ pub enum LoadDensity {
     Body([f64; 3]),
     /// Force per volume that depends on the point.
     BodyField(PointField),
+    /// The same force per volume in a region.
+    BodyIn(u32, [f64; 3]),
+    /// Force per volume that depends on the point, in a region.
+    BodyFieldIn(u32, PointField),
     /// The same force per area on all facets of a tag (P of the paper).
     Traction(FacetTag, [f64; 3]),
     /// Force per area at a point with its outward unit normal, on all facets of a tag.
@@ -48,6 +52,16 @@ impl LoadDensity {
     /// Force per volume that depends on the point.
     pub fn body_field(value: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static) -> Self {
         Self::BodyField(Function(Arc::new(value)))
+    }
+
+    /// The same force per volume in a region.
+    pub fn body_in(region: u32, value: [f64; 3]) -> Self {
+        Self::BodyIn(region, value)
+    }
+
+    /// Force per volume that depends on the point, in a region.
+    pub fn body_field_in(region: u32, value: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static) -> Self {
+        Self::BodyFieldIn(region, Function(Arc::new(value)))
     }
 
     /// The same force per area on all facets of a tag.
@@ -86,7 +100,9 @@ impl LoadDensity {
             | Self::Pressure(tag, _)
             | Self::Force(tag, _)
             | Self::Moment(tag, _) => Some(*tag),
-            Self::Body(_) | Self::BodyField(_) | Self::NodalForces(_) => None,
+            Self::Body(_) | Self::BodyField(_) | Self::BodyIn(..) | Self::BodyFieldIn(..) | Self::NodalForces(_) => {
+                None
+            }
         }
     }
 
@@ -104,6 +120,8 @@ errors! {
             "the decomposition has {decomposed} tetrahedra and the mesh {meshed}; decompose the mesh that is loaded";
         UnknownTag { tag: FacetTag, known: Vec<FacetTag> } =
             "a load is given on {tag}, but no facet has it; the mesh has {}", tag_list(known);
+        UnknownRegion { region: u32, known: Vec<u32> } =
+            "a load is given in region {region}, but no tetrahedron is in it; the mesh has the regions {known:?}";
         UnknownNode { node: u32, nodes: usize } =
             "a force is given at node {node}, but there are only {nodes} nodes, numbered from 0";
         NotFinite { place: [f64; 3], value: [f64; 3] } =

@@ -37,6 +37,18 @@ impl TetMesh {
         self
     }
 
+    /// Takes these tags off the boundary.
+    #[must_use]
+    pub fn without_tags(mut self, tags: &[FacetTag]) -> Self {
+        let (facets, owners) = (std::mem::take(&mut self.facets), std::mem::take(&mut self.owners));
+        let left = facets
+            .into_iter()
+            .zip(owners)
+            .filter(|(facet, _)| !tags.contains(&facet.tag));
+        (self.facets, self.owners) = left.unzip();
+        self
+    }
+
     /// Moves every node, including mid-nodes, to `map(point)`; connectivity, tags and regions stay. A nonlinear map
     /// makes curved edges.
     ///

@@ -4,7 +4,7 @@ use approx::assert_abs_diff_eq;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 use signorini_fem_mesh::brick::{Brick, X_MAX, Z_MAX, Z_MIN};
-use signorini_fem_mesh::{Decomposition, History, LoadDensity, TetMesh, assemble_load};
+use signorini_fem_mesh::{Decomposition, History, LoadDensity, LoadError, TetMesh, assemble_load};
 
 /// Sum of forces and of moments about the origin.
 fn resultant(mesh: &TetMesh, boxes: [usize; 3], load: &LoadDensity) -> ([f64; 3], [f64; 3]) {
@@ -51,6 +51,41 @@ fn constant_loads() {
         check(resultant(&mesh, boxes, &sum), [3.0, 0.0, -3.0], [-1.5, 10.5, -1.5]);
         let pressed = LoadDensity::pressure(X_MAX, 4.0);
         check(resultant(&mesh, boxes, &pressed), [-8.0, 0.0, 0.0], [0.0, -8.0, 4.0]);
+    }
+}
+
+/// Forces per volume of a region act there alone, in both orders.
+#[test]
+fn loads_of_regions() {
+    let mesh = brick();
+    let low = |tet: usize| u32::from(mesh.tet_points(tet).iter().all(|p| p[2] <= 1.0 + 1e-9));
+    let regions: Vec<u32> = (0..mesh.tets().len()).map(low).collect();
+    let volume: f64 = (0..regions.len())
+        .filter(|t| regions[*t] == 1)
+        .map(|t| mesh.volume(t))
+        .sum();
+    assert!(volume > 0.5 && volume < 5.5, "{volume}");
+    let mesh = mesh.with_regions(regions).unwrap();
+    for mesh in [mesh.clone(), mesh.raise_order().unwrap()] {
+        let of = |load: LoadDensity| resultant(&mesh, [3, 1, 2], &load);
+        let own = of(LoadDensity::body_in(1, [0.0, 0.0, -2.0]));
+        assert_abs_diff_eq!(own.0[2], -2.0 * volume, epsilon = 1e-12);
+        let field = |x: [f64; 3]| [x[0], 0.0, 0.0];
+        let parts = [0, 1].map(|region| of(LoadDensity::body_field_in(region, field)).0[0]);
+        assert_abs_diff_eq!(
+            parts[0] + parts[1],
+            of(LoadDensity::body_field(field)).0[0],
+            epsilon = 1e-12
+        );
+        let parts = Decomposition::whole(&mesh);
+        let error = assemble_load(&mesh, &parts, &LoadDensity::body_in(7, [1.0; 3])).unwrap_err();
+        assert_eq!(
+            error,
+            LoadError::UnknownRegion {
+                region: 7,
+                known: vec![0, 1]
+            }
+        );
     }
 }
 

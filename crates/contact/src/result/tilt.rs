@@ -1,0 +1,113 @@
+//! Whether normal forces hold what only the tilt of facets lets them hold.
+//!
+//! The facets of a body for a round surface are tilted against it by up to half their length over its radius, and the
+//! normals of its nodes with them. Along a motion that the round surface leaves free they hold all the same, by forces
+//! that the mesh alone decides. Such motions are those across which normals differ from those of the facets around
+//! them more than they block.
+
+use super::recovered::Recovered;
+use super::sanity::Lengths;
+use crate::model::{Model, loose_motions_of, slide};
+use crate::report::Warning;
+use crate::scene::{Contact, ContactNormal};
+use crate::step::StepProblem;
+use crate::tolerances::{HELD_BY_TILT, TILT_MATTERS};
+use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
+use signorini_fem_mesh::{Surface, TetMesh};
+use signorini_qp::vector;
+
+const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+
+/// Of the nodes of each contact surface the mean square of what the normals of the facets around it have more than its
+/// own; empty where supports hold all bodies, or obstacles give the normals.
+pub(super) fn spreads(model: &Model) -> Vec<Vec<Matrix3<f64>>> {
+    let is_free = model.loose_motions().is_ok_and(|motions| !motions.is_empty());
+    let surfaces = model.discrete.surfaces.iter().zip(&model.scene.contacts);
+    let spread = |(surface, contact): (&Surface, &Contact)| match contact.normal() {
+        ContactNormal::Body if is_free => spread(&model.scene.mesh, surface),
+        _ => Vec::new(),
+    };
+    surfaces.map(spread).collect()
+}
+
+fn spread(mesh: &TetMesh, surface: &Surface) -> Vec<Matrix3<f64>> {
+    let mut sums = vec![(0.0, Matrix3::zeros()); surface.nodes().len()];
+    for (t, corners) in surface.triangles().iter().enumerate() {
+        for (k, node) in corners.iter().map(|n| *n as usize).enumerate() {
+            let (area, normal) = surface.corner_area(mesh, t, k);
+            let more = Vector3::from(normal).normalize() - Vector3::from(surface.frames()[node].normal);
+            sums[node].0 += area;
+            sums[node].1 += area * more * more.transpose();
+        }
+    }
+    sums.into_iter().map(|(area, sum)| sum / area).collect()
+}
+
+/// The body of which this is most so, at the end of a step.
+pub(super) fn held_by_tilt(
+    model: &Model,
+    lengths: &Lengths,
+    problem: &StepProblem,
+    recovered: &Recovered,
+    step: usize,
+) -> Option<Warning> {
+    if lengths.spreads.iter().all(Vec::is_empty) {
+        return None;
+    }
+    let all = model.loose_motions().ok()?;
+    let mut worst: Option<(f64, Warning)> = None;
+    for body in 0..model.bodies.count().max(1) {
+        let motions = loose_motions_of(model, body, all);
+        let moved: Vec<Vec<f64>> = motions.iter().map(|m| model.nodal_motion(m)).collect();
+        let points = model.points.iter().zip(&recovered.points);
+        let pressed = points.filter(|(p, state)| state.normal_force < 0.0 && model.bodies.of_row(p.row) == body);
+        let count = motions.len();
+        // what normals block of the motions, less what facets blur, and what normal forces do along them
+        let (mut blocked, mut work) = (DMatrix::zeros(count, count), DVector::zeros(count));
+        for (point, state) in pressed {
+            let way = |motion: &Vec<f64>| {
+                let along = |node: u32, d: &[f64; 3]| vector::dot(&motion[3 * node as usize..][..3], d);
+                Vector3::from(AXES.map(|axis| point.contact.sides.way(&axis, along)))
+            };
+            let ways: Vec<Vector3<f64>> = moved.iter().map(way).collect();
+            let normal = Vector3::from(state.normal);
+            let own = model.discrete.surfaces[state.surface].local(state.node);
+            let blur = own.and_then(|local| lengths.spreads[state.surface].get(local));
+            let blur = blur.copied().unwrap_or_else(Matrix3::zeros);
+            for i in 0..count {
+                work[i] += state.normal_force * normal.dot(&ways[i]);
+                for j in 0..count {
+                    let block = normal.dot(&ways[i]) * normal.dot(&ways[j]);
+                    blocked[(i, j)] += state.area * (block - ways[i].dot(&(blur * ways[j])));
+                }
+            }
+        }
+        let load = DVector::from_iterator(count, motions.iter().map(|m| vector::dot(&m.amplitudes, &problem.rhs)));
+        // what of the loads is along motions that are blurred more than blocked
+        let eigen = SymmetricEigen::new(blocked);
+        let mut pushed = DVector::zeros(count);
+        for (value, motion) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+            if *value < 0.0 {
+                pushed += motion * motion.dot(&load);
+            }
+        }
+        let share = pushed.dot(&work) / pushed.dot(&load);
+        // normal forces that do much more than the loads are held by friction
+        let matters = pushed.norm() >= TILT_MATTERS * load.norm();
+        if matters && (HELD_BY_TILT..1.0 + HELD_BY_TILT).contains(&share) && worst.as_ref().is_none_or(|w| share > w.0)
+        {
+            // `G lambda = e = -Rᵀ f`
+            pushed.neg_mut();
+            let slide = slide(model, &motions, pushed.as_slice());
+            let warning = Warning::HeldByTilt {
+                step,
+                body: slide.body as usize,
+                node: slide.node,
+                mode: slide.to_string(),
+                share,
+            };
+            worst = Some((share, warning));
+        }
+    }
+    worst.map(|w| w.1)
+}
