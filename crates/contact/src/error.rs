@@ -202,10 +202,12 @@ signorini_fem_mesh::errors! {
             "step {step}: body {body} (with node {node}) cannot be in equilibrium: {mode} is {}, and the loads push \
             along it with a force of {force:.3e}; {}",
             held_by(*friction), held_remedy(*friction, coupling.as_deref());
-        NotDetermined { body: usize, node: u32, count: usize, motions: String, coupling: Option<Box<FreeCoupling>> } =
+        NotDetermined {
+            body: usize, node: u32, count: usize, motions: String, coupling: Option<Box<FreeCoupling>>, in_contact: bool
+        } =
             "the place of body {body} (with node {node}) is not determined: the loads are in balance, but {count} rigid motion(s) are \
-            held neither by supports nor by contact ({motions}); add supports that stop them{}",
-            freed_remedy(coupling.as_deref());
+            held neither by supports nor by contact ({motions}); add supports that stop them{}{}",
+            freed_remedy(coupling.as_deref()), if *in_contact { ", or take the default method" } else { "" };
         Setting { name: &'static str, value: f64, range: &'static str } =
             "setting {name} = {} is outside its range {range}", number(*value);
         Doubling { reason: &'static str } = "step doubling: {reason}";

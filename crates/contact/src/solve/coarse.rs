@@ -59,6 +59,7 @@ pub(super) fn not_determined(model: &Model, motions: &[FreeMotion]) -> ContactEr
         node: body.map_or(0, |b| model.discrete.decomposition.subdomains()[b.subdomain].nodes[0]),
         count: motions.len(),
         motions: words.join("; "),
+        in_contact: !model.points.is_empty(),
         coupling: motions.iter().find_map(|motion| left_free(model, motion)).map(Box::new),
     }
 }

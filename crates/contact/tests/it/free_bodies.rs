@@ -145,6 +145,7 @@ fn without_forces_or_in_balance_the_motions_are_free() {
         // the default method solves this one: the body rests where it is
         (floor, paper, 3),
     ] {
+        let touches = !scene.contacts().is_empty();
         let error = refused_by(scene, settings);
         let text = error.to_string();
         match error {
@@ -158,6 +159,7 @@ fn without_forces_or_in_balance_the_motions_are_free() {
             "{text}"
         );
         assert!(text.contains(&format!("{expected} rigid motion")), "{text}");
+        assert_eq!(text.contains("default method"), touches, "{text}");
         assert!(!text.contains("cannot be in equilibrium"), "{text}");
     }
 }
