@@ -31,7 +31,7 @@ pub(crate) struct Lengths {
     /// Centre of the nodes of each body, m, and the inverse of their moments of inertia about it.
     inertia: Vec<(Vector3<f64>, Matrix3<f64>)>,
     /// What facets make of normals at the nodes of each contact surface.
-    pub(super) spreads: Vec<Vec<Matrix3<f64>>>,
+    spreads: Vec<Vec<Matrix3<f64>>>,
 }
 
 impl Lengths {
@@ -116,7 +116,7 @@ pub(crate) fn warnings(
         out.extend(turned_normal(model, recovered, &u, step));
     }
     if is_new(|w| matches!(w, Warning::HeldByTilt { .. })) {
-        out.extend(held_by_tilt(model, lengths, problem, recovered, step));
+        out.extend(held_by_tilt(model, &lengths.spreads, problem, recovered, step));
     }
     out
 }

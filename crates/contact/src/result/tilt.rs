@@ -6,12 +6,11 @@
 //! them more than they block.
 
 use super::recovered::Recovered;
-use super::sanity::Lengths;
 use crate::model::{Model, loose_motions_of, slide};
 use crate::report::Warning;
 use crate::scene::{Contact, ContactNormal};
 use crate::step::StepProblem;
-use crate::tolerances::{HELD_BY_TILT, TILT_MATTERS};
+use crate::tolerances::{HELD_BY_TILT, ROUNDING, TILT_MATTERS};
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 use signorini_fem_mesh::{Surface, TetMesh};
 use signorini_qp::vector;
@@ -35,45 +34,54 @@ fn spread(mesh: &TetMesh, surface: &Surface) -> Vec<Matrix3<f64>> {
     for (t, corners) in surface.triangles().iter().enumerate() {
         for (k, node) in corners.iter().map(|n| *n as usize).enumerate() {
             let (area, normal) = surface.corner_area(mesh, t, k);
-            let more = Vector3::from(normal).normalize() - Vector3::from(surface.frames()[node].normal);
+            let normal = Vector3::from(normal).try_normalize(0.0).unwrap_or_default();
+            let more = normal - Vector3::from(surface.frames()[node].normal);
             sums[node].0 += area;
             sums[node].1 += area * more * more.transpose();
         }
     }
-    sums.into_iter().map(|(area, sum)| sum / area).collect()
+    sums.into_iter()
+        .map(|(area, sum)| sum / f64::max(area, f64::MIN_POSITIVE))
+        .collect()
 }
 
 /// The body of which this is most so, at the end of a step.
 pub(super) fn held_by_tilt(
     model: &Model,
-    lengths: &Lengths,
+    spreads: &[Vec<Matrix3<f64>>],
     problem: &StepProblem,
     recovered: &Recovered,
     step: usize,
 ) -> Option<Warning> {
-    if lengths.spreads.iter().all(Vec::is_empty) {
+    if spreads.iter().all(Vec::is_empty) {
         return None;
     }
     let all = model.loose_motions().ok()?;
     let mut worst: Option<(f64, Warning)> = None;
     for body in 0..model.bodies.count().max(1) {
         let motions = loose_motions_of(model, body, all);
-        let moved: Vec<Vec<f64>> = motions.iter().map(|m| model.nodal_motion(m)).collect();
         let points = model.points.iter().zip(&recovered.points);
         let pressed = points.filter(|(p, state)| state.normal_force < 0.0 && model.bodies.of_row(p.row) == body);
+        let blurred = pressed.map(|(point, state)| {
+            let own = model.discrete.surfaces[state.surface].local(state.node);
+            let blur = own.and_then(|local| spreads[state.surface].get(local));
+            (point, state, blur.copied().unwrap_or_default())
+        });
+        let blurred: Vec<_> = blurred.collect();
+        if motions.is_empty() || blurred.iter().all(|(.., blur)| blur.trace() <= ROUNDING) {
+            continue;
+        }
+        let moved: Vec<Vec<f64>> = motions.iter().map(|m| model.nodal_motion(m)).collect();
         let count = motions.len();
         // what normals block of the motions, less what facets blur, and what normal forces do along them
         let (mut blocked, mut work) = (DMatrix::zeros(count, count), DVector::zeros(count));
-        for (point, state) in pressed {
+        for (point, state, blur) in blurred {
             let way = |motion: &Vec<f64>| {
                 let along = |node: u32, d: &[f64; 3]| vector::dot(&motion[3 * node as usize..][..3], d);
                 Vector3::from(AXES.map(|axis| point.contact.sides.way(&axis, along)))
             };
             let ways: Vec<Vector3<f64>> = moved.iter().map(way).collect();
             let normal = Vector3::from(state.normal);
-            let own = model.discrete.surfaces[state.surface].local(state.node);
-            let blur = own.and_then(|local| lengths.spreads[state.surface].get(local));
-            let blur = blur.copied().unwrap_or_else(Matrix3::zeros);
             for i in 0..count {
                 work[i] += state.normal_force * normal.dot(&ways[i]);
                 for j in 0..count {

@@ -86,20 +86,9 @@ fn follow(known: Known, follower: &Follower) -> Option<(Equation, Word)> {
     Some((Equation::new(terms?), follower.word.clone()))
 }
 
-/// Refuses a node of the mesh with two displacements.
-pub(super) fn single(known: Known, word: &Word, node: u32) -> Result<(), DeckError> {
-    let label = known.raw.node_labels[node as usize];
-    match known.raw.with_copies(node).nth(1) {
-        None => Ok(()),
-        Some(_) => Err(word.cannot(format!(
-            "node {label} lies where a *PRE-TENSION SECTION cuts the body, and has two displacements; name another one"
-        ))),
-    }
-}
-
 /// What multiplies the displacement of a node of the mesh in a term.
 fn vector(known: Known, term: &Term, node: u32) -> Result<[f64; 3], DeckError> {
-    single(known, &term.word, node)?;
+    known.raw.single(node, &term.word)?;
     let at = (node, known.raw.points[node as usize]);
     known.transforms.force(at, term.component, term.coefficient, &term.word)
 }

@@ -1,10 +1,10 @@
 //! Nodes that stay in a plane or on a line, as equations.
 
 use signorini_contact::Equation;
+use signorini_fem_mesh::SurfaceFrame;
 use signorini_fem_mesh::internal::distinct;
-use signorini_fem_mesh::vec3::{Vec3, cross, dot, far_apart, norm, scale, sub, unit};
+use signorini_fem_mesh::vec3::{Vec3, cross, dot, far_apart, norm, scale, sub};
 
-use super::equations::single;
 use super::faces::Known;
 use super::points::Room;
 use crate::error::{DeckError, Word};
@@ -19,7 +19,7 @@ pub(super) fn equations(known: Known, given: &Flat, room: &mut Room) -> Result<V
         for node in known.sets.nodes.find(target, word)? {
             let label = known.model.nodes[node as usize].label;
             let none = || word.cannot(format!("no element uses node {label}; name nodes of the body"));
-            single(known, word, known.raw.in_mesh(node).ok_or_else(none)?)?;
+            known.raw.single(known.raw.in_mesh(node).ok_or_else(none)?, word)?;
             nodes.push(node);
         }
     }
@@ -30,21 +30,18 @@ pub(super) fn equations(known: Known, given: &Flat, room: &mut Room) -> Result<V
     };
     let [along, aside] = [b, c].map(|k| sub(places[k], places[a]));
     let normal = cross(along, aside);
-    let (basis, across) = match given.is_line {
-        true => {
-            let (least, _) = (0..3)
-                .map(|k| (k, along[k].abs()))
-                .fold((0, f64::INFINITY), |m, x| if x.1 < m.1 { x } else { m });
-            let other: Vec3 = std::array::from_fn(|k| if k == least { 1.0 } else { 0.0 });
-            let first = unit(cross(along, other));
-            (vec![a, b], vec![first, unit(cross(along, first))])
-        }
-        false if off > TURNED => (vec![a, b, c], vec![unit(normal)]),
-        false => {
-            return Err(given
-                .word
-                .cannot("its nodes are one or lie on a line, which is in many planes; name others, or take STRAIGHT"));
-        }
+    let frame = match given.is_line {
+        true => SurfaceFrame::from_normal(along),
+        false => SurfaceFrame::from_normal(normal).filter(|_| off > TURNED),
+    };
+    let frame = frame.ok_or_else(|| {
+        given
+            .word
+            .cannot("its nodes are in one place, or on a line, which is in many planes; name others, or take STRAIGHT")
+    })?;
+    let (basis, across): (&[usize], &[Vec3]) = match given.is_line {
+        true => (&[a, b], &frame.tangents),
+        false => (&[a, b, c], &[frame.normal]),
     };
     // the shares of the basis at a place
     let shares = |place: Vec3| {
@@ -64,27 +61,23 @@ pub(super) fn equations(known: Known, given: &Flat, room: &mut Room) -> Result<V
     let mut out = Vec::new();
     for k in (0..nodes.len()).filter(|k| !basis.contains(k)) {
         let arm = sub(places[k], places[a]);
-        let [size, most] = [
-            norm(along),
-            across.iter().map(|d| dot(*d, arm).abs()).fold(0.0, f64::max),
-        ];
-        if most > TURNED * size {
+        let most = across.iter().map(|d| dot(*d, arm).abs()).fold(0.0, f64::max);
+        if most > TURNED * norm(along) {
             let label = known.raw.node_labels[nodes[k] as usize];
             return Err(given.word.cannot(format!(
                 "node {label} is {most:e} away from where the others are; move it, or remove it from the nodes"
             )));
         }
         let shares = shares(places[k]);
-        for direction in &across {
-            let others = basis
-                .iter()
-                .zip(shares)
-                .map(|(b, share)| (nodes[*b], scale(-share, *direction)));
-            let terms: Vec<_> = std::iter::once((nodes[k], *direction))
-                .chain(others.filter(|t| norm(t.1) > 0.0))
-                .collect();
+        for direction in across {
+            let mut terms = vec![(nodes[k], *direction)];
+            let others = basis.iter().zip(shares).filter(|(_, share)| *share != 0.0);
+            terms.extend(others.map(|(b, share)| (nodes[*b], scale(-share, *direction))));
             out.push((Equation::new(terms), given.word.clone()));
         }
     }
-    Ok(out)
+    match out.is_empty() {
+        true => Err((given.word).cannot("so few nodes are in one plane, or on one line, wherever they are; name more")),
+        false => Ok(out),
+    }
 }

@@ -247,6 +247,17 @@ impl Raw {
         std::iter::once(node).chain(copies.copied())
     }
 
+    /// Refuses a node with two displacements.
+    pub(super) fn single(&self, node: u32, word: &Word) -> Result<(), DeckError> {
+        let label = self.node_labels[node as usize];
+        match self.copies.contains_key(&node) {
+            false => Ok(()),
+            true => Err(word.cannot(format!(
+                "node {label} lies where a *PRE-TENSION SECTION cuts the body, and has two displacements; name another one"
+            ))),
+        }
+    }
+
     /// The number in the mesh of a node of the deck, by its position; `None` if no elastic element uses it.
     pub(super) fn in_mesh(&self, node: u32) -> Option<u32> {
         self.of_node[node as usize]

@@ -238,6 +238,7 @@ fn what_is_refused() {
         "*MPC",
         "node 14 is",
     );
+    refused("*MPC\nSTRAIGHT, 1, 2\n", "STRAIGHT, 1, 2", "*MPC", "name more");
     refused("*MPC\nPLANE, NOWHERE\n", "PLANE, NOWHERE", "NOWHERE", "there are: ");
     inside(
         "*EQUATION\n1\n1, 1, 1.\n",
