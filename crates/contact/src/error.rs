@@ -135,7 +135,8 @@ signorini_fem_mesh::errors! {
         Overlap { contact: usize, node: u32, partner: u32, depth: f64, size: f64 } =
             "contact {contact}: node {node} lies {depth:.3e} inside the other body, seen from its partner \
             {partner}, deeper than its facets are large ({size:.3e}); give sides that face each other across the \
-            gap (ContactPair::find finds them on hooked bodies); where Contact::between is to press them apart, tell how far by with_gap";
+            gap (ContactPair::find finds them on hooked bodies); where Contact::between is to press them apart, tell how \
+            far by with_gap";
         SameSide { contact: usize, tag: u32 } =
             "contact {contact}: the tag {tag} is on both sides; give each side its own (TetMesh::map_tags before \
             append keeps those of two bodies apart, NewPhysicalGroup of Gmsh's plugin Crack those of a crack)";

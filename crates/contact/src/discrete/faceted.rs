@@ -15,7 +15,7 @@ use crate::tolerances::{DEEP, DIGITS, FACETED, KINK, SHARP, TOUCHING};
 use signorini_fem_mesh::internal::{DisjointSets, distinct};
 use signorini_fem_mesh::vec3::{add, cross, dot, norm, scale, sub};
 use signorini_fem_mesh::{FacetTag, Surface, TetMesh};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 /// An overlap and the largest distance of the facets there from their curve, m.
@@ -137,11 +137,22 @@ pub(super) fn close_faceted(
 /// those of both.
 fn unite(mesh: &TetMesh, faceted: &mut [Faceted]) -> Result<(), ContactError> {
     let mut sides: Vec<&mut Side> = faceted.iter_mut().flat_map(|f| &mut f.sides).collect();
-    let mut sets = DisjointSets::new(sides.len());
-    for (k, j) in (0..sides.len()).flat_map(|j| (0..j).map(move |k| (k, j))) {
-        if sides[k].goes_on_in(sides[j]) {
-            sets.join(k, j);
+    // of each two that share nodes the least cosine between their normals
+    let mut cosines: BTreeMap<[usize; 2], f64> = BTreeMap::new();
+    let mut seen: HashMap<u32, Vec<(usize, [f64; 3])>> = HashMap::new();
+    for (k, side) in sides.iter().enumerate() {
+        for (node, frame) in side.surface.nodes().iter().zip(side.surface.frames()) {
+            let known = seen.entry(*node).or_default();
+            for (other, normal) in known.iter() {
+                let least = cosines.entry([*other, k]).or_insert(1.0);
+                *least = least.min(dot(frame.normal, *normal));
+            }
+            known.push((k, frame.normal));
         }
+    }
+    let mut sets = DisjointSets::new(sides.len());
+    for ([k, j], _) in cosines.into_iter().filter(|(_, least)| *least > SHARP) {
+        sets.join(k, j);
     }
     let numbers = sets.numbers();
     for set in 0..=numbers.iter().copied().max().unwrap_or(0) {
@@ -242,16 +253,6 @@ impl Side {
             bends: bends(mesh, &surface),
             surface,
         }
-    }
-
-    /// Whether it shares nodes with another side, and nowhere across an edge.
-    fn goes_on_in(&self, other: &Self) -> bool {
-        let own = self.surface.nodes().iter().zip(self.surface.frames());
-        let cosines = own.filter_map(|(node, frame)| {
-            let local = other.surface.local(*node)?;
-            Some(dot(frame.normal, other.surface.frames()[local].normal))
-        });
-        cosines.reduce(f64::min).is_some_and(|least| least > SHARP)
     }
 }
 

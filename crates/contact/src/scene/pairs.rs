@@ -41,7 +41,8 @@ pub struct ContactPair {
 impl ContactPair {
     /// Finds all pairs of a mesh of several bodies: facets of the boundary **without a tag** that others face within a
     /// distance of `reach` (m), in front of them or in each other. They get tags that are not in use; facets with a
-    /// tag, of supports and loads, stay as they are; [`TetMesh::without_tags`] takes those of whole surfaces off. Sides that meet at a crease of 60 degrees make pairs of their own.
+    /// tag, of supports and loads, stay as they are; [`TetMesh::without_tags`] takes those of whole surfaces off. Sides
+    /// that meet at a crease of 60 degrees make pairs of their own.
     ///
     /// ```
     /// # use signorini_contact::{ContactPair, Friction};
