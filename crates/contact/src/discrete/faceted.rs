@@ -12,7 +12,7 @@ use super::points::{ContactPoint, of_contact};
 use crate::error::ContactError;
 use crate::scene::{Closing, Gap, Scene};
 use crate::tolerances::{DEEP, DIGITS, FACETED, KINK, SHARP, TOUCHING};
-use signorini_fem_mesh::internal::{DisjointSets, distinct};
+use signorini_fem_mesh::internal::{DisjointSets, Lists, distinct};
 use signorini_fem_mesh::vec3::{add, cross, dot, norm, scale, sub};
 use signorini_fem_mesh::{FacetTag, Surface, TetMesh};
 use std::collections::{BTreeMap, HashMap};
@@ -154,14 +154,14 @@ fn unite(mesh: &TetMesh, faceted: &mut [Faceted]) -> Result<(), ContactError> {
     for ([k, j], _) in cosines.into_iter().filter(|(_, least)| *least > SHARP) {
         sets.join(k, j);
     }
-    let numbers = sets.numbers();
-    for set in 0..=numbers.iter().copied().max().unwrap_or(0) {
-        let of = || (0..numbers.len()).filter(|k| numbers[*k] == set);
-        if of().count() > 1 {
-            let tags = distinct(of().flat_map(|k| sides[k].tags.iter().copied()));
-            let bends = bends(mesh, &Surface::new(mesh, &tags)?);
-            of().for_each(|k| sides[k].bends.clone_from(&bends));
-        }
+    let united = Lists::by_key(sides.len(), &sets.numbers());
+    for own in (0..united.count())
+        .map(|set| united.of(set))
+        .filter(|own| own.len() > 1)
+    {
+        let tags = distinct(own.iter().flat_map(|k| sides[*k as usize].tags.iter().copied()));
+        let bends = bends(mesh, &Surface::new(mesh, &tags)?);
+        own.iter().for_each(|k| sides[*k as usize].bends.clone_from(&bends));
     }
     Ok(())
 }

@@ -9,6 +9,7 @@ use crate::scene::{Friction, Load, Scene};
 use crate::settings::Settings;
 use crate::tolerances::NO_LOAD;
 use signorini_fem_mesh::vec3::{moved, norm, sub};
+use signorini_qp::vector::dot;
 use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti::internal::Dependency;
 use signorini_tfeti::{FreeMotion, LoadResponse, RowWeights, Tfeti, TfetiBuilder, TfetiError, TiedRows};
@@ -156,14 +157,15 @@ impl Model {
         .collect()
     }
 
-    /// A rigid motion at the nodes.
-    pub(crate) fn nodal_motion(&self, motion: &FreeMotion) -> Vec<f64> {
-        let mut torn = vec![0.0; self.tfeti.torn_dim()];
-        for (subdomain, amplitudes) in motion.amplitudes.chunks_exact(6).enumerate() {
-            let own = &mut torn[self.tfeti.torn_range(subdomain)];
-            self.tfeti.kernel(subdomain).add_motion(1.0, amplitudes, own);
-        }
-        self.tfeti.nodal_mean(&torn)
+    /// A rigid motion at a node.
+    pub(crate) fn moved_by(&self, motion: &FreeMotion, node: u32) -> [f64; 3] {
+        let copies = self.discrete.decomposition.copies(node as usize);
+        copies.first().map_or([0.0; 3], |copy| {
+            let subdomain = copy.subdomain as usize;
+            let amplitudes = &motion.amplitudes[6 * subdomain..6 * (subdomain + 1)];
+            let modes = self.tfeti.kernel(subdomain).node_modes(copy.local as usize);
+            modes.map(|row| dot(&row, amplitudes))
+        })
     }
 
     /// The rigid motions that supports leave to the bodies.

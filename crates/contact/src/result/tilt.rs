@@ -14,6 +14,7 @@ use crate::tolerances::{HELD_BY_TILT, ROUNDING, TILT_MATTERS};
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 use signorini_fem_mesh::{Surface, TetMesh};
 use signorini_qp::vector;
+use signorini_tfeti::FreeMotion;
 
 const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
@@ -71,16 +72,15 @@ pub(super) fn held_by_tilt(
         if motions.is_empty() || blurred.iter().all(|(.., blur)| blur.trace() <= ROUNDING) {
             continue;
         }
-        let moved: Vec<Vec<f64>> = motions.iter().map(|m| model.nodal_motion(m)).collect();
         let count = motions.len();
         // what normals block of the motions, less what facets blur, and what normal forces do along them
         let (mut blocked, mut work) = (DMatrix::zeros(count, count), DVector::zeros(count));
         for (point, state, blur) in blurred {
-            let way = |motion: &Vec<f64>| {
-                let along = |node: u32, d: &[f64; 3]| vector::dot(&motion[3 * node as usize..][..3], d);
+            let way = |motion: &&FreeMotion| {
+                let along = |node: u32, d: &[f64; 3]| vector::dot(&model.moved_by(motion, node), d);
                 Vector3::from(AXES.map(|axis| point.contact.sides.way(&axis, along)))
             };
-            let ways: Vec<Vector3<f64>> = moved.iter().map(way).collect();
+            let ways: Vec<Vector3<f64>> = motions.iter().map(way).collect();
             let normal = Vector3::from(state.normal);
             for i in 0..count {
                 work[i] += state.normal_force * normal.dot(&ways[i]);

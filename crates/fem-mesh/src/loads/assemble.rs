@@ -61,6 +61,12 @@ pub(super) fn expect_decomposition(mesh: &TetMesh, decomposition: &Decomposition
     Ok(())
 }
 
+/// A region that a mesh does not have, and those that it has.
+pub(super) fn missing_region(mesh: &TetMesh, region: Option<u32>) -> Option<(u32, Vec<u32>)> {
+    let (region, known) = (region?, mesh.distinct_regions());
+    (!known.contains(&region)).then_some((region, known))
+}
+
 fn tagged_area(mesh: &TetMesh, tag: FacetTag) -> f64 {
     let tagged = mesh.facets().iter().enumerate().filter(|(_, f)| f.tag == tag);
     if mesh.order() == 2 {
@@ -175,8 +181,7 @@ fn body(
     region: Option<u32>,
     density: Density<'_>,
 ) -> Result<Vec<Vec<f64>>, LoadError> {
-    let known = mesh.distinct_regions();
-    if let Some(region) = region.filter(|region| !known.contains(region)) {
+    if let Some((region, known)) = missing_region(mesh, region) {
         return Err(LoadError::UnknownRegion { region, known });
     }
     let is_inside = |element: u32| region.is_none_or(|region| mesh.regions()[element as usize] == region);

@@ -7,7 +7,7 @@ use crate::element::{Element, QuadraticElement};
 use crate::material::{Eigenstrain, Materials};
 use crate::mesh::TetMesh;
 
-use super::assemble::{accumulate, expect_decomposition};
+use super::assemble::{accumulate, expect_decomposition, missing_region};
 use super::density::LoadError;
 
 /// Turns an eigenstrain into nodal forces of the subdomains, as [`assemble_load`](crate::assemble_load) does with
@@ -61,8 +61,7 @@ fn check(mesh: &TetMesh, eigenstrain: &Eigenstrain) -> Result<(), LoadError> {
     if !strain.iter().all(|e| e.is_finite()) {
         return Err(LoadError::Eigenstrain { strain: *strain });
     }
-    let known = mesh.distinct_regions();
-    if let Some(region) = region.filter(|region| !known.contains(region)) {
+    if let Some((region, known)) = missing_region(mesh, *region) {
         return Err(LoadError::StrainRegion { region, known });
     }
     let (given, nodes) = (factors.len(), mesh.points().len());
