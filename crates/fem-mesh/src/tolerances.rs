@@ -5,8 +5,10 @@
 /// Six times the volume over the cube of the longest edge, below which a tetrahedron is flat. Coordinates carry about
 /// 16 digits, so less than this is mostly rounding.
 pub(crate) const FLAT_TET: f64 = 1e-10;
-/// Distance over the diagonal of the mesh below which two nodes are one.
+/// Distance over the diagonal of the mesh below which two nodes are one, and over the last digit of its largest
+/// coordinate.
 pub(crate) const COINCIDENT: f64 = 1e-12;
+pub(crate) const LAST_DIGIT: f64 = 4.0 * f64::EPSILON;
 /// Sine of the angle between normal and x axis below which the y axis is projected for the first tangent.
 pub(crate) const NEARLY_PARALLEL: f64 = 0.01;
 /// Length of the mean normal of the triangles around a node, over one for a plane, below which it has no normal.

@@ -46,7 +46,8 @@ impl Reader {
             .split(|b| *b == b'\n')
             .enumerate()
             .map(|(index, line)| (index + 1, String::from_utf8_lossy(line)))
-            .filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with("**"));
+            .filter(|(_, line)| !line.trim().is_empty() && !line.trim_start().starts_with("**"))
+            .peekable();
         while let Some((line, text)) = lines.next() {
             let location = Location {
                 file: file.clone(),
@@ -70,12 +71,18 @@ impl Reader {
                 continue;
             }
             let mut keyword = text.to_owned();
+            // behind a comma too many: parameters do not begin as numbers do
+            let is_number = |field: &str| {
+                field
+                    .trim_start()
+                    .starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+            };
+            let is_data = |line: &str| line.split(',').any(is_number);
             while keyword.ends_with(',') {
-                match lines.next() {
-                    Some((_, more)) if !more.trim_start().starts_with('*') => {
-                        keyword.push_str(more.trim());
-                    }
-                    _ => return Err(Word::new(&location, keyword).fault(Fault::NotContinued)),
+                match lines.next_if(|(_, more)| !more.trim_start().starts_with('*') && !is_data(more)) {
+                    Some((_, more)) => keyword.push_str(more.trim()),
+                    None if lines.peek().is_some_and(|(_, more)| is_data(more)) => keyword.truncate(keyword.len() - 1),
+                    None => return Err(Word::new(&location, keyword).fault(Fault::NotContinued)),
                 }
             }
             let card = Card::new(&location, &keyword);

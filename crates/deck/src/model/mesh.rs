@@ -124,13 +124,15 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
     while let Some(line) = lines.next() {
         let mut numbers = Vec::with_capacity(1 + nodes);
         let mut next = Some(line);
-        // a line that ends with a comma goes on in the next one
+        // a line that ends with a comma goes on in the next one, and one whose nodes are all there with that
         while let Some(line) = next {
             let fields = line.at_most(1 + nodes - numbers.len(), wanted)?;
             for at in 0..fields.len() {
                 numbers.push(line.label(&fields, at, LABEL)?);
             }
-            let open = numbers.len() < 1 + nodes && line.text.ends_with(',');
+            let missing = 1 + nodes - numbers.len();
+            let completes = |next: &Word| next.fields().len() == missing;
+            let open = missing > 0 && (line.text.ends_with(',') || lines.clone().next().is_some_and(completes));
             next = if open { lines.next() } else { None };
         }
         let (label, numbers) = match numbers.split_first() {

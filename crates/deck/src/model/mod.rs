@@ -24,6 +24,7 @@ use crate::lexer::Named;
 use signorini_fem_mesh::mesh::CellShape;
 use signorini_fem_mesh::{History, Hooke};
 use std::borrow::Cow;
+use std::collections::BTreeSet;
 
 pub(crate) use coupling::{Coupling, CouplingLaw};
 pub(crate) use equation::{Equation, Flat, Term};
@@ -262,6 +263,18 @@ impl Model {
     pub(crate) fn material(&self, section: &Section) -> Result<&Material, DeckError> {
         let Named { name, word } = &section.material;
         Ok(self.materials.at(self.materials.find("material", name, word)?))
+    }
+
+    /// The names of the surfaces that cards use.
+    pub(crate) fn used_surfaces(&self) -> BTreeSet<&str> {
+        let pairs = self.pairs.iter().flat_map(Pair::surfaces);
+        let coupled = self.couplings.iter().map(|coupling| &coupling.surface.name[..]);
+        let loaded = self.steps.iter().flat_map(|step| &step.distributed.lines);
+        let loaded = loaded.filter_map(|load| match (&load.kind, &load.target) {
+            (DistributedKind::Surface | DistributedKind::Traction(_), Target::Name(name)) => Some(&name[..]),
+            _ => None,
+        });
+        pairs.chain(coupled).chain(loaded).collect()
     }
 }
 

@@ -1,12 +1,11 @@
 //! `*ORIENTATION`: axes of materials.
 
-use signorini_fem_mesh::vec3::{Vec3, add, cross, norm, scale};
+use signorini_fem_mesh::vec3::{Vec3, add, scale};
 
-use super::transform::{rectangular, two_points};
+use super::transform::{in_line, rectangular, two_points};
 use super::{MaterialAxes, Model, Section};
 use crate::error::{DeckError, Word};
 use crate::lexer::Card;
-use crate::tolerances::ROUNDING;
 
 /// Axes that sections can have.
 #[derive(Debug, Clone)]
@@ -27,13 +26,11 @@ pub(super) fn orientation(model: &mut Model, card: &Card) -> Result<(), DeckErro
         number of an axis and an angle in degrees by which all turn about it";
     card.lines_at_most(2, wanted)?;
     let line = card.lines.first().ok_or_else(|| card.word.expected(wanted))?;
-    let [a, b] = two_points(line, wanted)?;
-    let size = norm(a) * norm(b);
-    let in_line = norm(cross(a, b)) <= ROUNDING * size || !size.is_finite();
-    if in_line && !cylindrical {
+    let points = two_points(line, wanted)?;
+    if in_line(points) && !cylindrical {
         return Err(line.cannot("these points give no axes; they and the origin must not be in line"));
     }
-    let mut axes = rectangular([a, b]);
+    let mut axes = rectangular(points);
     if let Some(line) = card.lines.get(1) {
         let fields = line.at_most(2, wanted)?;
         let axis = line.label(&fields, 0, wanted)?;

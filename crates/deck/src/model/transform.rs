@@ -5,6 +5,7 @@ use signorini_fem_mesh::vec3::{Vec3, cross, norm, sub, unit};
 use super::Model;
 use crate::error::{DeckError, Word};
 use crate::lexer::{Card, Named};
+use crate::tolerances::ROUNDING;
 
 /// Axes of the nodes of a set.
 #[derive(Debug, Clone)]
@@ -31,6 +32,12 @@ pub(super) fn two_points(line: &Word, wanted: &'static str) -> Result<[Vec3; 2],
     Ok(points)
 }
 
+/// Whether the points of rectangular axes and the origin are in line, as far as digits tell.
+pub(super) fn in_line([a, b]: [Vec3; 2]) -> bool {
+    let size = norm(a) * norm(b);
+    norm(cross(a, b)) <= ROUNDING * size || !size.is_finite()
+}
+
 /// Unit vectors along axes: the first goes through the first point, the second one lies in the plane of both.
 pub(crate) fn rectangular([a, b]: [Vec3; 2]) -> [Vec3; 3] {
     let (first, third) = (unit(a), unit(cross(a, b)));
@@ -45,12 +52,12 @@ pub(super) fn transform(model: &mut Model, card: &Card) -> Result<(), DeckError>
     let line = card.only_line(wanted)?;
     let points = two_points(line, wanted)?;
     let [a, b] = points;
-    let size = if cylindrical {
-        norm(sub(b, a))
-    } else {
-        norm(cross(a, b))
+    let (long, size) = (norm(sub(b, a)), norm(a) + norm(b));
+    let none = match cylindrical {
+        true => long <= ROUNDING * size || !long.is_finite(),
+        false => in_line(points),
     };
-    if !(size > 0.0 && size.is_finite()) {
+    if none {
         return Err(line.cannot(
             "these points give no axes; with TYPE=C they must differ, else they and the origin must not be in line",
         ));

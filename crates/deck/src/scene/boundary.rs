@@ -30,6 +30,11 @@ impl Boundary {
         Self { faces, of_corners }
     }
 
+    /// That which is kept, made where it is first asked for.
+    pub(super) fn of<'a>(kept: &'a mut Option<Self>, raw: &Raw) -> &'a Self {
+        kept.get_or_insert_with(|| Self::new(raw))
+    }
+
     /// That with some corners.
     pub(super) fn of_corners(&self, corners: [u32; 3]) -> Option<(u32, u8)> {
         self.of_corners.get(&ascending(corners)).copied()

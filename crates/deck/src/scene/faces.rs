@@ -97,74 +97,26 @@ impl FaceTable {
         Ok(faces)
     }
 
-    /// Notes the faces of all surfaces, and gives the elastic ones surface by surface.
+    /// Notes the faces of all surfaces, and gives the elastic ones surface by surface. One inside the body that no card
+    /// uses (a cut of which forces are printed) is left out.
     pub(super) fn surfaces(&mut self, known: Known, ignored: &mut Vec<Ignored>) -> Result<Vec<Vec<u32>>, DeckError> {
         let mut out = Vec::new();
         let mut boundary = None;
-        for (index, (_, faces)) in (0..).zip(known.model.surfaces.iter()) {
-            let (mut all, mut rigid) = (Vec::new(), Vec::new());
-            if known.sections.is_across(index as usize) {
-                out.push(all);
-                self.rigid.push(rigid);
-                continue;
+        let used = known.model.used_surfaces();
+        for (index, (name, lines)) in (0..).zip(known.model.surfaces.iter()) {
+            let chosen = match known.sections.is_across(index as usize) {
+                true => Ok(Chosen::default()),
+                false => known.chosen(lines, &mut boundary, ignored),
+            };
+            let mut chosen = chosen?;
+            if !used.contains(name) && !chosen.is_outside(known.raw, &mut boundary) {
+                let why = "the surface has faces between two elements, and no card that is read uses it";
+                ignored.push(Ignored::new(&lines[0].word, why));
+                chosen = Chosen::default();
             }
-            if faces.iter().any(|faces| faces.side == Side::Nodes) {
-                let boundary = boundary.get_or_insert_with(|| Boundary::new(known.raw));
-                for (tet, number) in of_nodes(known, boundary, faces, ignored)? {
-                    all.extend(self.add(known.raw, (tet, number), index, &faces[0].word));
-                }
-                out.push(all);
-                self.rigid.push(rigid);
-                continue;
-            }
-            // the first line that names elements without their faces
-            let mut whole = None;
-            for faces in faces {
-                let word = &faces.word;
-                let (mut solids, mut flat) = (Vec::new(), Vec::new());
-                for element in known.sets.elements.find(&faces.target, word)? {
-                    match (known.raw.tets_of(element).is_empty(), known.bodies.of_element(element)) {
-                        (false, _) => solids.push(element),
-                        (true, None) => flat.push(element),
-                        (true, Some(body)) => {
-                            rigid.push(RigidFace::new(known.sets, (body, element), faces.side, word)?);
-                        }
-                    }
-                }
-                let chosen = match faces.side {
-                    Side::Face(number) => {
-                        let mut chosen = Vec::with_capacity(solids.len());
-                        for element in solids {
-                            chosen.extend(known.face_of(element, number, word)?);
-                        }
-                        chosen
-                    }
-                    _ if solids.is_empty() => Vec::new(),
-                    Side::Outside => {
-                        let boundary = boundary.get_or_insert_with(|| Boundary::new(known.raw));
-                        whole.get_or_insert(word);
-                        boundary.of_tets(solids.into_iter().flat_map(|e| known.raw.tets_of(e)))
-                    }
-                    Side::Facet { .. } | Side::Nodes => return Err(word.expected("faces S1 to S6 of solid elements")),
-                };
-                for face in chosen {
-                    all.extend(self.add(known.raw, face, index, word));
-                }
-                for element in flat {
-                    let boundary = boundary.get_or_insert_with(|| Boundary::new(known.raw));
-                    for face in of_flat(known, boundary, element, (faces.side, word))? {
-                        all.extend(self.add(known.raw, face, index, word));
-                    }
-                }
-                if !all.is_empty() && !rigid.is_empty() {
-                    return Err(word.cannot("the surface has rigid and elastic faces; make two surfaces of them"));
-                }
-            }
-            if let (Some(word), []) = (whole, &all[..]) {
-                return Err(word.cannot("none of these elements is at the boundary"));
-            }
-            out.push(all);
-            self.rigid.push(rigid);
+            let add = |(face, word): ((u32, u8), &Word)| self.add(known.raw, face, index, word);
+            out.push(chosen.faces.into_iter().filter_map(add).collect());
+            self.rigid.push(chosen.rigid);
         }
         Ok(out)
     }
@@ -234,15 +186,15 @@ impl FaceTable {
 
     /// The tags of each surface, ascending.
     pub(super) fn tags_of(&self, tags: &[FacetTag], model: &Model) -> Names<Vec<FacetTag>> {
-        let mut lists = vec![Vec::new(); model.surfaces.names().len()];
+        let mut lists = vec![Vec::new(); model.surfaces.len()];
         for (face, tag) in self.list.iter().zip(tags) {
             for &surface in &face.surfaces {
                 lists[surface as usize].push(*tag);
             }
         }
         let mut names = Names::default();
-        for (name, list) in model.surfaces.names().into_iter().zip(lists) {
-            names.add(name, distinct(list));
+        for ((name, _), list) in model.surfaces.iter().zip(lists) {
+            names.add(name.to_owned(), distinct(list));
         }
         names
     }
@@ -311,7 +263,85 @@ fn of_flat(
     })
 }
 
+/// The faces of a surface.
+#[derive(Default)]
+struct Chosen<'a> {
+    /// Of tetrahedra, with the words that name them.
+    faces: Vec<((u32, u8), &'a Word)>,
+    rigid: Vec<RigidFace>,
+}
+
+impl Chosen<'_> {
+    /// Whether all are on the boundary.
+    fn is_outside(&self, raw: &Raw, boundary: &mut Option<Boundary>) -> bool {
+        let is_outside = |((tet, number), _): &((u32, u8), &Word)| {
+            Boundary::of(boundary, raw)
+                .of_corners(raw.face(*tet, *number))
+                .is_some()
+        };
+        self.faces.iter().all(is_outside)
+    }
+}
+
 impl Known<'_> {
+    /// The faces that the lines of a surface name.
+    fn chosen<'a>(
+        self,
+        lines: &'a [Faces],
+        boundary: &mut Option<Boundary>,
+        ignored: &mut Vec<Ignored>,
+    ) -> Result<Chosen<'a>, DeckError> {
+        let mut chosen = Chosen::default();
+        if lines.iter().any(|line| line.side == Side::Nodes) {
+            let faces = of_nodes(self, Boundary::of(boundary, self.raw), lines, ignored)?;
+            chosen
+                .faces
+                .extend(faces.into_iter().map(|face| (face, &lines[0].word)));
+            return Ok(chosen);
+        }
+        // the first line that names elements without their faces
+        let mut whole = None;
+        for Faces { target, side, word } in lines {
+            let (mut solids, mut flat) = (Vec::new(), Vec::new());
+            for element in self.sets.elements.find(target, word)? {
+                match (self.raw.tets_of(element).is_empty(), self.bodies.of_element(element)) {
+                    (false, _) => solids.push(element),
+                    (true, None) => flat.push(element),
+                    (true, Some(body)) => {
+                        (chosen.rigid).push(RigidFace::new(self.sets, (body, element), *side, word)?);
+                    }
+                }
+            }
+            match side {
+                Side::Face(number) => {
+                    for element in solids {
+                        let faces = self.face_of(element, *number, word)?;
+                        chosen.faces.extend(faces.map(|face| (face, word)));
+                    }
+                }
+                _ if solids.is_empty() => {}
+                Side::Outside => {
+                    whole.get_or_insert(word);
+                    let faces =
+                        Boundary::of(boundary, self.raw).of_tets(solids.into_iter().flat_map(|e| self.raw.tets_of(e)));
+                    chosen.faces.extend(faces.into_iter().map(|face| (face, word)));
+                }
+                Side::Facet { .. } | Side::Nodes => return Err(word.expected("faces S1 to S6 of solid elements")),
+            }
+            for element in flat {
+                let faces = of_flat(self, Boundary::of(boundary, self.raw), element, (*side, word))?;
+                chosen.faces.extend(faces.into_iter().map(|face| (face, word)));
+            }
+            if !chosen.faces.is_empty() && !chosen.rigid.is_empty() {
+                return Err(word.cannot("the surface has rigid and elastic faces; make two surfaces of them"));
+            }
+        }
+        match (whole, chosen.faces.is_empty()) {
+            (Some(word), true) => Err(word.cannot("none of these elements is at the boundary")),
+            _ => Ok(chosen),
+        }
+    }
+
     /// The faces of tetrahedra that a face of an elastic element, by its position, is.
     fn face_of(&self, element: u32, number: u8, word: &Word) -> Result<impl Iterator<Item = (u32, u8)>, DeckError> {
         let mut faces = self.raw.faces_of(element, number).peekable();

@@ -34,6 +34,8 @@ fn the_way_of_writing_does_not_matter() {
         "*element ,\n elset = all ,\n** no\ntype=c3d4",
     ));
     same(&TWO.replace(" 5, 10, 20, 30, 40", "5,10,20,\n30,40"));
+    same(&TWO.replace(" 5, 10, 20, 30, 40", "5,10,20\n30,40"));
+    same(&TWO.replace("*NODE", "*NODE,").replace("=ALL", "=ALL,"));
     same(&TWO.replace("0., 0., 0.", ",").replace("1., 0., 0.", "1.D0,"));
     same(&format!("\u{feff}*HEADING\nany text, with = signs\nand more\n{TWO}"));
     let latin = TWO.replace("*NODE", "** caf\u{e9}\n*NODE").into_bytes();

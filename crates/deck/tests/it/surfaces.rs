@@ -54,3 +54,24 @@ fn surfaces_of_triangles() {
     let loaded = in_step("*DLOAD\nLID, P1, 1.\n");
     refused(&loaded, "LID, P1, 1.", "LID", "not elastic");
 }
+
+/// Cuts through a body, of which forces are printed elsewhere, are left out where no card uses them.
+#[test]
+fn surfaces_that_nothing_uses_may_be_inside() {
+    let inside = "*SURFACE, NAME=CUT\n1, S2\n*SURFACE, NAME=SKIN\nALL\n";
+    let numbers = (1..=4).map(|number| inside.replace("S2", &format!("S{number}")));
+    let cut = numbers.filter(|text| read(&cube(text)).expect("deck").surface("CUT").expect("one").is_empty());
+    let cut: Vec<String> = cut.collect();
+    assert!(!cut.is_empty());
+    for text in cut {
+        let deck = read(&cube(&text)).expect("deck");
+        assert!(!deck.surface("SKIN").expect("a surface").is_empty());
+        let [ignored] = deck.ignored() else {
+            panic!("{:?}", deck.ignored());
+        };
+        assert!(ignored.why.contains("no card that is read uses it"), "{ignored}");
+        let used = format!("{text}{}", in_step("*DSLOAD\nCUT, P, 1.\n"));
+        let error = read(&cube(&used)).expect_err("inside").to_string();
+        assert!(error.contains("inside the body"), "{error}");
+    }
+}

@@ -59,6 +59,7 @@ fn axes_that_cannot_be_had() {
     for (head, line) in [
         (c, "0., 1., 0., 0., 1., 0."),
         ("*TRANSFORM, NSET=N6\n", "0., 1., 0., 0., 2., 0."),
+        ("*TRANSFORM, NSET=N6\n", "0.1, 0.2, 0.3, 0.7, 1.4, 2.1"),
     ] {
         behind(&format!("{head}{line}\n"), line, line, "give no axes");
     }

@@ -131,11 +131,12 @@ pub fn energy_of_difference(
     let (u, v) = (nodal_vectors(mesh, u)?, nodal_vectors(other, v)?);
     let locator = Locator::new(other);
     Ok(integral(mesh, |tet| {
-        let (piece, law) = (Piece::new(mesh, tet, &u), laws[tet]);
+        let law = laws[tet];
+        let piece = Piece::new(mesh, tet, &u).with_law(law);
         let (locator, v) = (&locator, &v);
         move |l: &[f64; 4]| {
             let strain = match locator.locate(piece.place(l)) {
-                Some((place, there)) => Piece::new(other, place, v).strain(&there),
+                Some((place, there)) => Piece::new(other, place, v).with_law(law).strain(&there),
                 None => [0.0; 6],
             };
             let own = piece.strain(l);

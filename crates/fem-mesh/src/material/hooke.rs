@@ -34,6 +34,7 @@ errors! {
 pub struct Hooke {
     voigt: [[f64; 6]; 6],
     largest: f64,
+    nearly_incompressible: bool,
 }
 
 impl Hooke {
@@ -82,7 +83,7 @@ impl Hooke {
     /// Whether Poisson's ratio is above 0.4: quadratic elements then take the mean of the volume strain of each
     /// element.
     pub fn is_nearly_incompressible(&self) -> bool {
-        self.incompressible().is_some()
+        self.nearly_incompressible
     }
 
     /// Poisson's ratio where it is above 0.4 by more than rounding: a ratio of 0.4 is not, in whatever unit of stress.
@@ -134,7 +135,13 @@ impl Hooke {
         if !(largest > 0.0 && smallest > ELLIPTICITY * largest) {
             return Err(HookeError::NotElliptic { smallest, largest });
         }
-        Ok(Self { voigt, largest })
+        let mut law = Self {
+            voigt,
+            largest,
+            nearly_incompressible: false,
+        };
+        law.nearly_incompressible = law.incompressible().is_some();
+        Ok(law)
     }
 
     /// The law of the same material with these unit vectors, at right angles, in place of the axes x, y and z.

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use rayon::prelude::*;
 
 use crate::tables::DisjointSets;
-use crate::tolerances::{COINCIDENT, FLAT_TET};
+use crate::tolerances::{COINCIDENT, FLAT_TET, LAST_DIGIT};
 use crate::vec3::{self, Vec3};
 
 use super::error::MeshError;
@@ -135,7 +135,9 @@ pub(super) fn no_coincident(
 /// Pairs of nodes that are no farther apart than `distance`, or that coincide, through a hash of grid cells.
 pub(super) fn close_pairs(points: &[Vec3], distance: f64) -> Vec<(usize, usize)> {
     let (low, high) = extent(points.iter().copied());
-    let tolerance = distance.max(COINCIDENT * vec3::norm(vec3::sub(high, low)));
+    let farthest = low.iter().chain(&high).fold(0.0_f64, |far, x| far.max(x.abs()));
+    let same = (COINCIDENT * vec3::norm(vec3::sub(high, low))).max(LAST_DIGIT * farthest);
+    let tolerance = distance.max(same);
     let cell = 4.0 * tolerance;
     if cell <= 0.0 || !cell.is_finite() {
         return Vec::new();

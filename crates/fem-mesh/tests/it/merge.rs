@@ -36,3 +36,16 @@ fn parts_meshed_apart_become_one_body() {
     assert_eq!(merge_nodes(&points, &mut wrong, &mut [], 0.0), 0);
     assert_eq!(wrong[0][3], 99);
 }
+
+/// Far from the origin the same place has other last digits: one or two of them make no other node.
+#[test]
+fn nodes_far_from_the_origin_coincide() {
+    for offset in [0.0, 1e4, 1e6] {
+        let brick = Brick::new([0.3; 3], [3, 3, 3]).build().unwrap();
+        let lower = brick.map_points(|p| p.map(|x| x + offset)).unwrap();
+        let beside = brick.map_points(|[x, y, z]| [x + 0.1 + offset + 0.2, y + offset, z + offset]);
+        let both = lower.append(&beside.unwrap()).unwrap();
+        let merged = merge_nodes(both.points(), &mut both.tets().to_vec(), &mut [], 0.0);
+        assert_eq!(merged, 16, "{offset}");
+    }
+}

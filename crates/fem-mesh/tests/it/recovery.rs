@@ -244,6 +244,21 @@ fn a_curved_mesh_does_not_differ_from_itself() {
     assert!(zero < 1e-20 * own, "{zero:e} {own:e}");
 }
 
+/// Of nearly incompressible quadratic elements strains are those of the solver.
+#[test]
+fn the_difference_to_zero_is_the_strain_energy() {
+    let mesh = Brick::new([1.0; 3], [2; 3]).build().expect("brick");
+    let mesh = mesh.raise_order().expect("quadratic");
+    let field = |p: &[f64; 3]| [p[0] * p[1], p[2] * p[2], p[0] * p[0]];
+    let u: Vec<f64> = mesh.points().iter().flat_map(field).collect();
+    for poisson in [0.3, 0.45, 0.499] {
+        let law = Materials::uniform(Hooke::isotropic(1e3, poisson).expect("Hooke"));
+        let own = signorini_fem_mesh::fields::strain_energy(&mesh, &law, &u).expect("energy");
+        let all = energy_of_difference(&mesh, &law, &u, &mesh, &vec![0.0; u.len()]).expect("energy");
+        assert!((all - own).abs() < 1e-12 * own, "{poisson}: {all} {own}");
+    }
+}
+
 /// Along all edges wanted lengths grow by at most half the distance; the error that they predict is the target; where
 /// the error is, tetrahedra are smaller.
 #[test]

@@ -1,6 +1,6 @@
 //! Mesh, sets, materials, contact and rigid bodies.
 
-use super::{behind, refused};
+use super::{behind, in_step, refused};
 use crate::write::{cube, read};
 
 #[test]
@@ -130,7 +130,13 @@ fn sets_and_surfaces() {
         "element 1 has no face 5",
     );
     behind("*SURFACE, NAME=A\nPART, S1\n", "PART, S1", "PART", "there are: ALL");
-    behind("*SURFACE, NAME=A\nALL, S1\n", "ALL, S1", "ALL", "inside the body");
+    let loaded = in_step("*DSLOAD\nA, P, 1.\n");
+    behind(
+        &format!("*SURFACE, NAME=A\nALL, S1\n{loaded}"),
+        "ALL, S1",
+        "ALL",
+        "inside the body",
+    );
     behind("*SURFACE, NAME=A\n", "*SURFACE, NAME=A", "*SURFACE", "no faces");
 }
 
