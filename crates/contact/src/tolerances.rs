@@ -298,7 +298,7 @@ pub(crate) const INSIDE: f64 = 1e-18;
 /// What forming F and a step with its inverse may cost, in products, to be tried as soon as predictions run in circles.
 pub(crate) const AT_ONCE: usize = 3000;
 /// Active sets without progress from which on predictions run in circles, and from which on, with that inverse,
-/// interior points look for another start.
+/// interior points look for another start: at once where these cost few products.
 pub(crate) const CIRCLES: usize = 12;
 pub(crate) const BEFORE_INSIDE: usize = 3;
 /// Products of a step with that inverse after which it does not help: a set takes two or three.
@@ -321,6 +321,9 @@ pub(crate) const SHARED_ROWS: f64 = 0.5;
 
 /// Differences of gaps around a node, over the root of its area, up to which sides are flush there.
 pub(crate) const FLUSH: f64 = 1e-6;
+
+/// Part of the way by which sides have closed from which on an overlap of nodes of quadratic facets is told.
+pub(crate) const NARROW: f64 = 0.1;
 
 /// Part of the largest displacement from which on an overlap at nodes that contacts hand on is told.
 pub(crate) const EDGE_OVERLAP: f64 = 0.01;

@@ -57,6 +57,11 @@ signorini_fem_mesh::errors! {
             of facets that stand for a curve: smooth sides would slide there, and the finer the mesh the less they hold; \
             support the body against it, give it friction that suffices, or give one side as an Obstacle to see what \
             holds", 100.0 * share;
+        NarrowContact { step: usize, contact: usize, node: u32, place: [f64; 3], overlap: f64, way: f64 } =
+            "step {step}: at node {node}, {}, the sides of contact {contact} are about {overlap:.3e} inside each other, beside \
+            a way of {way:.3e}: quadratic facets feel contact in the mean over the facets around a node, so \
+            that of an edge, or of a place narrower than they are, forces come late and too small; take smaller facets \
+            there, or linear elements", told(place);
         LargeGap { contact: usize, node: u32, place: [f64; 3], gap: f64, extent: f64 } =
             "contact {contact} begins {:.3e} {} its obstacle even at the nearest node, {node} at {}, and the body is \
             {extent:.3e} long; look at the unit of the gap and at the places of the bodies",
@@ -126,6 +131,9 @@ impl Warning {
             | Self::EdgeOverlap {
                 step, contact, node, ..
             }
+            | Self::NarrowContact {
+                step, contact, node, ..
+            }
             | Self::TurnedNormal {
                 step, contact, node, ..
             } => {
@@ -153,6 +161,7 @@ impl Warning {
             Self::LargeStrain { strain, .. } => format!("strain of {:.1} %", 100.0 * strain),
             Self::LongSlip { slip, .. } => format!("slip of {slip:.1e}"),
             Self::EdgeOverlap { overlap, .. } => format!("overlap of {overlap:.1e}"),
+            Self::NarrowContact { overlap, .. } => format!("overlap at an edge of {overlap:.1e}"),
             Self::HeldByTilt { share, .. } => format!("{:.0} % held by the tilt of facets", 100.0 * share),
             Self::TurnedNormal { turn, .. } => format!("normal turned by {turn:.1} degrees"),
             _ => return None,

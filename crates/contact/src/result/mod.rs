@@ -9,6 +9,7 @@
 
 mod certificate;
 mod certify;
+mod narrow;
 mod points;
 mod reactions;
 mod recovered;

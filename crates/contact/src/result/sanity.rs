@@ -2,6 +2,7 @@
 //!
 //! Looked at when it is asked for, and only for the kinds that have not been met.
 
+use super::narrow::{View, narrow_contact, views};
 use super::points::ContactState;
 use super::recovered::Recovered;
 use super::tilt::{held_by_tilt, spreads};
@@ -18,6 +19,7 @@ use nalgebra::{Matrix3, Vector3};
 use signorini_fem_mesh::recovery::DiscretisationError;
 use signorini_fem_mesh::vec3::centroid;
 use signorini_fem_mesh::{Element, TetMesh, fields};
+use std::cell::LazyCell;
 use std::collections::HashMap;
 
 /// Lengths of a mesh that results are compared with.
@@ -32,6 +34,8 @@ pub(crate) struct Lengths {
     inertia: Vec<(Vector3<f64>, Matrix3<f64>)>,
     /// What facets make of normals at the nodes of each contact surface.
     spreads: Vec<Vec<Matrix3<f64>>>,
+    /// What of the gaps around it each point of quadratic facets sees.
+    views: Vec<View>,
 }
 
 impl Lengths {
@@ -61,6 +65,7 @@ impl Lengths {
             thinnest: 1.0 / steepest,
             edges: edges.collect(),
             spreads: spreads(model),
+            views: views(model),
         }
     }
 }
@@ -94,30 +99,37 @@ pub(crate) fn warnings(
 ) -> Vec<Warning> {
     let step = problem.index;
     let mesh = &model.scene.mesh;
-    let u = model.tfeti.nodal_mean(&recovered.torn);
+    let u = LazyCell::new(|| model.tfeti.nodal_mean(&recovered.torn));
     let mut out = Vec::new();
-    let is_new = |kind: fn(&Warning) -> bool| !known.iter().any(|w| kind(w.plain()));
-    if is_new(|w| matches!(w, Warning::LargeDisplacement { .. })) {
-        out.extend(large_displacement(mesh, lengths, &u, step));
-    }
-    if is_new(|w| matches!(w, Warning::LargeRotation { .. })) {
-        out.extend(large_rotation(mesh, lengths, &u, step));
-    }
-    if is_new(|w| matches!(w, Warning::LargeStrain { .. })) {
-        out.extend(large_strain(mesh, lengths, &u, step));
-    }
-    if is_new(|w| matches!(w, Warning::LongSlip { .. })) {
-        out.extend(long_slip(model, lengths, recovered, step));
-    }
-    if is_new(|w| matches!(w, Warning::EdgeOverlap { .. })) {
-        out.extend(edge_overlap(model, recovered, &u, step));
-    }
-    if is_new(|w| matches!(w, Warning::TurnedNormal { .. })) {
-        out.extend(turned_normal(model, recovered, &u, step));
-    }
-    if is_new(|w| matches!(w, Warning::HeldByTilt { .. })) {
-        out.extend(held_by_tilt(model, &lengths.spreads, problem, recovered, step));
-    }
+    let mut look = |kind: fn(&Warning) -> bool, find: &dyn Fn() -> Option<Warning>| {
+        if !known.iter().any(|w| kind(w.plain())) {
+            out.extend(find());
+        }
+    };
+    look(|w| matches!(w, Warning::LargeDisplacement { .. }), &|| {
+        large_displacement(mesh, lengths, &u, step)
+    });
+    look(|w| matches!(w, Warning::LargeRotation { .. }), &|| {
+        large_rotation(mesh, lengths, &u, step)
+    });
+    look(|w| matches!(w, Warning::LargeStrain { .. }), &|| {
+        large_strain(mesh, lengths, &u, step)
+    });
+    look(|w| matches!(w, Warning::LongSlip { .. }), &|| {
+        long_slip(model, lengths, recovered, step)
+    });
+    look(|w| matches!(w, Warning::EdgeOverlap { .. }), &|| {
+        edge_overlap(model, recovered, &u, step)
+    });
+    look(|w| matches!(w, Warning::TurnedNormal { .. }), &|| {
+        turned_normal(model, recovered, &u, step)
+    });
+    look(|w| matches!(w, Warning::NarrowContact { .. }), &|| {
+        narrow_contact(model, &lengths.views, (recovered, &u), step)
+    });
+    look(|w| matches!(w, Warning::HeldByTilt { .. }), &|| {
+        held_by_tilt(model, &lengths.spreads, problem, recovered, step)
+    });
     out
 }
 

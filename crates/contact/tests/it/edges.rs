@@ -389,3 +389,44 @@ fn a_wall_pushes_a_rough_edge_along_a_floor() {
         }
     }
 }
+
+/// A block whose lower side is inclined by 0.09 comes down on its edge. Quadratic facets feel the floor late, and say
+/// so, with an overlap near the one there is: that of the edge but for what the block gives way. Linear ones do not.
+#[test]
+fn quadratic_facets_tell_that_an_edge_is_inside() {
+    let come_down = |order: usize, slope: f64| {
+        let block = block([12.0, 6.0, 3.0], [8, 4, 2]).map_points(|[x, y, z]| [x, y, z + slope * x]);
+        let block = block.expect("inclined");
+        let mesh = if order == 2 {
+            block.raise_order().expect("quadratic")
+        } else {
+            block
+        };
+        let down = Support::fixed(brick::Z_MAX).with_motion([0.0, 0.0, -0.08], ramp());
+        let scene = Scene::new(mesh, steel())
+            .with_support(down)
+            .with_contact(Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0, 0.0, 1.0]))
+            .with_analysis(Analysis::quasistatic(1.0, 1));
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        let result = simulation.step().expect("step");
+        assert!(result.report().status.converged());
+        let lowest = result
+            .displacement()
+            .into_iter()
+            .zip(simulation.scene().mesh().points())
+            .map(|(u, x)| u[2] + x[2]);
+        let deepest = -lowest.fold(f64::INFINITY, f64::min);
+        let narrow = result.warnings().into_iter().find_map(|warning| match warning.plain() {
+            Warning::NarrowContact { overlap, way, .. } => Some((*overlap, *way)),
+            _ => None,
+        });
+        println!("order {order}, slope {slope}: {deepest:.3e} inside, {narrow:?}");
+        (deepest, narrow)
+    };
+    assert_eq!(come_down(1, 0.0894).1, None);
+    assert_eq!(come_down(2, 0.0).1, None);
+    let (deepest, narrow) = come_down(2, 0.0894);
+    let (overlap, way) = narrow.expect("told");
+    assert!((0.5..2.0).contains(&(overlap / deepest)), "{overlap:e}, {deepest:e}");
+    assert!(overlap > 0.1 * way && way <= 0.09);
+}
