@@ -12,13 +12,15 @@ use crate::error::ContactError;
 use crate::names::Names;
 use crate::part::Part;
 use signorini_fem_mesh::{Decomposition, History, Materials, TetMesh};
+use std::sync::Arc;
 
 /// What is to be simulated: mesh, materials, supports, loads, contacts, partition and times.
 /// [`Settings`](crate::Settings) says how.
 #[derive(Debug, Clone)]
 #[must_use]
 pub struct Scene {
-    pub(crate) mesh: TetMesh,
+    /// Shared with its copies.
+    pub(crate) mesh: Arc<TetMesh>,
     pub(crate) materials: Materials,
     pub(crate) supports: Vec<Support>,
     pub(crate) springs: Vec<Spring>,
@@ -40,7 +42,7 @@ impl Scene {
         let constant = |(factor, strain)| Load::eigenstrain(strain).with_history(History::constant(factor));
         let loads = materials.take_eigenstrains().into_iter().map(constant).collect();
         Self {
-            mesh,
+            mesh: Arc::new(mesh),
             materials,
             supports: Vec::new(),
             springs: Vec::new(),

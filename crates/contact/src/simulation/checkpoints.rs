@@ -158,7 +158,8 @@ fn stored(folder: &Path) -> Result<Vec<(usize, PathBuf)>, ContactError> {
         let number = name
             .to_str()
             .and_then(|n| n.strip_prefix("step-")?.strip_suffix(".state"));
-        if let Some(step) = number.and_then(|n| n.parse().ok()) {
+        let digits = number.filter(|n| n.bytes().all(|b| b.is_ascii_digit()));
+        if let Some(step) = digits.and_then(|n| n.parse().ok()) {
             found.push((step, folder.join(&name)));
         }
     }

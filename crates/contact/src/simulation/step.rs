@@ -103,8 +103,7 @@ impl Simulation {
         let moves = effects.history && (effects.motion || effects.moving_obstacle);
         let loose = self.model.loose_motions()?;
         let settles = falls_back && state.step() == 0 && moves && !loose.is_empty();
-        let smooth = by_tolerance && falls_back && effects.friction == FrictionKind::None;
-        let balanced = smooth && !loose.is_empty() && self.problem.is_balanced(loose);
+        let balanced = by_tolerance && falls_back && !loose.is_empty() && self.problem.is_balanced(loose);
         let starts = match (two_starts, falls_back) {
             (false, _) if settles => &[(line, Attempt::First), (line, Attempt::Settled)][..],
             (false, _) => &[(line, Attempt::Whole)],
@@ -166,8 +165,11 @@ impl Simulation {
     ) -> Result<(StepReport, Recovered), ContactError> {
         let mut sets_out = tried.status.converged();
         let mut report = tried;
-        // mostly bodies that stood apart still do
-        if balanced && !sets_out && self.stood_apart(state) {
+        // friction may lock bodies that were pressed
+        let locks = self.model.plan.effects.friction != FrictionKind::None;
+        balanced &= !locks || told.is_none();
+        // mostly bodies that stood apart still do, and those whose forces fade get there
+        if balanced && !sets_out && (self.stood_apart(state) || !locks && self.fades(state, way)) {
             balanced = false;
             if let Some(apart) = self.apart(state, way, &mut report)? {
                 report.status = StepStatus::Converged;
@@ -175,34 +177,38 @@ impl Simulation {
             }
         }
         let mut recovered = std::mem::take(&mut self.spare);
-        for &(line, attempt) in starts {
-            self.spare = recovered;
-            self.controller = state.controller;
-            if !std::mem::take(&mut sets_out) {
-                self.start(state, way, line, attempt);
-                if attempt == Attempt::Settled {
-                    report = report.resumed(self.settle(state, way, line)?);
+        'starts: for &(line, attempt) in starts {
+            let brief = (balanced && attempt != Attempt::Rest).then_some(Attempt::Brief);
+            for attempt in brief.into_iter().chain([attempt]) {
+                self.spare = recovered;
+                self.controller = state.controller;
+                if !std::mem::take(&mut sets_out) {
+                    self.start(state, way, line, attempt);
+                    if attempt == Attempt::Settled {
+                        report = report.resumed(self.settle(state, way, line)?);
+                    }
                 }
-            }
-            let (next, found) = self.solve()?;
-            (report, recovered) = (report.resumed(next), found);
-            if !report.status.is_lost() {
-                break;
-            }
-            // friction that nearly locks bodies lets active sets run in circles where forces vanish, too
-            if let Some(told) = told
-                && let Some(left) = self.without_forces(state, told, &mut report)?
-            {
-                report.status = StepStatus::Converged;
-                return Ok((report, left));
-            }
-            if std::mem::take(&mut balanced) {
-                let (kept, lost) = (self.iterate.clone(), report.status);
-                if let Some(apart) = self.apart(state, way, &mut report)? {
+                let (next, found) = self.solve()?;
+                (report, recovered) = (report.resumed(next), found);
+                let goes_on = report.status.is_lost() || attempt == Attempt::Brief && !report.status.converged();
+                if !goes_on {
+                    break 'starts;
+                }
+                // friction that nearly locks bodies lets active sets run in circles where forces vanish, too
+                if let Some(told) = told
+                    && let Some(left) = self.without_forces(state, told, &mut report)?
+                {
                     report.status = StepStatus::Converged;
-                    return Ok((report, apart));
+                    return Ok((report, left));
                 }
-                (self.iterate, report.status) = (kept, lost);
+                if (!locks || attempt == Attempt::Brief) && std::mem::take(&mut balanced) {
+                    let (kept, lost) = (self.iterate.clone(), report.status);
+                    if let Some(apart) = self.apart(state, way, &mut report)? {
+                        report.status = StepStatus::Converged;
+                        return Ok((report, apart));
+                    }
+                    (self.iterate, report.status) = (kept, lost);
+                }
             }
         }
         Ok((report, recovered))

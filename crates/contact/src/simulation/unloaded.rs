@@ -131,7 +131,7 @@ impl Simulation {
 
     /// The result without contact forces, where loads do no work on what contact alone stops: bodies then stand apart,
     /// or touch without force, and active sets run in circles. Without friction there are no other forces if that is a
-    /// solution. `None` if it is none; the iterate is then lost.
+    /// solution, and with it none that anything presses. `None` if it is none; the iterate is then lost.
     pub(super) fn apart(
         &mut self,
         state: &State,
@@ -139,9 +139,10 @@ impl Simulation {
         report: &mut StepReport,
     ) -> Result<Option<Recovered>, ContactError> {
         self.start(state, way, false, Attempt::First);
-        let contact = self.model.tfeti.gluing().ranges().contact();
-        self.iterate.lambda[contact].fill(0.0);
-        self.iterate.known = false;
+        // where forces vanish, those of the last step leave errors that are large beside them
+        self.iterate.lambda.fill(0.0);
+        self.iterate.f_lambda = vec![0.0; self.iterate.lambda.len()];
+        self.iterate.known = true;
         let problem = Arc::make_mut(&mut self.problem);
         problem.open(&self.model);
         let solved = self.solve_once(self.settings.tolerance)?;
@@ -170,6 +171,14 @@ impl Simulation {
         let small = |row: usize| self.settings.tolerance * self.problem.rest(self.model.bodies.of_row(row));
         let force = |row: usize| state.lambda[0].get(row).copied().unwrap_or(0.0);
         self.model.points.iter().all(|p| -force(p.row) <= small(p.row))
+    }
+
+    /// Whether the normal forces are gone if they go on falling as they did in the last step.
+    pub(super) fn fades(&self, state: &State, way: &Way) -> bool {
+        let sum = |lambda: &Vec<f64>| -> Option<f64> { self.model.points.iter().map(|p| lambda.get(p.row)).sum() };
+        let [last, before] = state.lambda.each_ref().map(sum);
+        last.zip(before)
+            .is_some_and(|(last, before)| last + way.ratio() * (last - before) >= 0.0)
     }
 
     /// The points with contact forces of more than rounding.

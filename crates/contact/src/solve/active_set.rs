@@ -154,6 +154,7 @@ impl ActiveSetSolver {
         }
         report.status = match iterate.attempt {
             Attempt::Fallback => StepStatus::Stagnated,
+            Attempt::Brief => step_status(self.active_sets(task, iterate, (EASY, CIRCLES), &mut report)?),
             _ => step_status(self.active_sets_or_explicit(task, iterate, &mut report)?),
         };
         task.model.tfeti.check_processes()?;
@@ -162,9 +163,10 @@ impl ActiveSetSolver {
                 self.begin_again(iterate);
             }
             // another start comes before another method
-            return match iterate.attempt == Attempt::First && report.status.is_lost() {
-                true => self.stay(task, iterate, report),
-                false => self.fall_back(task, iterate, report),
+            return match iterate.attempt {
+                Attempt::Brief => self.stay(task, iterate, report),
+                Attempt::First if report.status.is_lost() => self.stay(task, iterate, report),
+                _ => self.fall_back(task, iterate, report),
             };
         }
         if iterate.alpha.is_empty() {
@@ -243,11 +245,17 @@ impl ActiveSetSolver {
                 self.begin_again(iterate);
             }
             if self.use_explicit(true, task, report) {
-                status = self.active_sets(task, iterate, (EXPLICIT_PRODUCTS, BEFORE_INSIDE), report)?;
+                let inside = |x: &[f64]| costs.map_or(0, |costs| costs.inside(carrying(x)));
+                let patience = if inside(&iterate.lambda) <= EASY {
+                    BEFORE_INSIDE
+                } else {
+                    CIRCLES
+                };
+                status = self.active_sets(task, iterate, (EXPLICIT_PRODUCTS, patience), report)?;
                 if is_open(status) {
                     let inside = self.begin_inside(task, iterate, report)?;
                     let inside = inside.filter(|_| !std::mem::replace(&mut iterate.offered, true));
-                    let patience = if inside.is_some() { BEFORE_INSIDE } else { usize::MAX };
+                    let patience = if inside.is_some() { patience } else { usize::MAX };
                     status = self.active_sets(task, iterate, (EXPLICIT_PRODUCTS, patience), report)?;
                     if is_open(status)
                         && let Some(inside) = inside

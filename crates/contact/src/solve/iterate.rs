@@ -46,6 +46,8 @@ pub(crate) struct Iterate {
 pub(crate) enum Attempt {
     /// What stands, where nothing has changed: nothing is solved, and the certificate tells.
     Rest,
+    /// By active sets as long as they make progress: that nothing touches is looked at before more is done.
+    Brief,
     /// By active sets alone: there is another start.
     First,
     /// From that start, or the only one, by active sets and then by the paper's method.

@@ -71,14 +71,22 @@ pub struct ExplicitCost {
     /// In memory at once.
     pub bytes: u64,
     solves: f64,
-    factors: f64,
+    /// Of a dense factor of a row.
+    factor: f64,
 }
 
 impl ExplicitCost {
     /// Of a step in which so many contact rows carry something.
     #[must_use]
     pub fn step(&self, carrying: usize) -> usize {
-        (self.solves + self.factors * (carrying as f64).powi(3)) as usize
+        (self.solves + EXPLICIT_SETS * self.factor * (carrying as f64).powi(3)) as usize
+    }
+
+    /// Of interior points there.
+    #[must_use]
+    pub fn inside(&self, carrying: usize) -> usize {
+        // with as many operations for the matrix
+        (2.0 * INTERIOR_FACTORS * self.factor * (carrying as f64).powi(3)) as usize
     }
 }
 
@@ -99,7 +107,7 @@ impl Tfeti {
             bytes,
             // of active sets, with three solves each
             solves: EXPLICIT_SETS * 3.0 * solve / product,
-            factors: (INTERIOR_FACTORS / 1.5 + EXPLICIT_SETS / 3.0) / product,
+            factor: 1.0 / (3.0 * product),
         })
     }
 
