@@ -362,7 +362,7 @@ pub(crate) const WEAKLY_PLACED: f64 = 1e-4;
 /// Products of the fall-back between two looks at the balance of bodies that friction does not seem to hold; what may
 /// be left after two of the imbalance before them to go on. Where other normal forces hold them 1e-4 of the loads is
 /// left after the first, where none do 0.01 to 0.7 in the end.
-pub(crate) const BALANCING: usize = 200;
+pub(crate) const BALANCING: usize = 100;
 pub(crate) const IMBALANCE_FALLS: f64 = 0.9;
 /// Imbalance over the loads below which forces hold the bodies.
 pub(crate) const NEAR_BALANCE: f64 = 1e-3;

@@ -11,7 +11,7 @@ use super::contact_point::ConstrainedPoint;
 use super::friction_cone::{Generators, Separation, WrenchCone};
 use super::model::Model;
 use crate::error::ContactError;
-use crate::scene::Friction;
+use crate::scene::{Friction, LoadKind};
 use crate::status::{FreeCoupling, Slide};
 use crate::tolerances::{ALONGSIDE, FREE_WORK, LEFT_FREE, NEAR_BALANCE, ROUNDING, SLIDES};
 use signorini_qp::vector;
@@ -290,7 +290,8 @@ struct Part {
     motion: [f64; 6],
 }
 
-/// The coupling that leaves free most of a sum of motions, of this length in a body of this radius.
+/// The coupling that leaves free most of a sum of motions, of this length in a body of this radius, but for what loads
+/// push it along.
 pub(crate) fn freed(
     model: &Model,
     motions: &[&FreeMotion],
@@ -309,11 +310,20 @@ pub(crate) fn freed(
             tfeti.kernel(subdomain).add_motion(*factor, amplitudes, own);
         }
     }
+    // what a load pushes is to move along it
+    let loaded = |k: usize, c: usize| {
+        model.scene.loads.iter().any(|load| match &load.kind {
+            LoadKind::Coupling(load) => {
+                load.coupling == k && couplings.along(k, [load.force, load.moment])[c].abs() > f64::MIN_POSITIVE
+            }
+            _ => false,
+        })
+    };
     let mut found: Option<(f64, FreeCoupling)> = None;
     let motions = model.coupling_motions(&torn).into_iter().zip(&model.scene.couplings);
     for (k, (motion, coupling)) in motions.enumerate() {
         let (along, holds) = (couplings.along(k, motion), coupling.holds());
-        let free = |c: usize| if holds[c] { 0.0 } else { along[c].abs() };
+        let free = |c: usize| if holds[c] || loaded(k, c) { 0.0 } else { along[c].abs() };
         let sizes: [f64; 6] = std::array::from_fn(|c| if c < 3 { free(c) } else { radius * free(c) });
         let largest = sizes.iter().copied().fold(0.0, f64::max);
         let enough = largest > 0.0 && largest >= ALONGSIDE * length;

@@ -387,6 +387,13 @@ fn what_is_refused_says_why() {
     let free =
         "or hold coupling 0, which lets the sides of contact 0 move, in its displacement along (1.000, 0.000, 0.000)";
     assert!(message.contains(free), "{message}");
+    // but not where a load is to move it
+    let pushed = Load::on_coupling(0, [1e4, 0.0, 0.0], [0.0; 3]);
+    let message = refused(only_first.clone().with_load(pushed));
+    assert!(
+        message.contains("body 1") && !message.contains("hold coupling"),
+        "{message}"
+    );
     let named = only_first.with_names(|part| matches!(part, Part::Coupling(0)).then(|| "the bolt".to_owned()));
     let message = refused(named);
     assert!(message.starts_with("coupling 0 is the bolt: "), "{message}");
