@@ -313,8 +313,9 @@ pub(crate) fn freed(
     // what a load pushes is to move along it
     let loaded = |k: usize, c: usize| {
         model.scene.loads.iter().any(|load| match &load.kind {
-            LoadKind::Coupling(load) => {
-                load.coupling == k && couplings.along(k, [load.force, load.moment])[c].abs() > f64::MIN_POSITIVE
+            LoadKind::Coupling(load) if load.coupling == k => {
+                let along = couplings.along(k, [load.force, load.moment]);
+                along[c].abs() > ROUNDING * vector::norm(&along)
             }
             _ => false,
         })

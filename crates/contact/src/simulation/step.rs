@@ -177,38 +177,42 @@ impl Simulation {
             }
         }
         let mut recovered = std::mem::take(&mut self.spare);
-        'starts: for &(line, attempt) in starts {
-            let brief = (balanced && attempt != Attempt::Rest).then_some(Attempt::Brief);
-            for attempt in brief.into_iter().chain([attempt]) {
-                self.spare = recovered;
-                self.controller = state.controller;
-                if !std::mem::take(&mut sets_out) {
-                    self.start(state, way, line, attempt);
-                    if attempt == Attempt::Settled {
-                        report = report.resumed(self.settle(state, way, line)?);
-                    }
+        let briefly = |&(line, attempt): &(bool, Attempt)| {
+            let both = [(line, Attempt::Brief), (line, attempt)];
+            both.into_iter().skip(usize::from(attempt == Attempt::Rest))
+        };
+        for (line, attempt) in starts.iter().flat_map(briefly) {
+            if attempt == Attempt::Brief && !balanced {
+                continue;
+            }
+            self.spare = recovered;
+            self.controller = state.controller;
+            if !std::mem::take(&mut sets_out) {
+                self.start(state, way, line, attempt);
+                if attempt == Attempt::Settled {
+                    report = report.resumed(self.settle(state, way, line)?);
                 }
-                let (next, found) = self.solve()?;
-                (report, recovered) = (report.resumed(next), found);
-                let goes_on = report.status.is_lost() || attempt == Attempt::Brief && !report.status.converged();
-                if !goes_on {
-                    break 'starts;
-                }
-                // friction that nearly locks bodies lets active sets run in circles where forces vanish, too
-                if let Some(told) = told
-                    && let Some(left) = self.without_forces(state, told, &mut report)?
-                {
+            }
+            let (next, found) = self.solve()?;
+            (report, recovered) = (report.resumed(next), found);
+            let goes_on = report.status.is_lost() || attempt == Attempt::Brief && !report.status.converged();
+            if !goes_on {
+                break;
+            }
+            // friction that nearly locks bodies lets active sets run in circles where forces vanish, too
+            if let Some(told) = told
+                && let Some(left) = self.without_forces(state, told, &mut report)?
+            {
+                report.status = StepStatus::Converged;
+                return Ok((report, left));
+            }
+            if (!locks || attempt == Attempt::Brief) && std::mem::take(&mut balanced) {
+                let (kept, lost) = (self.iterate.clone(), report.status);
+                if let Some(apart) = self.apart(state, way, &mut report)? {
                     report.status = StepStatus::Converged;
-                    return Ok((report, left));
+                    return Ok((report, apart));
                 }
-                if (!locks || attempt == Attempt::Brief) && std::mem::take(&mut balanced) {
-                    let (kept, lost) = (self.iterate.clone(), report.status);
-                    if let Some(apart) = self.apart(state, way, &mut report)? {
-                        report.status = StepStatus::Converged;
-                        return Ok((report, apart));
-                    }
-                    (self.iterate, report.status) = (kept, lost);
-                }
+                (self.iterate, report.status) = (kept, lost);
             }
         }
         Ok((report, recovered))

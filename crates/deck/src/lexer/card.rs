@@ -77,6 +77,11 @@ impl Word {
     }
 }
 
+/// Whether a field begins as numbers do; names do not.
+pub(crate) fn begins_as_number(field: &str) -> bool {
+    field.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+}
+
 /// A finite number, also with the exponent letter D of Fortran.
 fn real(text: &str) -> Option<f64> {
     // words such as "inf" and "nan" are names here

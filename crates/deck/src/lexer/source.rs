@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::card::Card;
+use super::card::{Card, begins_as_number};
 use crate::error::{DeckError, Fault, Location, Word};
 
 /// Most included files, how deep they may include each other, and the bytes and lines of all files together:
@@ -72,12 +72,7 @@ impl Reader {
             }
             let mut keyword = text.to_owned();
             // behind a comma too many: parameters do not begin as numbers do
-            let is_number = |field: &str| {
-                field
-                    .trim_start()
-                    .starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
-            };
-            let is_data = |line: &str| line.split(',').any(is_number);
+            let is_data = |line: &str| line.split(',').any(|field| begins_as_number(field.trim()));
             while keyword.ends_with(',') {
                 match lines.next_if(|(_, more)| !more.trim_start().starts_with('*') && !is_data(more)) {
                     Some((_, more)) => keyword.push_str(more.trim()),

@@ -2,7 +2,7 @@
 
 use super::{Element, Faces, Ignored, Kind, Member, Model, Node, Side, Target};
 use crate::error::{DeckError, Fault, Word};
-use crate::lexer::{Card, Named, label, name};
+use crate::lexer::{Card, Named, begins_as_number, label, name};
 use signorini_fem_mesh::mesh::CellShape;
 
 /// Most members of one generated range.
@@ -226,8 +226,7 @@ pub(super) fn node_of(value: Named) -> (Target, Word) {
 }
 
 fn set_name(line: &Word, field: &str) -> Result<String, DeckError> {
-    let begins = field.chars().next();
-    if begins.is_none_or(|c| c.is_ascii_digit() || "+-.".contains(c)) {
+    if field.is_empty() || begins_as_number(field) {
         let wanted = "a number from 1 to 2147483647, or the name of a set";
         return Err(line.entry(&[field], 0).expected(wanted));
     }

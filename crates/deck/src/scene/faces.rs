@@ -104,11 +104,10 @@ impl FaceTable {
         let mut boundary = None;
         let used = known.model.used_surfaces();
         for (index, (name, lines)) in (0..).zip(known.model.surfaces.iter()) {
-            let chosen = match known.sections.is_across(index as usize) {
-                true => Ok(Chosen::default()),
-                false => known.chosen(lines, &mut boundary, ignored),
+            let mut chosen = match known.sections.is_across(index as usize) {
+                true => Chosen::default(),
+                false => known.chosen(lines, &mut boundary, ignored)?,
             };
-            let mut chosen = chosen?;
             if !used.contains(name) && !chosen.is_outside(known.raw, &mut boundary) {
                 let why = "the surface has faces between two elements, and no card that is read uses it";
                 ignored.push(Ignored::new(&lines[0].word, why));
