@@ -169,7 +169,11 @@ impl Simulation {
         let locks = self.model.plan.effects.friction != FrictionKind::None;
         balanced &= !locks || told.is_none();
         // mostly bodies that stood apart still do, and those whose forces fade get there
-        if balanced && !sets_out && (self.stood_apart(state) || !locks && self.fades(state, way)) {
+        let apart = match locks {
+            true => state.step() > 0 && self.stood_apart(state),
+            false => self.stood_apart(state) || self.fades(state, way),
+        };
+        if balanced && !sets_out && apart {
             balanced = false;
             if let Some(apart) = self.apart(state, way, &mut report)? {
                 report.status = StepStatus::Converged;
