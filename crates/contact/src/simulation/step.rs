@@ -165,15 +165,11 @@ impl Simulation {
     ) -> Result<(StepReport, Recovered), ContactError> {
         let mut sets_out = tried.status.converged();
         let mut report = tried;
-        // friction may lock bodies that were pressed
+        // friction may lock bodies that were pressed, and a first step is mostly to press them
         let locks = self.model.plan.effects.friction != FrictionKind::None;
-        balanced &= !locks || told.is_none();
+        balanced &= !locks || told.is_none() && state.step() > 0;
         // mostly bodies that stood apart still do, and those whose forces fade get there
-        let apart = match locks {
-            true => state.step() > 0 && self.stood_apart(state),
-            false => self.stood_apart(state) || self.fades(state, way),
-        };
-        if balanced && !sets_out && apart {
+        if balanced && !sets_out && (self.stood_apart(state) || !locks && self.fades(state, way)) {
             balanced = false;
             if let Some(apart) = self.apart(state, way, &mut report)? {
                 report.status = StepStatus::Converged;
