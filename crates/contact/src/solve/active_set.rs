@@ -154,7 +154,11 @@ impl ActiveSetSolver {
         }
         report.status = match iterate.attempt {
             Attempt::Fallback => StepStatus::Stagnated,
-            Attempt::Brief => step_status(self.active_sets(task, iterate, (EASY, CIRCLES), &mut report)?),
+            Attempt::Brief => {
+                // whichever an earlier step has left in use a restart does not know
+                self.use_explicit(false, task, &mut report);
+                step_status(self.active_sets(task, iterate, (EASY, CIRCLES), &mut report)?)
+            }
             _ => step_status(self.active_sets_or_explicit(task, iterate, &mut report)?),
         };
         task.model.tfeti.check_processes()?;
@@ -245,12 +249,8 @@ impl ActiveSetSolver {
                 self.begin_again(iterate);
             }
             if self.use_explicit(true, task, report) {
-                let inside = |x: &[f64]| costs.map_or(0, |costs| costs.inside(carrying(x)));
-                let patience = if inside(&iterate.lambda) <= EASY {
-                    BEFORE_INSIDE
-                } else {
-                    CIRCLES
-                };
+                let dear = costs.is_some_and(|costs| costs.inside(carrying(&iterate.lambda)) > EASY);
+                let patience = if dear { CIRCLES } else { BEFORE_INSIDE };
                 status = self.active_sets(task, iterate, (EXPLICIT_PRODUCTS, patience), report)?;
                 if is_open(status) {
                     let inside = self.begin_inside(task, iterate, report)?;
