@@ -16,7 +16,7 @@ fn held_by(friction: Option<f64>) -> &'static str {
 }
 
 /// What would hold a body.
-fn held_remedy(friction: Option<f64>, coupling: Option<&FreeCoupling>) -> String {
+fn held_remedy(step: usize, friction: Option<f64>, coupling: Option<&FreeCoupling>) -> String {
     let others = match friction {
         Some(factor) => format!(
             "friction would have to be more than {:.3} times as large: press harder, pull less, add a support, or \
@@ -27,7 +27,11 @@ fn held_remedy(friction: Option<f64>, coupling: Option<&FreeCoupling>) -> String
             (mesh::merge_nodes), or balance the loads"
             .to_owned(),
     };
-    others + &freed_remedy(coupling)
+    let before = match step {
+        0 => "",
+        _ => "; the steps before this one can be solved: end the analysis there",
+    };
+    others + &freed_remedy(coupling) + before
 }
 
 /// What a coupling could hold.
@@ -202,7 +206,7 @@ signorini_fem_mesh::errors! {
         } =
             "step {step}: body {body} (with node {node}) cannot be in equilibrium: {mode} is {}, and the loads push \
             along it with a force of {force:.3e}; {}",
-            held_by(*friction), held_remedy(*friction, coupling.as_deref());
+            held_by(*friction), held_remedy(*step, *friction, coupling.as_deref());
         NotDetermined {
             body: usize, node: u32, count: usize, motions: String, coupling: Option<Box<FreeCoupling>>, in_contact: bool
         } =

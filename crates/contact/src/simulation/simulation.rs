@@ -50,12 +50,24 @@ impl std::fmt::Debug for Simulation {
     }
 }
 
+/// The model of a scene that contact and supports can hold.
+fn balanced(scene: Scene, settings: &Settings) -> Result<Model, ContactError> {
+    let model = Model::new(scene, settings)?;
+    check_equilibrium(&model)?;
+    Ok(model)
+}
+
 /// Refuses what would be refused in a later stage, and makes the plans of these.
 fn plan_later_stages(scene: &Scene, settings: &Settings) -> Result<Vec<Plan>, ContactError> {
     let plan = |stage: Stage| {
         let mut scene = scene.clone();
         scene.enter(&stage);
-        Ok(Simulation::set_up(scene, settings.clone())?.plan().clone())
+        let model = balanced(scene, settings)?;
+        // what neither supports nor contact hold a solver finds
+        if model.points.is_empty() {
+            Solver::new(&model, settings)?;
+        }
+        Ok(model.plan)
     };
     scene.later_stages().map(plan).collect()
 }
@@ -88,8 +100,7 @@ impl Simulation {
 
     pub(super) fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
         let start = Instant::now();
-        let mut model = Model::new(scene, &settings)?;
-        check_equilibrium(&model)?;
+        let mut model = balanced(scene, &settings)?;
         let origin = || {
             let origin = Fingerprint::new(&model);
             (origin, operator_hash(&origin, &model, &settings))

@@ -3,14 +3,12 @@
 use super::halving::{Before, Way};
 use super::result::StepResult;
 use super::simulation::{Simulation, on_pool};
-use super::unloaded::Targets;
 use crate::error::ContactError;
 use crate::model::{Model, slides};
-use crate::plan::FrictionKind;
 use crate::report::StepReport;
 use crate::result::{ContactState, PointState, Recovered, Sizes, summarise};
 use crate::scene::{Friction, Increment};
-use crate::settings::{Accuracy, Method};
+use crate::settings::Accuracy;
 use crate::solve::{Attempt, Iterate, Task};
 use crate::state::{Kept, Peak, State};
 use crate::status::StepStatus;
@@ -88,42 +86,17 @@ impl Simulation {
         let increment = way.increment();
         self.controller = state.controller;
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, Acting::All)?;
-        // the line through the last two steps leads on where the loads have stopped, and astray where friction has
-        // turned round: there is another start
-        let rests = |last| self.problem.rests(&self.model.scene, last);
-        let rests = self.settings.extrapolate && increment.start.is_some_and(rests);
-        let line = self.settings.extrapolate && !rests;
-        let two_starts = self.settings.extrapolate && state.step() > 0 && state.unconverged_history().is_none();
-        let falls_back = matches!(self.settings.method, Method::ActiveSet(_)) && !self.model.points.is_empty();
-        // with a formula of more steps the rate is yet to fall; estimates judge what was solved
-        let is_one_step = (self.problem.formula).is_some_and(|formula| formula.is_one_step());
-        let by_tolerance = self.settings.accuracy == Accuracy::Tolerance;
-        let stands = rests && is_one_step && by_tolerance;
-        let effects = &self.model.plan.effects;
-        let moves = effects.history && (effects.motion || effects.moving_obstacle);
-        let loose = self.model.loose_motions()?;
-        let settles = falls_back && state.step() == 0 && moves && !loose.is_empty();
-        let balanced = by_tolerance && falls_back && !loose.is_empty() && self.problem.is_balanced(loose);
-        let starts = match (two_starts, falls_back) {
-            (false, _) if settles => &[(line, Attempt::First), (line, Attempt::Settled)][..],
-            (false, _) => &[(line, Attempt::Whole)],
-            (true, false) => &[(line, Attempt::First), (!line, Attempt::Whole)],
-            (true, true) => &[
-                (line, Attempt::Rest),
-                (line, Attempt::First),
-                (!line, Attempt::Whole),
-                (line, Attempt::Fallback),
-            ][usize::from(!stands)..],
-        };
-        let (tried, unloaded, told) = self.unload(state, way, starts[0])?;
+        let attempts = self.attempts(state, increment)?;
+        let (tried, unloaded, told) = self.unload(state, way, attempts[0])?;
         let (mut report, recovered) = match unloaded {
             Some(recovered) => (tried, recovered),
             None => {
-                let (report, recovered) = self.solve_from(starts, state, way, (tried, told.as_ref()), balanced)?;
+                let (report, recovered) = self.attempt(attempts, state, way, (tried, told.as_ref()))?;
                 (report, self.stand(state, recovered, told.unwrap_or_default())?)
             }
         };
         // bodies that stand elsewhere now
+        let by_tolerance = self.settings.accuracy == Accuracy::Tolerance;
         if by_tolerance && recovered.certificate.largest() <= self.settings.tolerance {
             report.status = StepStatus::Converged;
         }
@@ -150,90 +123,6 @@ impl Simulation {
             report,
             recovered,
         })
-    }
-
-    /// Solves from one start after another as long as the step is lost; from the iterate of what was tried before, if
-    /// that converged, in place of the first one. Where loads end, it was told where bodies stand: then without forces,
-    /// too.
-    fn solve_from(
-        &mut self,
-        starts: &[(bool, Attempt)],
-        state: &State,
-        way: &Way,
-        (tried, told): (StepReport, Option<&Targets>),
-        mut balanced: bool,
-    ) -> Result<(StepReport, Recovered), ContactError> {
-        let mut sets_out = tried.status.converged();
-        let mut report = tried;
-        // friction may lock bodies that were pressed, and a first step is mostly to press them
-        let locks = self.model.plan.effects.friction != FrictionKind::None;
-        balanced &= !locks || told.is_none() && state.step() > 0;
-        // mostly bodies that stood apart still do, and those whose forces fade get there
-        if balanced && !sets_out && (self.stood_apart(state) || !locks && self.fades(state, way)) {
-            balanced = false;
-            if let Some(apart) = self.apart(state, way, &mut report)? {
-                report.status = StepStatus::Converged;
-                return Ok((report, apart));
-            }
-        }
-        let mut recovered = std::mem::take(&mut self.spare);
-        let briefly = |&(line, attempt): &(bool, Attempt)| {
-            let both = [(line, Attempt::Brief), (line, attempt)];
-            both.into_iter().skip(usize::from(attempt == Attempt::Rest))
-        };
-        for (line, attempt) in starts.iter().flat_map(briefly) {
-            if attempt == Attempt::Brief && !balanced {
-                continue;
-            }
-            self.spare = recovered;
-            self.controller = state.controller;
-            if !std::mem::take(&mut sets_out) {
-                self.start(state, way, line, attempt);
-                if attempt == Attempt::Settled {
-                    report = report.resumed(self.settle(state, way, line)?);
-                }
-            }
-            let (next, found) = self.solve()?;
-            (report, recovered) = (report.resumed(next), found);
-            let goes_on = report.status.is_lost() || attempt == Attempt::Brief && !report.status.converged();
-            if !goes_on {
-                break;
-            }
-            // friction that nearly locks bodies lets active sets run in circles where forces vanish, too
-            if let Some(told) = told
-                && let Some(left) = self.without_forces(state, told, &mut report)?
-            {
-                report.status = StepStatus::Converged;
-                return Ok((report, left));
-            }
-            if (!locks || attempt == Attempt::Brief) && std::mem::take(&mut balanced) {
-                let (kept, lost) = (self.iterate.clone(), report.status);
-                if let Some(apart) = self.apart(state, way, &mut report)? {
-                    report.status = StepStatus::Converged;
-                    return Ok((report, apart));
-                }
-                (self.iterate, report.status) = (kept, lost);
-            }
-        }
-        Ok((report, recovered))
-    }
-
-    /// From a start to where loads bring bodies that nothing moves yet: what moves may carry them far along, with
-    /// forces that friction decides once they are pressed.
-    fn settle(&mut self, state: &State, way: &Way, line: bool) -> Result<StepReport, ContactError> {
-        let prepare = |own: &mut Self, acting| {
-            Arc::make_mut(&mut own.problem).prepare(&own.model, state, way.increment(), acting)
-        };
-        prepare(self, Acting::Unmoved)?;
-        self.iterate.attempt = Attempt::First;
-        let (report, recovered) = self.solve()?;
-        (self.spare, self.controller) = (recovered, state.controller);
-        prepare(self, Acting::All)?;
-        if !report.status.converged() {
-            self.start(state, way, line, Attempt::Settled);
-        }
-        (self.iterate.attempt, self.iterate.offered) = (Attempt::Settled, false);
-        Ok(report)
     }
 
     /// One run of the solver from the present iterate, and what is recovered from it.

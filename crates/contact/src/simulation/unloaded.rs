@@ -129,58 +129,6 @@ impl Simulation {
         }))
     }
 
-    /// The result without contact forces, where loads do no work on what contact alone stops: bodies then stand apart,
-    /// or touch without force, and active sets run in circles. Without friction there are no other forces if that is a
-    /// solution, and with it none that anything presses. `None` if it is none; the iterate is then lost.
-    pub(super) fn apart(
-        &mut self,
-        state: &State,
-        way: &Way,
-        report: &mut StepReport,
-    ) -> Result<Option<Recovered>, ContactError> {
-        self.start(state, way, false, Attempt::First);
-        // where forces vanish, those of the last step leave errors that are large beside them
-        self.iterate.lambda.fill(0.0);
-        self.iterate.f_lambda = vec![0.0; self.iterate.lambda.len()];
-        self.iterate.known = true;
-        let problem = Arc::make_mut(&mut self.problem);
-        problem.open(&self.model);
-        let solved = self.solve_once(self.settings.tolerance)?;
-        Arc::make_mut(&mut self.problem).prepare(&self.model, state, way.increment(), Acting::All)?;
-        let (next, old) = solved;
-        let converged = next.status.converged();
-        *report = std::mem::replace(report, StepReport::new()).resumed(next);
-        if !converged {
-            self.spare = old;
-            return Ok(None);
-        }
-        let (model, problem) = (&self.model, &self.problem);
-        let lambda = problem.multipliers(&self.iterate.lambda);
-        let recovered = Recovered::new(model, problem, &lambda, &self.iterate.alpha, old)?;
-        report.counters.products += 1;
-        let stands = self.stand(state, recovered, Targets::new())?;
-        if stands.certificate.largest() <= self.settings.tolerance {
-            return Ok(Some(stands));
-        }
-        self.spare = stands;
-        Ok(None)
-    }
-
-    /// Whether no contact force acted in the last state; at rest none did.
-    pub(super) fn stood_apart(&self, state: &State) -> bool {
-        let small = |row: usize| self.settings.tolerance * self.problem.rest(self.model.bodies.of_row(row));
-        let force = |row: usize| state.lambda[0].get(row).copied().unwrap_or(0.0);
-        self.model.points.iter().all(|p| -force(p.row) <= small(p.row))
-    }
-
-    /// Whether the normal forces are gone if they go on falling as they did in the last step.
-    pub(super) fn fades(&self, state: &State, way: &Way) -> bool {
-        let sum = |lambda: &Vec<f64>| -> Option<f64> { self.model.points.iter().map(|p| lambda.get(p.row)).sum() };
-        let [last, before] = state.lambda.each_ref().map(sum);
-        last.zip(before)
-            .is_some_and(|(last, before)| last + way.ratio() * (last - before) >= 0.0)
-    }
-
     /// The points with contact forces of more than rounding.
     fn touching<'a>(&'a self, recovered: &'a Recovered) -> impl Iterator<Item = &'a ConstrainedPoint> {
         let (model, problem) = (&self.model, &self.problem);

@@ -169,7 +169,7 @@ impl ActiveSetSolver {
             // another start comes before another method
             return match iterate.attempt {
                 Attempt::Brief => self.stay(task, iterate, report),
-                Attempt::First if report.status.is_lost() => self.stay(task, iterate, report),
+                Attempt::First | Attempt::Apart if report.status.is_lost() => self.stay(task, iterate, report),
                 _ => self.fall_back(task, iterate, report),
             };
         }

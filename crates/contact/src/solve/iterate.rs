@@ -46,6 +46,8 @@ pub(crate) struct Iterate {
 pub(crate) enum Attempt {
     /// What stands, where nothing has changed: nothing is solved, and the certificate tells.
     Rest,
+    /// With all contacts open.
+    Apart,
     /// By active sets as long as they make progress: that nothing touches is looked at before more is done.
     Brief,
     /// By active sets alone: there is another start.

@@ -1,0 +1,196 @@
+//! The attempts at an increment, one after another as long as it is lost.
+
+use super::halving::Way;
+use super::simulation::Simulation;
+use super::unloaded::Targets;
+use crate::error::ContactError;
+use crate::plan::FrictionKind;
+use crate::report::StepReport;
+use crate::result::Recovered;
+use crate::scene::Increment;
+use crate::settings::{Accuracy, Method};
+use crate::solve::Attempt;
+use crate::state::State;
+use crate::status::StepStatus;
+use crate::step::Acting;
+use std::sync::Arc;
+
+/// Whether an attempt starts on the line through the last two steps, or else from the last one.
+type Start = (bool, Attempt);
+
+impl Simulation {
+    /// The attempts at an increment that follows on a state.
+    pub(super) fn attempts(&self, state: &State, increment: Increment) -> Result<Vec<Start>, ContactError> {
+        // the line leads on where the loads have stopped, and astray where friction has turned round: there is another
+        // start
+        let extrapolates = self.settings.extrapolate;
+        let rests = |last| self.problem.rests(&self.model.scene, last);
+        let rests = extrapolates && increment.start.is_some_and(rests);
+        let line = extrapolates && !rests;
+        if extrapolates && state.step() > 0 && state.unconverged_history().is_none() {
+            if !self.falls_back() {
+                return Ok(vec![(line, Attempt::First), (!line, Attempt::Whole)]);
+            }
+            // with a formula of more steps the rate is yet to fall; estimates judge what was solved
+            let is_one_step = (self.problem.formula).is_some_and(|formula| formula.is_one_step());
+            let stands = rests && is_one_step && self.settings.accuracy == Accuracy::Tolerance;
+            let all = [
+                (line, Attempt::Rest),
+                (line, Attempt::First),
+                (!line, Attempt::Whole),
+                (line, Attempt::Fallback),
+            ];
+            return Ok(all[usize::from(!stands)..].to_vec());
+        }
+        let effects = &self.model.plan.effects;
+        let moves = effects.history && (effects.motion || effects.moving_obstacle);
+        let settles = state.step() == 0 && moves && self.falls_back() && !self.model.loose_motions()?.is_empty();
+        Ok(match settles {
+            true => vec![(line, Attempt::First), (line, Attempt::Settled)],
+            false => vec![(line, Attempt::Whole)],
+        })
+    }
+
+    /// The attempts, and one without contact forces where loads do no work on what contact alone stops: first, if
+    /// bodies stood apart or their forces fade, else after a brief one.
+    fn with_apart(&self, mut attempts: Vec<Start>, state: &State, way: &Way) -> Result<Vec<Start>, ContactError> {
+        // friction may lock bodies that were pressed, and a first step is mostly to press them
+        let locks = self.model.plan.effects.friction != FrictionKind::None;
+        let by_tolerance = self.settings.accuracy == Accuracy::Tolerance;
+        if !by_tolerance || !self.falls_back() || locks && state.step() == 0 {
+            return Ok(attempts);
+        }
+        let loose = self.model.loose_motions()?;
+        if loose.is_empty() || !self.problem.is_balanced(loose) {
+            return Ok(attempts);
+        }
+        let apart = (false, Attempt::Apart);
+        if self.stood_apart(state) || !locks && self.fades(state, way) {
+            attempts.insert(0, apart);
+            return Ok(attempts);
+        }
+        let at = usize::from(attempts[0].1 == Attempt::Rest);
+        let brief = (attempts[at].0, Attempt::Brief);
+        attempts.splice(at..at, [brief, apart]);
+        Ok(attempts)
+    }
+
+    /// Whether the paper's method follows where active sets make no progress.
+    fn falls_back(&self) -> bool {
+        matches!(self.settings.method, Method::ActiveSet(_)) && !self.model.points.is_empty()
+    }
+
+    /// Makes one attempt after another as long as the step is lost, the first from the iterate of what was tried
+    /// before, if that converged. Where loads end, it was told where bodies stand: then without forces, too.
+    pub(super) fn attempt(
+        &mut self,
+        mut attempts: Vec<Start>,
+        state: &State,
+        way: &Way,
+        (tried, told): (StepReport, Option<&Targets>),
+    ) -> Result<(StepReport, Recovered), ContactError> {
+        let mut sets_out = tried.status.converged();
+        let mut report = tried;
+        if told.is_none() {
+            attempts = self.with_apart(attempts, state, way)?;
+        }
+        let mut found = None;
+        for (line, attempt) in attempts {
+            self.spare = found.take().unwrap_or_else(|| std::mem::take(&mut self.spare));
+            self.controller = state.controller;
+            if attempt == Attempt::Apart {
+                let (kept, lost) = (self.iterate.clone(), report.status);
+                if let Some(apart) = self.apart(state, way, &mut report)? {
+                    return Ok((report, apart));
+                }
+                (self.iterate, report.status) = (kept, lost);
+                continue;
+            }
+            if !std::mem::take(&mut sets_out) {
+                self.start(state, way, line, attempt);
+                if attempt == Attempt::Settled {
+                    report = report.resumed(self.settle(state, way, line)?);
+                }
+            }
+            let (next, recovered) = self.solve()?;
+            (report, found) = (report.resumed(next), Some(recovered));
+            let goes_on = report.status.is_lost() || attempt == Attempt::Brief && !report.status.converged();
+            if !goes_on {
+                break;
+            }
+            // friction that nearly locks bodies lets active sets run in circles where forces vanish, too
+            if let Some(told) = told
+                && let Some(left) = self.without_forces(state, told, &mut report)?
+            {
+                report.status = StepStatus::Converged;
+                return Ok((report, left));
+            }
+        }
+        Ok((report, found.unwrap_or_default()))
+    }
+
+    /// From a start to where loads bring bodies that nothing moves yet: what moves may carry them far along, with
+    /// forces that friction decides once they are pressed.
+    fn settle(&mut self, state: &State, way: &Way, line: bool) -> Result<StepReport, ContactError> {
+        let prepare = |own: &mut Self, acting| {
+            Arc::make_mut(&mut own.problem).prepare(&own.model, state, way.increment(), acting)
+        };
+        prepare(self, Acting::Unmoved)?;
+        self.iterate.attempt = Attempt::First;
+        let (report, recovered) = self.solve()?;
+        (self.spare, self.controller) = (recovered, state.controller);
+        prepare(self, Acting::All)?;
+        if !report.status.converged() {
+            self.start(state, way, line, Attempt::Settled);
+        }
+        (self.iterate.attempt, self.iterate.offered) = (Attempt::Settled, false);
+        Ok(report)
+    }
+
+    /// The result without contact forces: bodies then stand apart, or touch without force, and active sets run in
+    /// circles. Without friction there are no other forces if that is a solution, and with it none that anything
+    /// presses. `None` if it is none; the iterate is then lost.
+    fn apart(&mut self, state: &State, way: &Way, report: &mut StepReport) -> Result<Option<Recovered>, ContactError> {
+        self.start(state, way, false, Attempt::Apart);
+        // where forces vanish, those of the last step leave errors that are large beside them
+        self.iterate.lambda.fill(0.0);
+        self.iterate.f_lambda = vec![0.0; self.iterate.lambda.len()];
+        self.iterate.known = true;
+        let problem = Arc::make_mut(&mut self.problem);
+        problem.open(&self.model);
+        let solved = self.solve_once(self.settings.tolerance)?;
+        Arc::make_mut(&mut self.problem).prepare(&self.model, state, way.increment(), Acting::All)?;
+        let (next, old) = solved;
+        let converged = next.status.converged();
+        *report = std::mem::replace(report, StepReport::new()).resumed(next);
+        if !converged {
+            self.spare = old;
+            return Ok(None);
+        }
+        let (model, problem) = (&self.model, &self.problem);
+        let lambda = problem.multipliers(&self.iterate.lambda);
+        let recovered = Recovered::new(model, problem, &lambda, &self.iterate.alpha, old)?;
+        report.counters.products += 1;
+        let stands = self.stand(state, recovered, Targets::new())?;
+        if stands.certificate.largest() <= self.settings.tolerance {
+            return Ok(Some(stands));
+        }
+        self.spare = stands;
+        Ok(None)
+    }
+
+    /// Whether no contact force acted in the last state; at rest none did.
+    fn stood_apart(&self, state: &State) -> bool {
+        let small = |row: usize| self.settings.tolerance * self.problem.rest(self.model.bodies.of_row(row));
+        let force = |row: usize| state.lambda[0].get(row).copied().unwrap_or(0.0);
+        self.model.points.iter().all(|p| -force(p.row) <= small(p.row))
+    }
+
+    /// Whether the normal forces are gone if they go on falling as they did in the last step.
+    fn fades(&self, state: &State, way: &Way) -> bool {
+        let sum = |lambda: &Vec<f64>| -> Option<f64> { self.model.points.iter().map(|p| lambda.get(p.row)).sum() };
+        let [last, before] = state.lambda.each_ref().map(sum);
+        last.zip(before)
+            .is_some_and(|(last, before)| last + way.ratio() * (last - before) >= 0.0)
+    }
+}
