@@ -138,6 +138,11 @@ pub(crate) const COVERED: f64 = 1e-10;
 /// How much the pieces that cover a facet may overlap, over its area: those of a curved surface do a little.
 pub(crate) const OVERLAP: f64 = 0.05;
 
+/// How far a gap rises over a quadratic facet, over the root of its area, from which on it opens; and how far it is from
+/// linear at mid-nodes, over that rise, up to which it does so linearly.
+pub(crate) const OPENING: f64 = 1e-3;
+pub(crate) const LINEAR: f64 = 0.05;
+
 /// Second moment of a covered part below which it has no extent, over that along it.
 pub(crate) const NO_EXTENT: f64 = 1e-13;
 

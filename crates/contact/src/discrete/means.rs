@@ -6,13 +6,14 @@
 //! are the same need no means: each node is tied to its partner, mid-nodes too.
 
 use super::creases::around;
-use super::partners::{Partner, Partners};
+use super::partners::{Paired, Partner, Partners};
 use super::side::{Sides, mean_place, rounded};
 use crate::error::ContactError;
+use crate::mortar::Rim;
 use crate::scene::{Contact, Gap};
 use crate::tolerances::{JUMP, OVERSHOT};
 use signorini_fem_mesh::internal::Lists;
-use signorini_fem_mesh::vec3::{norm, sub};
+use signorini_fem_mesh::vec3::{area_vector, norm, sub, unit};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
 use signorini_tfeti::Side;
@@ -118,6 +119,43 @@ impl<'a> Means<'a> {
         };
         Ok((sides, gap))
     }
+}
+
+/// The pair with [dual functions](Surface::with_dual) where the gap opens from the rim of its side. `mortar` has its
+/// own.
+pub(super) fn opened(
+    mesh: &TetMesh,
+    (index, contact): (usize, &Contact),
+    mut paired: Paired,
+) -> Result<Paired, ContactError> {
+    if mesh.order() == 1 || contact.tied || paired.is_apart() {
+        return Ok(paired);
+    }
+    let surface = &paired.surface;
+    let rim = Rim::new(mesh, surface, contact.crease);
+    let partners = match &paired.partners {
+        Partners::Nodes(partners) => all_partners(mesh, contact, surface, partners),
+        _ => HashMap::new(),
+    };
+    let place = |node: u32| mesh.points()[node as usize];
+    let opens = |triangle: &usize| {
+        let facet = surface.facets()[*triangle] as usize;
+        let ([a, b, c], [ab, bc, ca]) = (mesh.facets()[facet].nodes, mesh.facet_mids(facet));
+        let nodes = [a, b, c, ab, bc, ca];
+        let normal = (paired.fixed).map_or_else(|| unit(area_vector(&mesh.facet_points(facet))), |frame| frame.normal);
+        let gap = |node: u32| {
+            let to = partners.get(&node).map(|to| sub(place(*to), place(node)));
+            let measured = to.map_or(0.0, |way| vector::dot(&way, &normal));
+            contact.gap_at(index, node, place(node), &normal, measured).ok()
+        };
+        rim.opens(nodes, || {
+            let gaps: Option<Vec<f64>> = nodes.into_iter().map(gap).collect();
+            gaps?.try_into().ok()
+        })
+    };
+    let opens: Vec<usize> = (0..surface.facets().len()).filter(opens).collect();
+    paired.surface = paired.surface.with_dual(mesh, &opens)?;
+    Ok(paired)
 }
 
 /// A mid-node in the place of one of the other side.

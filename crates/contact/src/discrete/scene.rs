@@ -4,6 +4,7 @@ use super::couplings::Couplings;
 use super::crossing::crossing;
 use super::equations::equations;
 use super::faceted::{FacetedOverlaps, close_faceted};
+use super::means::opened;
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
 use super::partners::Paired;
 use super::penetration::check_penetration;
@@ -74,7 +75,8 @@ impl DiscreteScene {
         let started = Instant::now();
         let paired = contacts.map(|(index, contact)| {
             let crossing = || crossing(scene, index);
-            Paired::new(&scene.mesh, &scene.materials, index, contact, crossing, rounding)
+            let paired = Paired::new(&scene.mesh, &scene.materials, index, contact, crossing, rounding)?;
+            opened(&scene.mesh, (index, contact), paired)
         });
         let paired = paired.collect::<Result<Vec<_>, _>>()?;
         let search = started.elapsed();

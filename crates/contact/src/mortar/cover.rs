@@ -7,7 +7,7 @@
 //! sum of that and of the shape function of the corner; edges that are bent in the plane, as at the rim of a disc,
 //! count.
 
-use crate::tolerances::{BENT_STEPS, COVERED, NO_EXTENT};
+use crate::tolerances::{BENT_STEPS, COVERED, NO_EXTENT, OVERLAP};
 use signorini_fem_mesh::internal::{facet_shape, triangle};
 
 type Point = [f64; 2];
@@ -21,6 +21,8 @@ pub(super) struct Laid {
     pub(super) mids: Option<[u32; 3]>,
     /// How far they are from the middles of the corners; `None` if they are there.
     pub(super) bend: Option<[Point; 3]>,
+    /// How high its nodes are over the plane of the facet, m: corners, then mid-nodes.
+    pub(super) heights: [f64; 6],
     /// Where a displacement is to be taken from its tetrahedron to the facet, the way there.
     pub(super) way: Option<Way>,
 }
@@ -45,6 +47,11 @@ impl Laid {
             None => (l, [l[0], l[1], l[2], 0.0, 0.0, 0.0]),
         }
     }
+
+    /// How high it is over the plane of the facet where its nodes have these shape functions, m.
+    fn height(&self, shape: &[f64; 6]) -> f64 {
+        shape.iter().zip(&self.heights).map(|(n, h)| n * h).sum()
+    }
 }
 
 /// The way from a triangle that is not in the plane of the facet to the facet, and what a displacement changes on it:
@@ -53,8 +60,6 @@ impl Laid {
 pub(super) struct Way {
     /// The other nodes of the tetrahedron: the one opposite, in a mesh of order 2 the mid-nodes of its edges, too.
     pub(super) nodes: [u32; 4],
-    /// How high the nodes of the triangle are over the plane of the facet, m.
-    pub(super) heights: [f64; 6],
     /// At each corner the derivatives of the shape functions along the normal of the facet, 1/m: those of the nodes of
     /// the triangle, then of the others.
     pub(super) slopes: [[f64; 10]; 3],
@@ -62,13 +67,10 @@ pub(super) struct Way {
 
 impl Way {
     /// The shape functions of the triangle and of the other nodes of the tetrahedron at barycentric coordinates, where
-    /// the facet is `own` over its plane; and the way, m.
-    fn shape(&self, l: &[f64; 3], plain: &[f64; 6], own: f64) -> ([f64; 10], f64) {
-        let height: f64 = plain.iter().zip(&self.heights).map(|(n, h)| n * h).sum();
-        let far = height - own;
+    /// the way is so `far`, m.
+    fn shape(&self, l: &[f64; 3], plain: &[f64; 6], far: f64) -> [f64; 10] {
         let slope = |k: usize| (0..3).map(|c| l[c] * self.slopes[c][k]).sum::<f64>();
-        let shape = std::array::from_fn(|k| plain.get(k).copied().unwrap_or(0.0) - far * slope(k));
-        (shape, far)
+        std::array::from_fn(|k| plain.get(k).copied().unwrap_or(0.0) - far * slope(k))
     }
 }
 
@@ -120,9 +122,8 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// The part of a triangle inside a facet (corners counter-clockwise); `None` if they do not overlap. `heights` are
-    /// the distances of its corners, m.
-    pub(super) fn new(facet: &[Point; 3], laid: Laid, heights: [f64; 3]) -> Option<Self> {
+    /// The part of a triangle inside a facet (corners counter-clockwise); `None` if they do not overlap.
+    pub(super) fn new(facet: &[Point; 3], laid: Laid) -> Option<Self> {
         let mut polygon = laid.corners.to_vec();
         let whole = area(facet);
         for k in 0..3 {
@@ -136,7 +137,7 @@ impl Piece {
         let height = |p: &Point| {
             barycentric(&laid.corners, *p)
                 .iter()
-                .zip(heights)
+                .zip(&laid.heights)
                 .map(|(l, h)| l * h)
                 .sum()
         };
@@ -180,13 +181,13 @@ struct Multipliers {
     areas: [f64; 3],
     /// What is projected onto linear functions and evaluated at a corner is these times the moments of a function.
     kernel: [[f64; 3]; 3],
-    /// The same of the shape functions of a quadratic facet.
+    /// The same of the shape functions of a quadratic facet, unless it is to have dual functions alone.
     hats: Option<[[f64; 3]; 3]>,
 }
 
 impl Multipliers {
     /// `None` without pieces.
-    fn new(own: &Flat, pieces: &[Piece]) -> Option<Self> {
+    fn new(own: &Flat, pieces: &[Piece], dual: bool) -> Option<Self> {
         let facet = &own.corners;
         let (mut area, mut first) = (0.0, [0.0; 2]);
         for piece in pieces {
@@ -228,7 +229,7 @@ impl Multipliers {
             centre,
             areas,
             kernel,
-            hats: own.nodes.map(|_| [0, 1, 2].map(hat)),
+            hats: own.nodes.filter(|_| !dual).map(|_| [0, 1, 2].map(hat)),
         })
     }
 
@@ -255,9 +256,9 @@ impl Multipliers {
 }
 
 impl Cover {
-    /// The cover of a facet by pieces that do not overlap; `None` without pieces.
-    pub(super) fn new(own: &Flat, pieces: &[Piece]) -> Option<Self> {
-        let multipliers = Multipliers::new(own, pieces)?;
+    /// The cover of a facet by pieces that do not overlap, with `dual` functions alone or not; `None` without pieces.
+    pub(super) fn new(own: &Flat, pieces: &[Piece], dual: bool) -> Option<Self> {
+        let multipliers = Multipliers::new(own, pieces, dual)?;
         let rule = own.nodes.map(|_| triangle());
         let (mut weights, mut here, mut ways) = (Vec::new(), [[0.0; 3]; 6], [[0.0; 3]]);
         for piece in pieces {
@@ -274,7 +275,8 @@ impl Cover {
                 let Some(way) = &laid.way else {
                     return multipliers.add(&mut there, &plain, p, w);
                 };
-                let (shape, far) = way.shape(&l, &plain, height);
+                let far = laid.height(&plain) - height;
+                let shape = way.shape(&l, &plain, far);
                 multipliers.add(&mut there, &shape, p, w);
                 multipliers.add(&mut ways, &[far], p, w);
             });
@@ -292,6 +294,33 @@ impl Cover {
             nearest: pieces.iter().map(|piece| piece.nearest).fold(f64::INFINITY, f64::min),
         })
     }
+}
+
+/// The gaps at the nodes of a quadratic facet, m, where pieces cover it: each from the piece that is nearest in the
+/// plane. `None` where a part is not covered.
+pub(super) fn gaps(own: &Flat, pieces: &[Piece]) -> Option<[f64; 6]> {
+    own.nodes?;
+    let covered: f64 = pieces.iter().map(|piece| piece.area).sum();
+    if covered < (1.0 - OVERLAP) * area(&own.corners) {
+        return None;
+    }
+    let inside = |piece: &Piece, p| {
+        barycentric(&piece.laid.corners, p)
+            .into_iter()
+            .fold(f64::INFINITY, f64::min)
+    };
+    let height = |p: Point| {
+        let nearest = pieces.iter().max_by(|a, b| inside(a, p).total_cmp(&inside(b, p)))?;
+        Some(nearest.laid.height(&nearest.laid.shape(p).1))
+    };
+    let mut gaps = [0.0; 6];
+    for k in 0..3 {
+        let [bend_x, bend_y] = own.bend.map_or([0.0; 2], |bend| bend[k]);
+        let [x, y] = mean(own.corners[k], own.corners[(k + 1) % 3]);
+        gaps[k] = height(own.corners[k])?;
+        gaps[3 + k] = height([x + bend_x, y + bend_y])? - own.heights[k];
+    }
+    Some(gaps)
 }
 
 /// The part of a polygon where a linear function is not negative.
@@ -388,6 +417,7 @@ mod tests {
             nodes: [first, first + 1, first + 2],
             mids: None,
             bend: None,
+            heights: [0.0; 6],
             way: None,
         }
     }
@@ -424,7 +454,7 @@ mod tests {
         ];
         let linear = |p: Point| 2.0 - 3.0 * p[0] + 0.7 * p[1];
         for laid in covers {
-            let pieces: Vec<Piece> = laid.iter().filter_map(|&l| Piece::new(&facet, l, [0.0; 3])).collect();
+            let pieces: Vec<Piece> = laid.iter().filter_map(|&l| Piece::new(&facet, l)).collect();
             assert_eq!(pieces.len(), laid.len());
             let flat = Flat {
                 corners: facet,
@@ -432,7 +462,7 @@ mod tests {
                 bend: None,
                 heights: [0.0; 3],
             };
-            let cover = Cover::new(&flat, &pieces).expect("covered");
+            let cover = Cover::new(&flat, &pieces, false).expect("covered");
             let sum: f64 = pieces.iter().map(|p| p.area).sum();
             assert!((cover.area - sum).abs() < 1e-15 && (cover.areas.iter().sum::<f64>() - sum).abs() < 1e-15);
             for (j, &corner) in facet.iter().enumerate() {

@@ -2,7 +2,8 @@
 //!
 //! Facets of both sides are intersected in the plane of a facet of the first side (`search`), and integrals are taken
 //! over the covered part of that facet (`cover`). With dual shape functions each node of the first side has one point,
-//! whose other side is a list of nodes with weights (`nodes`). Across a distance, tied sides extrapolate displacements
+//! whose other side is a list of nodes with weights (`nodes`); on quadratic facets they are blended with hat functions,
+//! but where a gap opens from the rim (`opening`). Across a distance, tied sides extrapolate displacements
 //! from the tetrahedra behind, others rotate (`discrete::side`).
 //!
 //! Uses: nothing of this crate but `tolerances`. In: two surfaces. Out: a [`MortarNode`] for each node that the other
@@ -10,6 +11,8 @@
 
 mod cover;
 mod nodes;
+mod opening;
 mod search;
 
 pub(crate) use nodes::{MortarNode, mortar_nodes};
+pub(crate) use opening::Rim;

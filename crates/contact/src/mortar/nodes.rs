@@ -1,6 +1,7 @@
 //! The other side of each node of a surface.
 
 use super::cover::Cover;
+use super::opening::Rim;
 use super::search::{Normals, covers, in_order};
 use crate::tolerances::{COVERED, NO_WEIGHT, SAME_NORMAL};
 use crate::vec3::edge_cosine;
@@ -90,7 +91,8 @@ pub(crate) fn mortar_nodes(
     crossing: impl Fn(&[Option<MortarNode>]) -> HashSet<u32>,
 ) -> Vec<Option<MortarNode>> {
     let triangles = in_order(mesh, surface);
-    let covers = covers(mesh, &triangles, other, tied);
+    let rim = (mesh.order() == 2 && !tied).then(|| Rim::new(mesh, surface, crease));
+    let covers = covers(mesh, &triangles, other, tied, rim.as_ref());
     let corners: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.nodes).collect();
     let around = Lists::by_key(mesh.points().len(), corners.as_flattened());
     // tied sides need no normal, and means of displacements have their own

@@ -1,6 +1,7 @@
 //! Which facets of the other side cover a facet.
 
-use super::cover::{Cover, Flat, Laid, Piece, Way, barycentric};
+use super::cover::{Cover, Flat, Laid, Piece, Way, barycentric, gaps};
+use super::opening::Rim;
 use crate::tolerances::{BENT, FACING, OVERLAP};
 use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -54,12 +55,8 @@ impl Triangle {
     }
 
     /// The way to a facet in a plane; `None` if both are in it.
-    fn way(&self, mesh: &TetMesh, plane: &Plane, own: &Flat) -> Option<Way> {
+    fn way(&self, mesh: &TetMesh, plane: &Plane, (own, heights): (&Flat, &[f64; 6])) -> Option<Way> {
         let mut nodes: Vec<u32> = self.nodes.into_iter().chain(self.mids.into_iter().flatten()).collect();
-        let mut heights = [0.0; 6];
-        for (height, node) in heights.iter_mut().zip(&nodes) {
-            *height = plane.lay(mesh.points()[*node as usize]).1;
-        }
         if heights.iter().chain(&own.heights).all(|h| h.abs() <= BENT * plane.size) {
             return None;
         }
@@ -83,11 +80,7 @@ impl Triangle {
             }
             slopes
         });
-        Some(Way {
-            nodes: others,
-            heights,
-            slopes,
-        })
+        Some(Way { nodes: others, slopes })
     }
 
     /// How far its mid-nodes are from the middles of its corners in a plane; `None` if they are there.
@@ -148,12 +141,14 @@ pub(super) enum Normals {
 /// The cover of each facet of a surface, by the nodes of the other one; the normals of the facets beside it.
 ///
 /// What is farther away than four times the largest distance found anywhere is not looked for, unless nothing is found.
-/// Displacements of the other side are those where they are, or [on the facet](Way) if it is `tied`.
+/// Displacements of the other side are those where they are, or [on the facet](Way) if it is `tied`. Facets on which a
+/// gap opens from the `rim` have dual functions.
 pub(super) fn covers(
     mesh: &TetMesh,
     triangles: &[Triangle],
     other: &Surface,
     tied: bool,
+    rim: Option<&Rim<'_>>,
 ) -> Vec<Option<(Cover, Normals)>> {
     let other = OtherSide::new(mesh, other);
     let planes: Vec<Option<Plane>> = triangles.iter().map(|t| Plane::new(&t.corners(mesh))).collect();
@@ -173,7 +168,8 @@ pub(super) fn covers(
                 let pieces = other.pieces(mesh, (plane, tied.then_some(&own)), reaches);
                 let farthest = pieces.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
                 let pieces: Vec<Piece> = pieces.into_iter().map(|p| p.0).collect();
-                let cover = Cover::new(&own, &pieces);
+                let opens = |rim: &Rim<'_>| Some(rim.opens(own.nodes?, || gaps(&own, &pieces)));
+                let cover = Cover::new(&own, &pieces, rim.and_then(opens) == Some(true));
                 Some((k, cover.map(|c| (c, triangles[k].normals(mesh, plane))), farthest))
             })
             .collect();
@@ -308,16 +304,20 @@ impl OtherSide {
             nodes: [i, k, j],
             mids: self.triangles[facet].mids.map(|[ij, jk, ki]| [ki, jk, ij]),
             bend: None,
+            heights: [seen[0].1, seen[1].1, seen[2].1, 0.0, 0.0, 0.0],
             way: None,
         };
+        for (height, mid) in laid.heights[3..].iter_mut().zip(laid.mids.into_iter().flatten()) {
+            *height = plane.lay(mesh.points()[mid as usize]).1;
+        }
         let seen_from = Triangle {
             nodes: laid.nodes,
             mids: laid.mids,
             tet: self.triangles[facet].tet,
         };
         laid.bend = seen_from.bend(mesh, plane, &laid.corners);
-        laid.way = tied.and_then(|own| seen_from.way(mesh, plane, own));
-        let piece = Piece::new(&plane.corners, laid, seen.map(|s| s.1))?;
+        laid.way = tied.and_then(|own| seen_from.way(mesh, plane, (own, &laid.heights)));
+        let piece = Piece::new(&plane.corners, laid)?;
         let shape = barycentric(&laid.corners, piece.middle());
         let distance: f64 = shape.iter().zip(&seen).map(|(l, s)| l * s.1).sum();
         (distance.abs() <= reach).then_some((piece, distance))

@@ -60,7 +60,7 @@ signorini_fem_mesh::errors! {
         NarrowContact { step: usize, contact: usize, node: u32, place: [f64; 3], overlap: f64, way: f64 } =
             "step {step}: at node {node}, {}, the sides of contact {contact} are about {overlap:.3e} inside each other, beside \
             a way of {way:.3e}: quadratic facets feel contact in the mean over the facets around a node, so \
-            that of an edge, or of a place narrower than they are, forces come late and too small; take smaller facets \
+            forces on a ridge, or a place narrower than they are, come late and are too small; take smaller facets \
             there, or linear elements", told(place);
         LargeGap { contact: usize, node: u32, place: [f64; 3], gap: f64, extent: f64 } =
             "contact {contact} begins {:.3e} {} its obstacle even at the nearest node, {node} at {}, and the body is \

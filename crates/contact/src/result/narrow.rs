@@ -1,4 +1,4 @@
-//! Whether sides of quadratic elements touch along an edge, or in a place narrower than their facets.
+//! Whether sides of quadratic elements touch along a ridge, or in a place narrower than their facets.
 //!
 //! There a point sees the gap in the mean over the facets around it. A gap that opens from a node has a mean that is
 //! larger than at the node, which is then inside the other side before the point touches. The means of the neighbours

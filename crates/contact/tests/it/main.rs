@@ -53,6 +53,7 @@ mod patch;
 mod plan;
 mod processes;
 mod quadratic;
+mod quadratic_edges;
 mod reactions;
 mod refusals;
 mod relative;

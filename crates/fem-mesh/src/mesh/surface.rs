@@ -101,6 +101,9 @@ pub struct Surface {
     integrals: Vec<FacetIntegrals>,
 }
 
+/// The share of dual functions in the weights of means (docs/theory.md, section 8).
+const HALF: f64 = 0.5;
+
 /// Integrals over a quadratic facet.
 #[derive(Debug, Clone, PartialEq)]
 struct FacetIntegrals {
@@ -114,7 +117,8 @@ struct FacetIntegrals {
 }
 
 impl FacetIntegrals {
-    fn new(mesh: &TetMesh, facet: usize) -> Self {
+    /// `share` is that of the dual functions in the weight of each corner, the other one that of hat functions.
+    fn new(mesh: &TetMesh, facet: usize, share: f64) -> Self {
         let points = mesh.quadratic_facet_points(facet);
         let mut out = Self {
             nodes: mesh.quadratic_facet(facet),
@@ -141,10 +145,10 @@ impl FacetIntegrals {
             let dual = inverse.map(|row| out.areas[i] * row[i]);
             if !plane {
                 let sum = add(scale(dual[0], u), add(scale(dual[1], v), scale(dual[2], w)));
-                out.normals[i] = scale(0.5, add(out.normals[i], sum));
+                out.normals[i] = add(scale(1.0 - share, out.normals[i]), scale(share, sum));
             }
             let product = |k: usize| (0..3).map(|j| dual[j] * hats[j][k]).sum::<f64>();
-            out.products[i] = std::array::from_fn(|k| 0.5 * (hats[i][k] + product(k)));
+            out.products[i] = std::array::from_fn(|k| (1.0 - share) * hats[i][k] + share * product(k));
         }
         out
     }
@@ -163,22 +167,54 @@ impl Surface {
         let global = |&f: &u32| mesh.facets()[f as usize].nodes;
         let nodes = distinct(facets.iter().flat_map(global));
         let local = |n: u32| nodes.partition_point(|&m| m < n) as u32;
-        let triangles: Vec<_> = facets.iter().map(|f| global(f).map(local)).collect();
+        let triangles = facets.iter().map(|f| global(f).map(local)).collect();
+        let curved = mesh.order() == 2;
+        let integrals = (facets.iter().filter(|_| curved))
+            .map(|&facet| FacetIntegrals::new(mesh, facet as usize, HALF))
+            .collect();
+        let mut surface = Self {
+            facets,
+            triangles,
+            nodes,
+            areas: Vec::new(),
+            frames: Vec::new(),
+            integrals,
+        };
+        surface.measure(mesh)?;
+        Ok(surface)
+    }
 
+    /// The same where, on some triangles of a mesh of order 2, dual functions alone are the weight of the
+    /// [means](Self::mean).
+    ///
+    /// # Errors
+    /// [`SurfaceError::NoNormal`] if a node then has none.
+    pub fn with_dual(mut self, mesh: &TetMesh, triangles: &[usize]) -> Result<Self, SurfaceError> {
+        for &t in triangles {
+            if let Some(own) = self.integrals.get_mut(t) {
+                *own = FacetIntegrals::new(mesh, self.facets[t] as usize, 1.0);
+            }
+        }
+        if !triangles.is_empty() {
+            self.measure(mesh)?;
+        }
+        Ok(self)
+    }
+
+    /// Areas and frames of the nodes.
+    fn measure(&mut self, mesh: &TetMesh) -> Result<(), SurfaceError> {
+        let nodes = &self.nodes;
         let mut areas = vec![0.0; nodes.len()];
         let mut normals = vec![[0.0; 3]; nodes.len()];
-        let curved = mesh.order() == 2;
-        let integrals: Vec<_> = (facets.iter().filter(|_| curved))
-            .map(|&facet| FacetIntegrals::new(mesh, facet as usize))
-            .collect();
-        for (triangle, facet) in triangles.iter().zip(&integrals) {
+        for (triangle, facet) in self.triangles.iter().zip(&self.integrals) {
             for (i, &n) in triangle.iter().enumerate() {
                 areas[n as usize] += facet.areas[i];
                 // three times, as the whole triangle counts below
                 normals[n as usize] = add(normals[n as usize], scale(3.0, facet.normals[i]));
             }
         }
-        for (&facet, triangle) in facets.iter().zip(&triangles).filter(|_| !curved) {
+        let plain = self.facets.iter().zip(&self.triangles);
+        for (&facet, triangle) in plain.filter(|_| self.integrals.is_empty()) {
             let normal = facet_area_vector(mesh, facet as usize);
             let area = norm(normal);
             for &n in triangle {
@@ -195,15 +231,9 @@ impl Surface {
             };
             frame.ok_or(SurfaceError::NoNormal { node: nodes[n] })
         };
-        let frames = (0..nodes.len()).map(frame).collect::<Result<_, _>>()?;
-        Ok(Self {
-            facets,
-            triangles,
-            nodes,
-            areas,
-            frames,
-            integrals,
-        })
+        self.frames = (0..nodes.len()).map(frame).collect::<Result<_, _>>()?;
+        self.areas = areas;
+        Ok(())
     }
 
     /// Global numbers of the nodes, ascending.
@@ -240,8 +270,8 @@ impl Surface {
     /// The mean of a displacement around a node, as mesh nodes with weights that sum to one, over those triangles
     /// around it that are chosen (all of its own side, at a crease): the node alone in a mesh of order 1. In a mesh of
     /// order 2 the displacement is weighted by half the sum of the linear hat function `l` of the node and the linear
-    /// function of each triangle that is dual to the hat functions, `4 l - 1` where edges are straight. The node comes
-    /// first, the others ascend.
+    /// function of each triangle that is dual to the hat functions, `4 l - 1` where edges are straight, or by that
+    /// alone ([`Self::with_dual`]). The node comes first, the others ascend.
     pub fn mean(&self, local: usize, triangles: impl Iterator<Item = usize>) -> Vec<(u32, f64)> {
         let own = self.nodes[local];
         let mut entries: Vec<(u32, f64)> = Vec::new();
