@@ -40,6 +40,14 @@ fn freed_remedy(coupling: Option<&FreeCoupling>) -> String {
 }
 
 impl ContactError {
+    /// The error itself, without the names before it.
+    pub fn plain(&self) -> &Self {
+        match self {
+            Self::Named { source, .. } => source.plain(),
+            _ => self,
+        }
+    }
+
     /// Refuses a setting unless it is good.
     pub(crate) fn check(good: bool, name: &'static str, value: f64, range: &'static str) -> Result<(), Self> {
         let error = Self::Setting { name, value, range };
@@ -224,6 +232,7 @@ signorini_fem_mesh::errors! {
             "step {step} did not converge, and the slip of later steps depends on it; continue from a state before \
             it, with smaller steps or other settings";
         Checkpoint { reason: String } = "checkpoint: {reason}";
+        UnreadableCheckpoint { reason: String } = "checkpoint: {reason}";
         CheckpointFile { what: &'static str, path: std::path::PathBuf, source: std::io::Error } =
             "checkpoint: cannot {what} {}: {source}; {}", path.display(), match source.kind() {
                 std::io::ErrorKind::NotFound => "there is none at this path: look for the folder",

@@ -10,6 +10,7 @@ use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
 use signorini_tfeti::internal::on_ranks;
 use std::ffi::OsString;
 use std::fs::{self, read, read_to_string};
+use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 const STEPS: usize = 4;
@@ -382,6 +383,9 @@ fn a_resumed_run_goes_on_with_its_files() {
     }
     let state = first.state().clone();
     files.write(&first.step().expect("step")).expect("files");
+    // a machine that stops leaves part of a row
+    let table = fs::OpenOptions::new().append(true).open(broken.path().join("beam.csv"));
+    table.expect("the table").write_all(b"1,0.5,7").expect("a part");
     let mut again = simulation();
     again.resume(state.clone()).expect("resume");
     let _ = again.run(&mut writer(broken.path())).expect("run");
@@ -408,6 +412,11 @@ fn wrong_choices_are_refused() {
     assert!(matches!(
         name,
         Err(ContactError::Output(OutputError::SeriesName { .. }))
+    ));
+    let shared = ResultWriter::new(folder.path(), "beam").with_contact_name("beam");
+    assert!(matches!(
+        { shared }.write(&result),
+        Err(ContactError::Output(OutputError::SharedSeries { .. }))
     ));
 }
 

@@ -6,14 +6,19 @@ use crate::simulation::StepResult;
 use signorini_fem_mesh::internal::replace_file;
 use signorini_fem_mesh::output::OutputError;
 use std::fmt::Write as _;
-use std::path::{Path, PathBuf};
+use std::fs::OpenOptions;
+use std::io::{Seek, SeekFrom, Write as _};
+use std::path::PathBuf;
 
-/// A table that is written anew after every step.
+/// A table that grows by a row after every step.
 #[derive(Debug)]
 pub(super) struct Table {
     path: PathBuf,
     probes: Vec<u32>,
-    text: String,
+    /// What comes before the next row, and is not written yet.
+    before: String,
+    /// Bytes of the file that are whole rows.
+    written: u64,
 }
 
 impl Table {
@@ -22,7 +27,8 @@ impl Table {
         Self {
             path,
             probes: probes.to_vec(),
-            text: head(probes, result),
+            before: head(probes, result),
+            written: 0,
         }
     }
 
@@ -41,14 +47,16 @@ impl Table {
             found: old.lines().nth(line).unwrap_or_default().to_owned(),
             expected: expected.to_owned(),
         };
-        let same = table.text.lines().count();
-        for (line, expected) in table.text.lines().enumerate() {
+        let same = table.before.lines().count();
+        for (line, expected) in table.before.lines().enumerate() {
             if old.lines().nth(line) != Some(expected) {
                 return Err(wrong(line, &format!("{expected:?}")));
             }
         }
         let mut rows = String::new();
-        for (line, row) in old.lines().enumerate().skip(same) {
+        // of a row that was cut short its step is not known
+        let whole = old.rfind('\n').map_or(0, |end| end + 1);
+        for (line, row) in old[..whole].lines().enumerate().skip(same) {
             let step = row.split(',').next().and_then(|s| s.parse::<usize>().ok());
             let step = step.ok_or_else(|| wrong(line, "a row that begins with the number of its step"))?;
             if step < result.step() {
@@ -56,24 +64,34 @@ impl Table {
                 rows.push('\n');
             }
         }
-        table.text += &rows;
+        table.before += &rows;
         Ok(table)
     }
 
-    /// Adds a row and writes the table.
+    /// Adds a row: the first with the whole table, in place of what was there, later ones at its end.
     pub(super) fn write(&mut self, result: &StepResult) -> Result<(), ContactError> {
-        let before = self.text.len();
-        self.text += &row(&self.probes, result);
-        replace(&self.path, &self.text).inspect_err(|_| self.text.truncate(before))
+        let text = format!("{}{}", self.before, row(&self.probes, result));
+        let done = match self.written {
+            0 => replace_file(&self.path, text.as_bytes()),
+            _ => self.append(text.as_bytes()),
+        };
+        let failed = |source| OutputError::Io {
+            path: self.path.clone(),
+            source,
+        };
+        done.map_err(failed)?;
+        self.written += text.len() as u64;
+        self.before.clear();
+        Ok(())
     }
-}
 
-fn replace(path: &Path, text: &str) -> Result<(), ContactError> {
-    let failed = |source| OutputError::Io {
-        path: path.to_path_buf(),
-        source,
-    };
-    Ok(replace_file(path, text.as_bytes()).map_err(failed)?)
+    fn append(&self, row: &[u8]) -> std::io::Result<()> {
+        let mut file = OpenOptions::new().write(true).open(&self.path)?;
+        // what a write that failed has left
+        file.set_len(self.written)?;
+        file.seek(SeekFrom::End(0))?;
+        file.write_all(row)
+    }
 }
 
 fn head(probes: &[u32], result: &StepResult) -> String {

@@ -4,7 +4,7 @@ use super::fields::{Moment, ResultField, body, surfaces};
 use super::table::Table;
 use crate::error::ContactError;
 use crate::simulation::{Flow, Observer, StepResult};
-use signorini_fem_mesh::output::{PvdSeries, SurfaceFields};
+use signorini_fem_mesh::output::{OutputError, PvdSeries, SurfaceFields};
 use std::path::PathBuf;
 
 /// Writes each step into a folder: series of the bodies and of the contact surfaces for ParaView, and a table.
@@ -91,7 +91,7 @@ impl ResultWriter {
         self
     }
 
-    /// Sets another name for the series of the contact surfaces.
+    /// Sets another name for the series of the contact surfaces, which is not that of the bodies.
     pub fn with_contact_name(mut self, name: impl Into<String>) -> Self {
         self.contact_name = name.into();
         self
@@ -136,6 +136,10 @@ impl ResultWriter {
         let nodes = result.scene().mesh().points().len();
         if let Some(&node) = self.probes.iter().find(|&&node| node as usize >= nodes) {
             return Err(ContactError::Probe { node, nodes });
+        }
+        if self.contact_name == self.name {
+            let name = self.name.clone();
+            return Err(OutputError::SharedSeries { name }.into());
         }
         let goes_on = |name: &str| result.step() > 0 && self.folder.join(format!("{name}.pvd")).exists();
         let series = |name: &str| match goes_on(name) {

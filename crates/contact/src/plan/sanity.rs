@@ -22,6 +22,7 @@ pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> 
         unmerged(scene, discrete),
         unused_materials(listed, &present),
         locking(scene, &present),
+        idle_contact(scene, points),
         large_gap(scene, discrete),
         closed,
         pressing,
@@ -84,6 +85,14 @@ fn locking(scene: &Scene, present: &[u32]) -> Option<Warning> {
     let ratios = present.iter().filter_map(|&r| Some((r, poisson(r)?)));
     let (region, poisson) = ratios.reduce(|a, b| if b.1 > a.1 { b } else { a })?;
     (poisson > LOCKING).then_some(Warning::Locking { region, poisson })
+}
+
+/// The first contact without a point.
+fn idle_contact(scene: &Scene, points: &[ContactPoint]) -> Option<Warning> {
+    let mut idle: Vec<bool> = scene.contacts.iter().map(|c| !c.tied && scene.acts(c.span)).collect();
+    points.iter().for_each(|point| idle[point.surface] = false);
+    let contact = idle.into_iter().position(|idle| idle)?;
+    Some(Warning::IdleContact { contact })
 }
 
 /// The first contact whose nearest point is further away than its body is long.

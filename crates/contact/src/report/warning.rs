@@ -62,6 +62,9 @@ signorini_fem_mesh::errors! {
             a way of {way:.3e}: quadratic facets feel contact in the mean over the facets around a node, so \
             forces on a ridge, or a place narrower than they are, come late and are too small; take smaller facets \
             there, or linear elements", told(place);
+        IdleContact { contact: usize } =
+            "contact {contact} has no point: supports hold its nodes, or other contacts have the same points and are \
+            nearer or come first, so it never acts; leave it out, or give it other tags";
         LargeGap { contact: usize, node: u32, place: [f64; 3], gap: f64, extent: f64 } =
             "contact {contact} begins {:.3e} {} its obstacle even at the nearest node, {node} at {}, and the body is \
             {extent:.3e} long; look at the unit of the gap and at the places of the bodies",
@@ -149,6 +152,7 @@ impl Warning {
             Self::BetweenSteps { part, .. } | Self::ZeroAtSteps { part, .. } => vec![*part],
             Self::UnusedMaterials { regions, .. } => regions.iter().copied().map(Part::Region).collect(),
             Self::Locking { region, .. } => vec![Part::Region(*region)],
+            Self::IdleContact { contact } => vec![Part::Contact(*contact)],
             Self::NothingActs { .. } | Self::DamagedCheckpoint { .. } | Self::Named { .. } => Vec::new(),
         }
     }

@@ -47,9 +47,11 @@ pub struct PointState {
     /// Tangential displacement, m, as a vector in space; relative to the partner, if there is one.
     pub tangential_displacement: [f64; 3],
     /// Tangential difference `alpha u + beta u' + gamma u''` of (2.9), m, in space; the displacement itself in a static
-    /// scene. Without [elastic slip](crate::Contact::with_tangential_compliance).
+    /// scene. Without [elastic slip](crate::Contact::with_tangential_compliance). Of a step that was taken in parts the
+    /// sum of theirs.
     pub difference: [f64; 3],
-    /// Slip rate: length of the difference over the step length, m/s; 0 in a static scene.
+    /// Slip rate: length of the difference over the step length, m/s; 0 in a static scene. Of a step that was taken in
+    /// parts that of the last one.
     pub slip_rate: f64,
     /// Area, m².
     pub area: f64,

@@ -27,7 +27,7 @@ pub struct ContactSummary {
     pub normal_norm: f64,
     /// Euclidean norm of the nodal friction forces, N.
     pub friction_norm: f64,
-    /// Largest slip rate of active points, m/s.
+    /// Largest [slip rate](crate::PointState::slip_rate) of active points, m/s.
     pub max_slip_rate: f64,
     /// Largest penetration, m.
     pub max_penetration: f64,
@@ -38,8 +38,8 @@ pub struct ContactSummary {
     /// Friction force times the tangential difference of (2.9), J; never negative beyond the certificate. Equal to
     /// `friction_work` for backward Euler.
     pub dissipation: f64,
-    /// Work done by moving obstacles on the body in this step, J: contact forces at its end times the
-    /// displacement of the obstacle, and normal forces times the change of a [gap that moves with
+    /// Work done by moving obstacles on the body in this step, J, to first order in its length: contact forces at its
+    /// end times the displacement of the obstacle, and normal forces times the change of a [gap that moves with
     /// it](crate::Contact::with_motion) or [has a history](crate::Contact::with_gap_history).
     pub obstacle_work: f64,
 }

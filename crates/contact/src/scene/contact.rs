@@ -8,7 +8,6 @@ use super::span::Span;
 use crate::error::ContactError;
 use crate::vec3::norm;
 use signorini_fem_mesh::loads::Function;
-use signorini_fem_mesh::vec3::{add, scale};
 use signorini_fem_mesh::{FacetTag, History};
 use signorini_qp::vector;
 use std::sync::Arc;
@@ -45,6 +44,8 @@ pub struct Contact {
     pub(crate) gap: Gap,
     /// Whether a constant gap and a gap field were given.
     pub(super) given: [bool; 2],
+    /// The half-space across whose plane its gap is measured.
+    plane: Option<Obstacle>,
     pub(crate) normal: ContactNormal,
     pub(crate) friction: Friction,
     /// Whether a law of friction was given, be it none.
@@ -79,6 +80,7 @@ impl Contact {
             partner: Vec::new(),
             gap: Gap::None,
             given: [false; 2],
+            plane: None,
             normal: ContactNormal::Body,
             friction: Friction::None,
             law_given: false,
@@ -165,9 +167,9 @@ impl Contact {
     /// Contact with the half-space below a plane: gap and normal follow from the plane.
     ///
     /// `point` lies on the plane, `outward` points out of the obstacle (up for a floor). A later
-    /// [`with_gap`](Self::with_gap) takes the place of the distance to the plane; move `point` instead. The gap is the
-    /// distance across the plane: for another direction of contact use
-    /// [`Contact::obstacle`](Self::obstacle) with [`Obstacle::half_space`], which measures along it.
+    /// [`with_gap`](Self::with_gap) or [`with_gap_field`](Self::with_gap_field) takes the place of the distance to the
+    /// plane; move `point` instead. With another direction of contact the distance is measured along it, as that of an
+    /// [`obstacle`](Self::obstacle).
     pub fn half_space(tag: FacetTag, point: [f64; 3], outward: [f64; 3]) -> Self {
         let length = norm(&outward);
         // what has no direction stays as it is, and is refused with the scene
@@ -175,7 +177,9 @@ impl Contact {
         let gap = move |x: [f64; 3]| (0..3).map(|c| (x[c] - point[c]) * unit[c]).sum();
         Self {
             gap: Gap::Field(Function(Arc::new(gap))),
-            ..Self::rigid(tag).with_normal(unit.map(|c| -c))
+            normal: ContactNormal::Fixed(unit.map(|c| -c)),
+            plane: Some(Obstacle::half_space(point, outward)),
+            ..Self::rigid(tag)
         }
     }
 
@@ -189,7 +193,7 @@ impl Contact {
     /// A constant gap in m; 0 for surfaces that touch, whatever their coordinates. It takes the place of the distance
     /// to an obstacle or another body; beside a [field](Self::with_gap_field) it is refused.
     pub fn with_gap(mut self, gap: f64) -> Self {
-        self.gap = Gap::Constant(gap);
+        (self.gap, self.plane) = (Gap::Constant(gap), None);
         self.given[0] = true;
         self
     }
@@ -198,7 +202,7 @@ impl Contact {
     /// obstacle [moves](Self::with_motion) along the surface, it is also evaluated beside the surface. With quadratic
     /// elements it is a mean around a corner, and where it jumps there the value in the middle.
     pub fn with_gap_field(mut self, gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
-        self.gap = Gap::Field(Function(Arc::new(gap)));
+        (self.gap, self.plane) = (Gap::Field(Function(Arc::new(gap))), None);
         self.given[1] = true;
         self
     }
@@ -230,14 +234,20 @@ impl Contact {
     }
 
     /// One contact normal for all nodes, pointing into the obstacle, and out of the body at one contact node at least.
-    pub fn with_normal(mut self, into_obstacle: [f64; 3]) -> Self {
-        self.normal = ContactNormal::Fixed(into_obstacle);
-        self
+    pub fn with_normal(self, into_obstacle: [f64; 3]) -> Self {
+        self.along(ContactNormal::Fixed(into_obstacle))
     }
 
     /// The body's outward normals as contact normals, as in [`rigid`](Self::rigid).
-    pub fn with_body_normals(mut self) -> Self {
-        self.normal = ContactNormal::Body;
+    pub fn with_body_normals(self) -> Self {
+        self.along(ContactNormal::Body)
+    }
+
+    fn along(mut self, normal: ContactNormal) -> Self {
+        self.normal = normal;
+        if let Some(plane) = self.plane.take() {
+            (self.gap, self.shape) = (Gap::Obstacle, Some(plane));
+        }
         self
     }
 
@@ -276,62 +286,6 @@ impl Contact {
     pub fn with_rotation(mut self, point: [f64; 3], axis: [f64; 3], angle: History) -> Self {
         self.rotation = Some(Rotation { point, axis, angle });
         self
-    }
-
-    /// Whether the obstacle moves or turns.
-    pub(crate) fn moves(&self) -> bool {
-        !self.motions.is_empty() || self.rotation.is_some()
-    }
-
-    /// How far the obstacle is displaced at a time, m; of tied sides the first one against the other.
-    pub(crate) fn shift(&self, time: f64) -> [f64; 3] {
-        let ways = self
-            .motions
-            .iter()
-            .map(|(way, history)| scale(history.value(time), *way));
-        ways.reduce(add).unwrap_or_default()
-    }
-
-    /// Where the obstacle is at some times, and what has become of the gap; none if it rests and the gap stays.
-    pub(crate) fn poses(&self, times: &[f64]) -> Vec<Pose> {
-        let all = times.iter().copied();
-        let mut poses: Vec<Pose> = match &self.rotation {
-            Some(rotation) => {
-                let mut way = self.kinks(rotation, times);
-                way.extend(all);
-                way.sort_by(f64::total_cmp);
-                way.dedup();
-                let poses = Pose::turning(rotation, way.iter().map(|&t| (self.shift(t), rotation.angle.value(t))));
-                let reached = |time: &f64| times.binary_search_by(|t| t.total_cmp(time)).is_ok();
-                let reached = way.iter().zip(poses).filter(|(time, _)| reached(time));
-                reached.map(|(_, pose)| pose).collect()
-            }
-            None if self.moves() => all.map(|t| Pose::shifted(self.shift(t))).collect(),
-            None if self.gap_history.is_some() => vec![Pose::default(); times.len()],
-            None => Vec::new(),
-        };
-        if let Some(history) = &self.gap_history {
-            let with_times = poses.iter_mut().zip(times);
-            with_times.for_each(|(pose, time)| pose.factor = history.value(*time));
-        }
-        poses
-    }
-
-    /// Times up to the last one at which an obstacle that is displaced and turns changes its way: points of its tables.
-    fn kinks(&self, rotation: &Rotation, times: &[f64]) -> Vec<f64> {
-        let Some(&last) = times.last().filter(|_| !self.motions.is_empty()) else {
-            return Vec::new();
-        };
-        let courses = self.motions.iter().flat_map(|(_, course)| course.points());
-        let points = courses.chain(rotation.angle.points());
-        points.map(|p| p.0).filter(|t| (0.0..last).contains(t)).collect()
-    }
-
-    /// The same before the first step.
-    pub(crate) fn pose_at_rest(&self) -> Pose {
-        let mut pose = Pose::default();
-        pose.factor = self.gap_history.as_ref().map_or(1.0, |h| h.value(0.0));
-        pose
     }
 
     /// Sets the friction law. A bound or coefficient that is a constant zero means no friction.

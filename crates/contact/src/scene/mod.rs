@@ -16,6 +16,7 @@ mod friction;
 mod gap;
 mod groups;
 mod load;
+mod motions;
 mod obstacle;
 mod pairs;
 mod partition;

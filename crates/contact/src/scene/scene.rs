@@ -167,7 +167,8 @@ impl Scene {
         &self.mesh
     }
 
-    /// The materials.
+    /// The materials, without their eigenstrains, which are loads: for stresses take those of a
+    /// [result](crate::StepResult::materials).
     pub fn materials(&self) -> &Materials {
         &self.materials
     }

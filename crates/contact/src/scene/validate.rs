@@ -51,6 +51,9 @@ impl Scene {
     /// Checks what needs neither nodes nor computation.
     pub(crate) fn validate(&self) -> Result<(), ContactError> {
         self.analysis.validate()?;
+        if !self.materials.listed().is_empty() {
+            self.materials.of_tets(&self.mesh.distinct_regions())?;
+        }
         let mut times = self.analysis.times().iter();
         times.try_for_each(|&time| self.check_histories(time))?;
         for (index, contact) in self.contacts.iter().enumerate() {
@@ -181,6 +184,13 @@ impl Scene {
                 part: Part::Contact(index),
                 setting: "with_measured_overlaps",
                 needs: "a gap that is measured between bodies or from a shape",
+            });
+        }
+        if contact.gap_history.is_some() && matches!(contact.gap, Gap::None) && !contact.tied {
+            return Err(ContactError::Idle {
+                part: Part::Contact(index),
+                setting: "with_gap_history",
+                needs: "a gap, as of with_gap",
             });
         }
         if let Closing::UpTo(reach) = contact.closing {

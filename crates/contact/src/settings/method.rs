@@ -59,6 +59,7 @@ impl Method {
 
 /// A method by name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum MethodKind {
     /// Conjugate gradients: scenes without contact.
     Linear,

@@ -133,7 +133,7 @@ fn newest(folder: &Path) -> Result<Option<Newest>, ContactError> {
                 let warning = set_aside(damaged, path.clone())?;
                 return Ok(Some(Newest { state, path, warning }));
             }
-            Err(ContactError::Checkpoint { reason }) => damaged.push((path, reason)),
+            Err(ContactError::UnreadableCheckpoint { reason }) => damaged.push((path, reason)),
             Err(other) => return Err(other),
         }
     }
@@ -141,7 +141,7 @@ fn newest(folder: &Path) -> Result<Option<Newest>, ContactError> {
         return Ok(None);
     }
     let reasons: Vec<String> = damaged.into_iter().map(|(_, reason)| reason).collect();
-    Err(ContactError::Checkpoint {
+    Err(ContactError::UnreadableCheckpoint {
         reason: format!(
             "none of those in {} can be read ({}); put copies of them back, or remove them to start anew",
             folder.display(),

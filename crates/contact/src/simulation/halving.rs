@@ -5,6 +5,7 @@ use crate::status::StepStatus;
 
 use super::result::StepResult;
 use crate::report::StepReport;
+use signorini_fem_mesh::vec3::add;
 
 /// Where in a step a simulation is. Increments are `1, 1/2, 1/4, ...` of the step, and begin at multiples of their
 /// length.
@@ -106,6 +107,8 @@ pub(super) struct Before {
     report: Option<StepReport>,
     /// Of friction, its dissipation, of obstacles, J.
     works: [f64; 3],
+    /// Of each contact point the sum of its tangential differences, m.
+    differences: Vec<[f64; 3]>,
     refused: Option<StepStatus>,
 }
 
@@ -127,6 +130,11 @@ impl Before {
             .zip([s.friction_work, s.dissipation, s.obstacle_work])
         {
             *sum += work;
+        }
+        let points = &result.recovered.points;
+        self.differences.resize(points.len(), [0.0; 3]);
+        for (sum, point) in self.differences.iter_mut().zip(points) {
+            *sum = add(*sum, point.difference);
         }
         let status = result.report.status;
         let depends = result.model.plan.effects.history && !status.converged();
@@ -155,6 +163,9 @@ impl Before {
         let works = [&mut s.friction_work, &mut s.dissipation, &mut s.obstacle_work];
         for (work, sum) in works.into_iter().zip(self.works) {
             *work += sum;
+        }
+        for (point, sum) in result.recovered.points.iter_mut().zip(self.differences) {
+            point.difference = add(point.difference, sum);
         }
     }
 }

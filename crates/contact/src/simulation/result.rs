@@ -21,7 +21,6 @@ use std::fmt;
 use std::sync::Arc;
 
 /// The result of a step. It is independent of the simulation, which can take further steps meanwhile.
-#[derive(Debug)]
 pub struct StepResult {
     pub(crate) model: Arc<Model>,
     pub(crate) caches: Arc<Caches>,
@@ -29,6 +28,18 @@ pub struct StepResult {
     pub(crate) report: StepReport,
     pub(crate) recovered: Recovered,
     pub(crate) summary: ContactSummary,
+}
+
+/// What it sums up; not the megabytes of tables and vectors.
+impl fmt::Debug for StepResult {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("StepResult")
+            .field("step", &self.step())
+            .field("time", &self.time())
+            .field("report", &self.report)
+            .field("summary", &self.summary)
+            .finish_non_exhaustive()
+    }
 }
 
 impl StepResult {

@@ -35,9 +35,9 @@ impl State {
     /// no protection against bytes made on purpose.
     ///
     /// # Errors
-    /// [`ContactError::Checkpoint`] if the bytes are of another format, cut, changed, or followed by others.
+    /// [`ContactError::UnreadableCheckpoint`] if the bytes are of another format, cut, changed, or followed by others.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, ContactError> {
-        let error = |reason: String| ContactError::Checkpoint { reason };
+        let error = |reason: String| ContactError::UnreadableCheckpoint { reason };
         let damaged = |how: &str| {
             error(format!(
                 "the bytes are damaged ({how}); use an earlier checkpoint or start anew"
@@ -96,6 +96,7 @@ impl State {
 pub(crate) fn explained(error: ContactError, text: impl FnOnce(String) -> String) -> ContactError {
     match error {
         ContactError::Checkpoint { reason } => ContactError::Checkpoint { reason: text(reason) },
+        ContactError::UnreadableCheckpoint { reason } => ContactError::UnreadableCheckpoint { reason: text(reason) },
         other => other,
     }
 }
@@ -121,7 +122,7 @@ mod tests {
         assert_eq!(State::from_bytes(&bytes).unwrap(), state);
         assert!(matches!(
             State::from_bytes(&bytes[..bytes.len() - 1]),
-            Err(ContactError::Checkpoint { .. })
+            Err(ContactError::UnreadableCheckpoint { .. })
         ));
         assert!(State::from_bytes(&[0; 40]).is_err());
         for at in 0..8 * bytes.len() {

@@ -78,9 +78,13 @@ fn halved_steps_are_those_of_the_times_between() {
     let explicit = explicit.with_load(Load::body([1.0, 0.0, 0.0]).with_history(History::constant(0.0)));
     let (simulation, all) = run(explicit, settings);
     let mut work = 0.0;
+    let mut slip = vec![[0.0; 3]; all[0].points.len()];
     let mut reported = results.iter();
     for result in &all {
         work += result.summary.friction_work;
+        for (sum, point) in slip.iter_mut().zip(&result.points) {
+            (0..3).for_each(|c| sum[c] += point.difference[c]);
+        }
         if !WHOLE.contains(&result.time) {
             continue;
         }
@@ -88,7 +92,13 @@ fn halved_steps_are_those_of_the_times_between() {
         assert_certified(halved, &format!("time {}", halved.time));
         assert_eq!(halved.displacement, result.displacement, "time {}", halved.time);
         assert_eq!(halved.summary.friction_work, work, "time {}", halved.time);
+        // sums are taken in another order
+        for (point, sum) in halved.points.iter().zip(&slip) {
+            let off = (0..3).map(|c| (point.difference[c] - sum[c]).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-18, "time {}: {off:e}", halved.time);
+        }
         work = 0.0;
+        slip.fill([0.0; 3]);
     }
     // what failed is counted
     assert!(total.products > simulation.counters().products);

@@ -13,6 +13,7 @@ use crate::vec3::{self, Vec3};
 
 /// How many parts [`even_parts`] makes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PartCount {
     /// So many; more where bodies or groups are, or cracks split them.
     Exactly(usize),

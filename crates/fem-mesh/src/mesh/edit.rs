@@ -117,7 +117,7 @@ pub fn orient_tets<const N: usize>(points: &[[f64; 3]], tets: &mut [[u32; N]]) -
 /// the others stay in the table for [`drop_unused_nodes`].
 ///
 /// The meshes of the parts must match where they meet. Leave out the facets there, which are now inside. Do not merge
-/// bodies that are to slide on one another.
+/// bodies that are to slide on one another. Without a distance (negative, not a number) nothing is merged.
 ///
 /// ```
 /// use signorini_fem_mesh::{Brick, TetMesh};

@@ -61,7 +61,7 @@ pub struct BoundaryFacet {
 /// boundary, each listed once and oriented outward. It may hold several bodies; nodes of different bodies may coincide.
 ///
 /// Tetrahedra are oriented so that det(p1 - p0, p2 - p0, p3 - p0) > 0.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Clone, PartialEq)]
 pub struct TetMesh {
     pub(super) points: Vec<[f64; 3]>,
     pub(super) tets: Vec<[u32; 4]>,
@@ -71,6 +71,18 @@ pub struct TetMesh {
     pub(super) owners: Vec<u32>,
     pub(super) regions: Vec<u32>,
     pub(super) neighbours: Vec<[u32; 4]>,
+}
+
+/// Its sizes; not the megabytes of points and tetrahedra.
+impl std::fmt::Debug for TetMesh {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("TetMesh")
+            .field("order", &self.order())
+            .field("points", &self.points.len())
+            .field("tets", &self.tets.len())
+            .field("tags", &self.tags())
+            .finish_non_exhaustive()
+    }
 }
 
 impl TetMesh {

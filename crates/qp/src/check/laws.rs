@@ -10,7 +10,7 @@ use crate::vector;
 
 /// A law that an implementation violates.
 #[derive(Debug, Clone, PartialEq, Error)]
-#[error("{law}: off by {error:e} in sample {sample}")]
+#[error("violated: {law}, by {error:e} in sample {sample}")]
 #[non_exhaustive]
 pub struct LawViolation {
     /// The law in words.

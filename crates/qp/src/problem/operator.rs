@@ -35,7 +35,10 @@ pub trait SymmetricOperator: Sync {
 
     /// `x · y` of each pair.
     #[doc(hidden)]
-    fn dots<const K: usize>(&self, pairs: [(&[f64], &[f64]); K]) -> [f64; K] {
+    fn dots<const K: usize>(&self, pairs: [(&[f64], &[f64]); K]) -> [f64; K]
+    where
+        Self: Sized,
+    {
         vector::dots(pairs)
     }
 

@@ -323,9 +323,9 @@ fn damaged_checkpoints() {
     let mut unknown = bytes.clone();
     unknown[0] ^= 1;
     let count = check(cases! {
-        "a cut checkpoint": made(State::from_bytes(&bytes[..bytes.len() / 2])) => Error::Contact(ContactError::Checkpoint { .. }), "checkpoint", "damaged";
-        "an empty checkpoint": made(State::from_bytes(&[])) => Error::Contact(ContactError::Checkpoint { .. }), "damaged";
-        "another format": made(State::from_bytes(&unknown)) => Error::Contact(ContactError::Checkpoint { .. }), "format";
+        "a cut checkpoint": made(State::from_bytes(&bytes[..bytes.len() / 2])) => Error::Contact(ContactError::UnreadableCheckpoint { .. }), "checkpoint", "damaged";
+        "an empty checkpoint": made(State::from_bytes(&[])) => Error::Contact(ContactError::UnreadableCheckpoint { .. }), "damaged";
+        "another format": made(State::from_bytes(&unknown)) => Error::Contact(ContactError::UnreadableCheckpoint { .. }), "format";
     });
     assert_eq!(count, 3);
 }

@@ -14,6 +14,7 @@ use std::ops::Range;
 ///
 /// For loads `f = sum h_j f_j` the dual load is `d = c - sum h_j dual_j` and `e = sum h_j coarse_j`.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct LoadResponse {
     /// `B K+ f`.
     pub dual: Vec<f64>,

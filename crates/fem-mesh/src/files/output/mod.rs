@@ -89,6 +89,8 @@ errors! {
         Foreign { what: &'static str } =
             "the {what} does not belong to this mesh; write it with the mesh that it was made from";
         SeriesName { name: String } = "{name:?} cannot name a series; use a plain file name without folders";
+        SharedSeries { name: String } =
+            "two series in one folder are named {name:?}, and one would take the files of the other; rename one";
         Time { time: f64, before: f64 } =
             "time {time} of the series does not follow {before}; times must be finite and increase";
         NoSeries { path: PathBuf, source: std::io::Error } =
