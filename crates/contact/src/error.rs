@@ -17,11 +17,14 @@ fn held_by(friction: Option<f64>) -> &'static str {
 
 /// What would hold a body.
 fn held_remedy(step: usize, friction: Option<f64>, coupling: Option<&FreeCoupling>) -> String {
+    // as many digits as tell the factor from 1
+    let prec = friction.map_or(0, |factor| (3.0 - (factor - 1.0).log10().min(0.0)).min(15.0) as usize);
+    let digits = 10.0_f64.powi(prec as i32);
     let others = match friction {
         Some(factor) => format!(
-            "friction would have to be more than {:.3} times as large: press harder, pull less, add a support, or \
+            "friction would have to be more than {:.prec$} times as large: press harder, pull less, add a support, or \
              move the body by its supports if it is to slide",
-            (1e3 * factor).floor() / 1e3
+            (digits * factor).floor() / digits
         ),
         None => "add a support, contact or friction, merge its nodes with those of a body that it is a part of \
             (mesh::merge_nodes), or balance the loads"

@@ -64,8 +64,12 @@ pub(crate) const ROD: f64 = 8.0;
 pub(crate) const ROD_TETS: usize = 30;
 pub(crate) const ROD_QUADRATIC: usize = 10;
 /// Volume of a rod over the square of its thickness and the longest edge of its box up to which it is one, for bent
-/// rods, oblique ones, and such as are wider than thick. Rings have three; to cut them gains nothing.
+/// rods, oblique ones, and such as are wider than thick: where the box is about as wide as long, and else. Rings have
+/// three; to cut them gains nothing.
 pub(crate) const ROD_BEND: f64 = 2.5;
+pub(crate) const STRAP_BEND: f64 = 6.0;
+/// Width of a box over its length from which on it may be that of a ring.
+pub(crate) const ROUND: f64 = 0.75;
 /// Part of a slab by which its end may move to a plane between layers of graded cells: a ragged cut through long cells
 /// costs more than parts of unequal size.
 pub(crate) const PLANE: f64 = 0.5;

@@ -150,7 +150,7 @@ pub(super) fn conditions(
                     let gap = mortar_gap(scene, index, surface, (local, &normal), seen)?;
                     // weights are in part negative: over a curved side a mean may be inside where nothing is
                     let deepest = seen.nearest.min(0.0);
-                    let inside = scene.mesh.order() == 1 && !contact.tied && gap < deepest - rounding;
+                    let inside = !contact.tied && gap < deepest - rounding;
                     let gap = if inside { deepest } else { gap };
                     let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
                     measured = rounded(gap, weights * rounding);

@@ -73,7 +73,8 @@ pub(super) fn narrow_contact(
     }
     let points = &recovered.points;
     let largest = u.chunks_exact(3).map(norm).fold(0.0, f64::max);
-    let mut way = vec![EDGE_OVERLAP / NARROW * largest; model.scene.contacts.len()];
+    let least = (EDGE_OVERLAP * largest).max(model.discrete.rounding) / NARROW;
+    let mut way = vec![least; model.scene.contacts.len()];
     for (point, state) in model.points.iter().zip(points) {
         let own = &mut way[point.surface()];
         *own = own.max((point.gap() - state.gap).abs()).max(-point.gap());

@@ -7,7 +7,8 @@ use super::subdomains::DecompositionError;
 use crate::mesh::{TetMesh, connected_sets, extent};
 use crate::tables::Lists;
 use crate::tolerances::{
-    BOX, EDGE_STEPS, FILLED, GRADED, LARGER, PLANE, ROD, ROD_BEND, ROD_QUADRATIC, ROD_TETS, SNAP, STRONGLY,
+    BOX, EDGE_STEPS, FILLED, GRADED, LARGER, PLANE, ROD, ROD_BEND, ROD_QUADRATIC, ROD_TETS, ROUND, SNAP, STRAP_BEND,
+    STRONGLY,
 };
 use crate::vec3::{self, Vec3};
 
@@ -173,9 +174,12 @@ impl Cutter<'_> {
 
     /// How many pieces, twice as long as thick, these tetrahedra make if they are a rod; else one.
     fn lengths(&self, tets: &[u32], [volume, surface]: [f64; 2]) -> usize {
-        let longest = self.size(tets).0.into_iter().fold(0.0, f64::max);
+        let mut edges = self.size(tets).0;
+        edges.sort_by(f64::total_cmp);
+        let [_, width, longest] = edges;
         let thickness = 4.0 * volume / surface;
-        let is_rod = volume < ROD_BEND * longest * thickness.powi(2);
+        let bend = if width < ROUND * longest { STRAP_BEND } else { ROD_BEND };
+        let is_rod = volume < bend * longest * thickness.powi(2);
         let times = volume / thickness.powi(3);
         let least = if self.mesh.order() == 2 {
             ROD_QUADRATIC
