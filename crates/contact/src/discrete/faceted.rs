@@ -5,15 +5,16 @@
 //! the sum of the arcs over its edges, for any curve of second degree. Taken from the measured gaps, in the mean over
 //! all contact of two bodies, it tells whether they touch or are pressed together.
 
+use super::chords::Chords;
 use super::creases::area_vector;
 use super::means::edges;
 use super::partners::Paired;
 use super::points::{ContactPoint, of_contact};
 use crate::error::ContactError;
 use crate::scene::{Closing, Gap, Scene};
-use crate::tolerances::{DEEP, DIGITS, FACETED, KINK, SHARP, TOUCHING};
+use crate::tolerances::{DEEP, DIGITS, FACETED, SHARP, TOUCHING};
 use signorini_fem_mesh::internal::{DisjointSets, Lists, distinct};
-use signorini_fem_mesh::vec3::{add, cross, dot, norm, scale, sub};
+use signorini_fem_mesh::vec3::{cross, dot, norm, sub};
 use signorini_fem_mesh::{FacetTag, Surface, TetMesh};
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
@@ -288,73 +289,4 @@ fn bends(mesh: &TetMesh, surface: &Surface) -> HashMap<u32, Bend> {
         (mid, bend)
     }));
     bends
-}
-
-/// The edges of a surface as chords of arcs.
-struct Chords<'a> {
-    mesh: &'a TetMesh,
-    surface: &'a Surface,
-    /// Nodes at a rim, whose normals are those of facets on one side of them.
-    at_rim: Vec<bool>,
-    /// Ends of edges that are bent.
-    on_arc: Vec<bool>,
-}
-
-impl<'a> Chords<'a> {
-    fn new(mesh: &'a TetMesh, surface: &'a Surface) -> Self {
-        let mut edges: Vec<[u32; 2]> = surface.triangles().iter().flat_map(|t| edges(*t)).collect();
-        edges.sort_unstable();
-        let count = surface.nodes().len();
-        let mut out = Self {
-            mesh,
-            surface,
-            at_rim: vec![false; count],
-            on_arc: vec![false; count],
-        };
-        for same in edges.chunk_by(|a, b| a == b) {
-            let bent = are_bent(out.tilts(same[0]));
-            for node in same[0].map(|n| n as usize) {
-                out.at_rim[node] |= same.len() == 1;
-                out.on_arc[node] |= bent;
-            }
-        }
-        out
-    }
-
-    fn place(&self, node: u32) -> [f64; 3] {
-        self.mesh.points()[self.surface.nodes()[node as usize] as usize]
-    }
-
-    fn normal(&self, node: u32) -> [f64; 3] {
-        self.surface.frames()[node as usize].normal
-    }
-
-    /// How far the normals of the ends of an edge tilt outward over its length, m.
-    fn tilts(&self, [a, b]: [u32; 2]) -> [f64; 2] {
-        let along = sub(self.place(b), self.place(a));
-        [-dot(along, self.normal(a)), dot(along, self.normal(b))]
-    }
-
-    /// Height of the arc over an edge, m, positive if it is convex; none over edges with a mid-node on the arc.
-    fn arc(&self, edge: [u32; 2], mid: Option<u32>) -> f64 {
-        let tilts = self.tilts(edge);
-        let [a, b] = edge.map(|n| n as usize);
-        let ends = |from: usize, to: usize| self.at_rim[from] && !self.at_rim[to] && self.on_arc[to];
-        let arc = match (are_bent(tilts), ends(a, b), ends(b, a)) {
-            (true, ..) => 0.125 * (tilts[0] + tilts[1]),
-            (false, true, _) => 0.25 * tilts[1],
-            (false, _, true) => 0.25 * tilts[0],
-            (false, false, false) => 0.0,
-        };
-        let Some(mid) = mid else { return arc };
-        let chord = scale(0.5, add(self.place(edge[0]), self.place(edge[1])));
-        let outward = add(self.normal(edge[0]), self.normal(edge[1]));
-        let off = 0.5 * dot(sub(self.mesh.points()[mid as usize], chord), outward);
-        if off * arc.signum() > 0.5 * arc.abs() { 0.0 } else { arc }
-    }
-}
-
-/// Whether an edge is the chord of an arc, which bends at both ends. One between flat sides bends at one end.
-fn are_bent([a, b]: [f64; 2]) -> bool {
-    a * b > 0.0 && a.abs().min(b.abs()) >= KINK * a.abs().max(b.abs())
 }

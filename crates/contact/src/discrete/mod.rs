@@ -11,6 +11,7 @@
 //!
 //! Uses: `scene`, `mortar`. In: a scene. Out: a [`DiscreteScene`], borrowed by plan, model and reactions.
 
+mod chords;
 mod couplings;
 mod creases;
 mod crossing;

@@ -5,10 +5,11 @@
 //! those of facets. Nodes on sides that do not face each other are no partners: a thin body has nodes of its far side
 //! on the same normal.
 
+use super::chords::arcs;
 use super::crossing::flush;
 use super::normals::{differ, fixed_frame};
 use crate::error::ContactError;
-use crate::mortar::{MortarNode, mortar_nodes};
+use crate::mortar::{Arcs, MortarNode, mortar_nodes};
 use crate::scene::{Contact, Gap};
 use crate::tolerances::{BESIDE, COARSER, FACING, HARDER, LOCKING, MOST_TILT, MUCH_COARSER, OVERLAP, TILT};
 use rayon::prelude::*;
@@ -102,7 +103,14 @@ impl Paired {
         let crossing = crossing();
         let flush = |from: &Surface, seen: &[Option<MortarNode>]| flush(mesh, contact, from, seen, &crossing);
         let seen = |from: &Surface, to: &Surface| {
-            mortar_nodes(mesh, from, to, (contact.tied, contact.crease), |seen| flush(from, seen))
+            // quadratic facets have their own curves
+            let arcs = if contact.tied || mesh.order() == 2 {
+                Arcs::new()
+            } else {
+                arcs(mesh, to)
+            };
+            let choices = (contact.tied, contact.crease);
+            mortar_nodes(mesh, from, to, choices, &arcs, |seen| flush(from, seen))
         };
         let there = || seen(&paired.surface, &other.surface);
         let back = || seen(&other.surface, &paired.surface);

@@ -120,6 +120,7 @@ pub(super) fn conditions(
             _ => HashMap::new(),
         };
         let curved = is_curved(partners);
+        let apart = are_apart(&scene.mesh, paired, rounding);
         for (local, &node) in surface.nodes().iter().enumerate() {
             let shape = shaped.get(local).copied();
             if shape == Some(None) {
@@ -151,7 +152,12 @@ pub(super) fn conditions(
                     // weights are in part negative: over a curved side a mean may be inside where nothing is
                     let deepest = seen.nearest.min(0.0);
                     let inside = !contact.tied && gap < deepest - rounding;
-                    let gap = if inside { deepest } else { gap };
+                    let gap = match seen.curve.filter(|_| apart) {
+                        // facets of the other side are beside the curve that is meant
+                        Some(curve) => curve.max(0.0),
+                        None if inside => deepest,
+                        None => gap,
+                    };
                     let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
                     measured = rounded(gap, weights * rounding);
                     mean.clone_from(&seen.own);
@@ -263,6 +269,21 @@ fn tied_mid(
 
 fn place_of(mesh: &TetMesh) -> impl Fn(u32) -> [f64; 3] {
     |node| mesh.points()[node as usize]
+}
+
+/// Whether sides of meshes that do not match overlap nowhere.
+fn are_apart(mesh: &TetMesh, paired: &Paired, rounding: f64) -> bool {
+    let Partners::Mortar(nodes) = &paired.partners else {
+        return false;
+    };
+    let mut nodes = nodes.iter().zip(paired.surface.nodes());
+    nodes.all(|(seen, &node)| {
+        let gap = |seen: &MortarNode| {
+            let normal = paired.fixed.unwrap_or(seen.frame).normal;
+            seen.gap(mesh, mesh.points()[node as usize], &normal)
+        };
+        seen.as_ref().is_none_or(|seen| gap(seen) >= -rounding)
+    })
 }
 
 /// Whether meshes do not match and normals differ.

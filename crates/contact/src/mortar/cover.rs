@@ -7,10 +7,10 @@
 //! sum of that and of the shape function of the corner; edges that are bent in the plane, as at the rim of a disc,
 //! count.
 
-use crate::tolerances::{BENT_STEPS, COVERED, NO_EXTENT, OVERLAP};
+use crate::tolerances::{BENT_STEPS, COVERED, NO_EXTENT};
 use signorini_fem_mesh::internal::{facet_shape, triangle};
 
-type Point = [f64; 2];
+pub(super) type Point = [f64; 2];
 
 /// A triangle of the other side, laid into the plane of the facet: corners, counter-clockwise, and their node numbers.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +23,8 @@ pub(super) struct Laid {
     pub(super) bend: Option<[Point; 3]>,
     /// How high its nodes are over the plane of the facet, m: corners, then mid-nodes.
     pub(super) heights: [f64; 6],
+    /// How high the curve that it stands for is over its edges 01, 12, 20, m, towards the facet.
+    pub(super) arcs: [f64; 3],
     /// Where a displacement is to be taken from its tetrahedron to the facet, the way there.
     pub(super) way: Option<Way>,
 }
@@ -40,7 +42,7 @@ impl Laid {
     }
 
     /// Barycentric coordinates of a point, and the shape functions of its own nodes there.
-    fn shape(&self, p: Point) -> ([f64; 3], [f64; 6]) {
+    pub(super) fn shape(&self, p: Point) -> ([f64; 3], [f64; 6]) {
         let l = place(&self.corners, self.bend.as_ref(), p);
         match self.mids {
             Some(_) => (l, facet_shape(&l)),
@@ -49,7 +51,7 @@ impl Laid {
     }
 
     /// How high it is over the plane of the facet where its nodes have these shape functions, m.
-    fn height(&self, shape: &[f64; 6]) -> f64 {
+    pub(super) fn height(&self, shape: &[f64; 6]) -> f64 {
         shape.iter().zip(&self.heights).map(|(n, h)| n * h).sum()
     }
 }
@@ -116,7 +118,7 @@ fn add(weights: &mut Vec<(u32, [f64; 3])>, node: u32, values: [f64; 3]) {
 pub(super) struct Piece {
     polygon: Vec<Point>,
     pub(super) area: f64,
-    laid: Laid,
+    pub(super) laid: Laid,
     /// The smallest distance of the triangle over it, m; negative inside.
     pub(super) nearest: f64,
 }
@@ -296,33 +298,6 @@ impl Cover {
     }
 }
 
-/// The gaps at the nodes of a quadratic facet, m, where pieces cover it: each from the piece that is nearest in the
-/// plane. `None` where a part is not covered.
-pub(super) fn gaps(own: &Flat, pieces: &[Piece]) -> Option<[f64; 6]> {
-    own.nodes?;
-    let covered: f64 = pieces.iter().map(|piece| piece.area).sum();
-    if covered < (1.0 - OVERLAP) * area(&own.corners) {
-        return None;
-    }
-    let inside = |piece: &Piece, p| {
-        barycentric(&piece.laid.corners, p)
-            .into_iter()
-            .fold(f64::INFINITY, f64::min)
-    };
-    let height = |p: Point| {
-        let nearest = pieces.iter().max_by(|a, b| inside(a, p).total_cmp(&inside(b, p)))?;
-        Some(nearest.laid.height(&nearest.laid.shape(p).1))
-    };
-    let mut gaps = [0.0; 6];
-    for k in 0..3 {
-        let [bend_x, bend_y] = own.bend.map_or([0.0; 2], |bend| bend[k]);
-        let [x, y] = mean(own.corners[k], own.corners[(k + 1) % 3]);
-        gaps[k] = height(own.corners[k])?;
-        gaps[3 + k] = height([x + bend_x, y + bend_y])? - own.heights[k];
-    }
-    Some(gaps)
-}
-
 /// The part of a polygon where a linear function is not negative.
 fn cut(polygon: &[Point], side: impl Fn(Point) -> f64) -> Vec<Point> {
     let mut out = Vec::with_capacity(polygon.len() + 1);
@@ -388,7 +363,7 @@ fn pseudo_inverse([xx, xy, yy]: [f64; 3]) -> [f64; 3] {
 }
 
 /// Area of a polygon, counter-clockwise positive.
-fn area(polygon: &[Point]) -> f64 {
+pub(super) fn area(polygon: &[Point]) -> f64 {
     let first = polygon[0];
     let pairs = polygon[1..].windows(2);
     pairs.map(|p| 0.5 * cross(sub(p[0], first), sub(p[1], first))).sum()
@@ -398,7 +373,7 @@ fn sub(a: Point, b: Point) -> Point {
     [a[0] - b[0], a[1] - b[1]]
 }
 
-fn mean(a: Point, b: Point) -> Point {
+pub(super) fn mean(a: Point, b: Point) -> Point {
     [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])]
 }
 
@@ -418,6 +393,7 @@ mod tests {
             mids: None,
             bend: None,
             heights: [0.0; 6],
+            arcs: [0.0; 3],
             way: None,
         }
     }

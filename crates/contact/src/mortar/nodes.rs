@@ -1,8 +1,7 @@
 //! The other side of each node of a surface.
 
-use super::cover::Cover;
 use super::opening::Rim;
-use super::search::{Normals, covers, in_order};
+use super::search::{Arcs, Normals, Seen, covers, in_order};
 use crate::tolerances::{COVERED, NO_WEIGHT, SAME_NORMAL};
 use crate::vec3::edge_cosine;
 use rayon::prelude::*;
@@ -25,6 +24,8 @@ pub(crate) struct MortarNode {
     pub(crate) way: f64,
     /// The smallest distance of facets of both sides around it, as if they were flat, m; negative inside.
     pub(crate) nearest: f64,
+    /// Its distance from the curve that facets of the other side stand for, m, where these are bent.
+    pub(crate) curve: Option<f64>,
     /// Integral of the dual shape function of the node over what is covered: `D_jj`, m².
     pub(crate) area: f64,
     /// Normal of the covered facets, out of the first side, and tangents: of curved ones the mean that displacements of
@@ -88,11 +89,12 @@ pub(crate) fn mortar_nodes(
     surface: &Surface,
     other: &Surface,
     (tied, crease): (bool, f64),
+    arcs: &Arcs,
     crossing: impl Fn(&[Option<MortarNode>]) -> HashSet<u32>,
 ) -> Vec<Option<MortarNode>> {
     let triangles = in_order(mesh, surface);
     let rim = (mesh.order() == 2 && !tied).then(|| Rim::new(mesh, surface, crease));
-    let covers = covers(mesh, &triangles, other, tied, rim.as_ref());
+    let covers = covers(mesh, &triangles, other, tied, rim.as_ref(), arcs);
     let corners: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.nodes).collect();
     let around = Lists::by_key(mesh.points().len(), corners.as_flattened());
     // tied sides need no normal, and means of displacements have their own
@@ -106,9 +108,9 @@ pub(crate) fn mortar_nodes(
         let places = || around.of(own as usize).iter().map(|&place| place as usize);
         let mut sums = Sums::default();
         for (facet, corner) in places().map(|place| (place / 3, place % 3)) {
-            if let Some((cover, normals)) = &covers[facet] {
+            if let Some(seen) = &covers[facet] {
                 let tips = (0..3).filter(|&c| is_tip(corners[facet][c])).collect();
-                sums.add(&Share { corner, tips }, &corners[facet], cover, normals);
+                sums.add(&Share { corner, tips }, &corners[facet], seen);
             }
         }
         sums.cancel();
@@ -158,16 +160,24 @@ struct Sums {
     area: f64,
     way: f64,
     nearest: Option<f64>,
+    /// Areas of covers times distances from the curve there, and these areas.
+    curve: [f64; 2],
     normal: [f64; 3],
     own: BTreeMap<u32, f64>,
     partner: BTreeMap<u32, f64>,
 }
 
 impl Sums {
-    fn add(&mut self, share: &Share, corners: &[u32; 3], cover: &Cover, normals: &Normals) {
+    fn add(&mut self, share: &Share, corners: &[u32; 3], Seen { cover, normals, curve }: &Seen) {
         self.area += share.of(&cover.areas);
         self.way += share.of(&cover.ways);
         self.nearest = Some(self.nearest.map_or(cover.nearest, |known| known.min(cover.nearest)));
+        if let Some(curve) = curve {
+            self.curve = [
+                self.curve[0] + cover.area * curve[share.corner],
+                self.curve[1] + cover.area,
+            ];
+        }
         match normals {
             Normals::Plane(normal) => self.normal = add(self.normal, scale(cover.area, *normal)),
             // the mean that displacements have; three times, as plane facets count whole
@@ -219,6 +229,7 @@ impl Sums {
             partner,
             way: self.way / self.area,
             nearest: self.nearest?,
+            curve: (self.curve[1] > 0.0).then(|| self.curve[0] / self.curve[1]),
             area: self.area,
             frame,
             is_handed_on: false,

@@ -1,6 +1,7 @@
 //! Which facets of the other side cover a facet.
 
-use super::cover::{Cover, Flat, Laid, Piece, Way, barycentric, gaps};
+use super::cover::{Cover, Flat, Laid, Piece, Way, barycentric};
+use super::distances::{curve, gaps};
 use super::opening::Rim;
 use crate::tolerances::{BENT, FACING, OVERLAP};
 use rayon::prelude::*;
@@ -9,6 +10,7 @@ use rstar::{AABB, RTree};
 use signorini_fem_mesh::internal::{facet_normals, shape_gradients};
 use signorini_fem_mesh::vec3::{add, area_vector, centroid, dot, norm, scale, sub, unit};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
+use std::collections::HashMap;
 
 /// Distance over the size of a facet up to which others are looked for first: gaps are mostly small.
 const NEAR: f64 = 2.0;
@@ -16,6 +18,9 @@ const NEAR: f64 = 2.0;
 const FARTHER: f64 = 4.0;
 
 type Corners = [[f64; 3]; 3];
+
+/// Heights of a curve over the edges of facets, by their nodes, ascending, m.
+pub(crate) type Arcs = HashMap<[u32; 2], f64>;
 
 /// A triangle of a surface: mesh nodes of its corners, and in a mesh of order 2 those on its edges 01, 12, 20.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -115,11 +120,13 @@ pub(super) fn in_order(mesh: &TetMesh, surface: &Surface) -> Vec<Triangle> {
 }
 
 /// The facets of the other side in a tree of their boxes.
-struct OtherSide {
+struct OtherSide<'a> {
     triangles: Vec<Triangle>,
     tree: RTree<GeomWithData<Rectangle<[f64; 3]>, u32>>,
     corners: Vec<Corners>,
     normals: Vec<[f64; 3]>,
+    /// Heights of the curve over edges, by their nodes, m.
+    arcs: &'a Arcs,
 }
 
 /// A facet in its own plane: origin in the middle.
@@ -138,23 +145,33 @@ pub(super) enum Normals {
     Curved([[f64; 3]; 6]),
 }
 
+/// What a facet sees of the other side.
+#[derive(Debug, Clone)]
+pub(super) struct Seen {
+    pub(super) cover: Cover,
+    pub(super) normals: Normals,
+    /// Distances of the corners from the curve that facets of the other side stand for, m, where these are bent.
+    pub(super) curve: Option<[f64; 3]>,
+}
+
 /// The cover of each facet of a surface, by the nodes of the other one; the normals of the facets beside it.
 ///
 /// What is farther away than four times the largest distance found anywhere is not looked for, unless nothing is found.
 /// Displacements of the other side are those where they are, or [on the facet](Way) if it is `tied`. Facets on which a
-/// gap opens from the `rim` have dual functions.
+/// gap opens from the `rim` have dual functions; facets of the other side are chords of `arcs`.
 pub(super) fn covers(
     mesh: &TetMesh,
     triangles: &[Triangle],
     other: &Surface,
     tied: bool,
     rim: Option<&Rim<'_>>,
-) -> Vec<Option<(Cover, Normals)>> {
-    let other = OtherSide::new(mesh, other);
+    arcs: &Arcs,
+) -> Vec<Option<Seen>> {
+    let other = OtherSide::new(mesh, other, arcs);
     let planes: Vec<Option<Plane>> = triangles.iter().map(|t| Plane::new(&t.corners(mesh))).collect();
     let size = planes.iter().flatten().map(|p| p.size).fold(0.0, f64::max);
     let most = other.farthest(planes.iter().flatten());
-    let mut out: Vec<Option<(Cover, Normals)>> = vec![None; planes.len()];
+    let mut out: Vec<Option<Seen>> = vec![None; planes.len()];
     let mut reach = NEAR * size;
     loop {
         let found: Vec<_> = (0..planes.len())
@@ -170,7 +187,12 @@ pub(super) fn covers(
                 let pieces: Vec<Piece> = pieces.into_iter().map(|p| p.0).collect();
                 let opens = |rim: &Rim<'_>| Some(rim.opens(own.nodes?, || gaps(&own, &pieces)));
                 let cover = Cover::new(&own, &pieces, rim.and_then(opens) == Some(true));
-                Some((k, cover.map(|c| (c, triangles[k].normals(mesh, plane))), farthest))
+                let seen = cover.map(|cover| Seen {
+                    cover,
+                    normals: triangles[k].normals(mesh, plane),
+                    curve: curve(&own.corners, &pieces),
+                });
+                Some((k, seen, farthest))
             })
             .collect();
         let mut farthest = None::<f64>;
@@ -221,8 +243,8 @@ impl Plane {
     }
 }
 
-impl OtherSide {
-    fn new(mesh: &TetMesh, surface: &Surface) -> Self {
+impl<'a> OtherSide<'a> {
+    fn new(mesh: &TetMesh, surface: &Surface, arcs: &'a Arcs) -> Self {
         let triangles = in_order(mesh, surface);
         let corners: Vec<Corners> = triangles.iter().map(|t| t.corners(mesh)).collect();
         let boxes = corners.iter().zip(0..);
@@ -232,6 +254,7 @@ impl OtherSide {
             normals: corners.iter().map(|c| unit(area_vector(c))).collect(),
             corners,
             triangles,
+            arcs,
         }
     }
 
@@ -305,6 +328,7 @@ impl OtherSide {
             mids: self.triangles[facet].mids.map(|[ij, jk, ki]| [ki, jk, ij]),
             bend: None,
             heights: [seen[0].1, seen[1].1, seen[2].1, 0.0, 0.0, 0.0],
+            arcs: [[i, k], [k, j], [j, i]].map(|[a, b]| self.arcs.get(&[a.min(b), a.max(b)]).copied().unwrap_or(0.0)),
             way: None,
         };
         for (height, mid) in laid.heights[3..].iter_mut().zip(laid.mids.into_iter().flatten()) {
