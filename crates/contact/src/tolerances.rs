@@ -138,8 +138,8 @@ pub(crate) const COVERED: f64 = 1e-10;
 /// How much the pieces that cover a facet may overlap, over its area: those of a curved surface do a little.
 pub(crate) const OVERLAP: f64 = 0.05;
 
-/// How far a gap rises over a quadratic facet, over the root of its area, from which on it opens; and how far it is from
-/// linear at mid-nodes, over that rise, up to which it does so linearly.
+/// How far a gap rises over a quadratic facet, over the root of its area, from which on it opens; and how far it is
+/// from linear at mid-nodes, over that rise, up to which it does so linearly.
 pub(crate) const OPENING: f64 = 1e-3;
 pub(crate) const LINEAR: f64 = 0.05;
 
@@ -425,6 +425,9 @@ pub(crate) const FACETED: f64 = 0.1;
 /// fits press from a quarter of a sagitta on.
 pub(crate) const TOUCHING: f64 = 0.35;
 pub(crate) const DEEP: f64 = 3.0;
+/// Height of an arc over the edge that stands for it below which gaps are measured to it: of eleven edges around a
+/// circle and more; fewer are those of a prism.
+pub(crate) const FLAT_ARC: f64 = 0.075;
 /// Tilt of the normal at one end of an edge over that at the other end, below which the edge is between flat sides.
 pub(crate) const KINK: f64 = 0.3;
 

@@ -1,18 +1,23 @@
 //! Edges of straight facets as chords of the curve that they stand for.
 
 use super::means::edges;
-use crate::tolerances::KINK;
-use signorini_fem_mesh::vec3::{add, dot, scale, sub};
+use crate::tolerances::{FLAT_ARC, KINK};
+use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
 use signorini_fem_mesh::{Surface, TetMesh};
 use std::collections::HashMap;
 
 /// The heights of the arcs over the edges of a surface in a mesh of order 1, by their mesh nodes, ascending: of those
-/// that have one, m.
+/// that have one, m. Edges that turn by much are those of a prism.
 pub(super) fn arcs(mesh: &TetMesh, surface: &Surface) -> HashMap<[u32; 2], f64> {
     let chords = Chords::new(mesh, surface);
     let all = surface.triangles().iter().flat_map(|t| edges(*t));
-    let heights = all.map(|edge| (edge.map(|n| surface.nodes()[n as usize]), chords.arc(edge, None)));
-    heights.filter(|(_, height)| *height != 0.0).collect()
+    let arc = |edge: [u32; 2]| {
+        let height = chords.arc(edge, None);
+        let length = norm(sub(chords.place(edge[1]), chords.place(edge[0])));
+        let is_arc = height != 0.0 && height.abs() < FLAT_ARC * length;
+        is_arc.then(|| (edge.map(|n| surface.nodes()[n as usize]), height))
+    };
+    all.filter_map(arc).collect()
 }
 
 /// The edges of a surface as chords of arcs.

@@ -3,7 +3,8 @@
 //! Nodes are on the curve, facets of a hollow side before it, those of a convex side behind it, and with them mid-nodes
 //! on straight edges; an obstacle has no facets. What they make of gaps is known in the mean over a facet: a third of
 //! the sum of the arcs over its edges, for any curve of second degree. Taken from the measured gaps, in the mean over
-//! all contact of two bodies, it tells whether they touch or are pressed together.
+//! all contact of two bodies, it tells whether they touch or are pressed together. Gaps between linear facets that
+//! cover one another are measured to the curve (`chords`), and have nothing of it.
 
 use super::chords::Chords;
 use super::creases::area_vector;
@@ -201,7 +202,7 @@ fn touch(group: &[&Faceted], conditions: &[ContactPoint], deepest: f64) -> bool 
             for (side, nodes) in faceted.sides.iter().zip([own, partner]) {
                 let at = |(node, weight): &(u32, f64)| side.bends.get(node).map_or(0.0, |bend| weight * bend.behind);
                 let behind: f64 = nodes.iter().map(at).sum();
-                open -= behind;
+                open -= if point.to_curve { 0.0 } else { behind };
                 before += (-behind).max(0.0);
             }
             gap += point.area * open;
@@ -213,7 +214,7 @@ fn touch(group: &[&Faceted], conditions: &[ContactPoint], deepest: f64) -> bool 
 }
 
 impl Faceted {
-    /// The deepest overlap.
+    /// The deepest overlap, and how far facets are from the curve there, as far as that is not taken from it.
     fn deepest(&self, conditions: &[ContactPoint], rounding: f64) -> Option<Overlap> {
         let own = conditions[self.range.clone()].iter();
         let point = own
@@ -226,7 +227,11 @@ impl Faceted {
             node: point.node(),
             place: point.position,
             depth: -point.gap,
-            sagitta: known.map(|bend| bend.sagitta).fold(0.0, f64::max),
+            sagitta: match point.to_curve {
+                // facets are not in it
+                true => 0.0,
+                false => known.map(|bend| bend.sagitta).fold(0.0, f64::max),
+            },
         })
     }
 

@@ -42,6 +42,8 @@ pub(crate) struct ContactPoint {
     pub(crate) area: f64,
     /// Distance to the obstacle as given, m.
     pub(crate) gap: f64,
+    /// Whether that is measured to the curve that facets of the other side stand for.
+    pub(crate) to_curve: bool,
     /// Of it what was added to a measured overlap that facets alone make.
     pub(crate) closed: f64,
     /// Friction along the second tangent over that along the first.
@@ -120,7 +122,6 @@ pub(super) fn conditions(
             _ => HashMap::new(),
         };
         let curved = is_curved(partners);
-        let apart = are_apart(&scene.mesh, paired, rounding);
         for (local, &node) in surface.nodes().iter().enumerate() {
             let shape = shaped.get(local).copied();
             if shape == Some(None) {
@@ -132,7 +133,7 @@ pub(super) fn conditions(
                 area: surface.areas()[local],
                 triangles: Vec::new(),
             }];
-            let mut measured = 0.0;
+            let (mut measured, mut to_curve) = (0.0, false);
             let mut mean = vec![(node, 1.0)];
             let partner = match partners {
                 Partners::Obstacle => None,
@@ -152,12 +153,13 @@ pub(super) fn conditions(
                     // weights are in part negative: over a curved side a mean may be inside where nothing is
                     let deepest = seen.nearest.min(0.0);
                     let inside = !contact.tied && gap < deepest - rounding;
-                    let gap = match seen.curve.filter(|_| apart) {
+                    let gap = match seen.curve {
                         // facets of the other side are beside the curve that is meant
-                        Some(curve) => curve.max(0.0),
+                        Some(curve) => curve,
                         None if inside => deepest,
                         None => gap,
                     };
+                    to_curve = seen.curve.is_some();
                     let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
                     measured = rounded(gap, weights * rounding);
                     mean.clone_from(&seen.own);
@@ -192,6 +194,7 @@ pub(super) fn conditions(
                     frame,
                     area: side.area,
                     gap,
+                    to_curve,
                     closed: 0.0,
                     stretch: contact.friction_axis.map_or(1.0, |(_, ratio)| ratio),
                     compliance: contact.compliance,
@@ -261,6 +264,7 @@ fn tied_mid(
         frame: frame.unwrap_or(one),
         area: 0.5 * (surface.areas()[a] + surface.areas()[b]),
         gap: 0.0,
+        to_curve: false,
         closed: 0.0,
         stretch: 1.0,
         compliance: [0.0; 2],
@@ -269,21 +273,6 @@ fn tied_mid(
 
 fn place_of(mesh: &TetMesh) -> impl Fn(u32) -> [f64; 3] {
     |node| mesh.points()[node as usize]
-}
-
-/// Whether sides of meshes that do not match overlap nowhere.
-fn are_apart(mesh: &TetMesh, paired: &Paired, rounding: f64) -> bool {
-    let Partners::Mortar(nodes) = &paired.partners else {
-        return false;
-    };
-    let mut nodes = nodes.iter().zip(paired.surface.nodes());
-    nodes.all(|(seen, &node)| {
-        let gap = |seen: &MortarNode| {
-            let normal = paired.fixed.unwrap_or(seen.frame).normal;
-            seen.gap(mesh, mesh.points()[node as usize], &normal)
-        };
-        seen.as_ref().is_none_or(|seen| gap(seen) >= -rounding)
-    })
 }
 
 /// Whether meshes do not match and normals differ.
