@@ -1,6 +1,5 @@
 //! Edges of straight facets as chords of the curve that they stand for.
 
-use super::means::edges;
 use crate::tolerances::{FLAT_ARC, KINK};
 use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
 use signorini_fem_mesh::{Surface, TetMesh};
@@ -18,6 +17,11 @@ pub(super) fn arcs(mesh: &TetMesh, surface: &Surface) -> HashMap<[u32; 2], f64> 
         is_arc.then(|| (edge.map(|n| surface.nodes()[n as usize]), height))
     };
     all.filter_map(arc).collect()
+}
+
+/// The edges 01, 12, 20 with their ends ascending.
+pub(super) fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
+    [[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)])
 }
 
 /// The edges of a surface as chords of arcs.

@@ -6,9 +6,8 @@
 //! all contact of two bodies, it tells whether they touch or are pressed together. Gaps between linear facets that
 //! cover one another are measured to the curve (`chords`), and have nothing of it.
 
-use super::chords::Chords;
+use super::chords::{Chords, edges};
 use super::creases::area_vector;
-use super::means::edges;
 use super::partners::Paired;
 use super::points::{ContactPoint, of_contact};
 use crate::error::ContactError;

@@ -5,6 +5,7 @@
 //! and the same mean of the gap. The force of a point over its area is then the pressure there. Tied sides whose nodes
 //! are the same need no means: each node is tied to its partner, mid-nodes too.
 
+use super::chords::edges;
 use super::creases::around;
 use super::partners::{Paired, Partner, Partners};
 use super::side::{Sides, mean_place, rounded};
@@ -234,9 +235,4 @@ fn all_partners(mesh: &TetMesh, contact: &Contact, surface: &Surface, partners: 
         }
     }
     out
-}
-
-/// The edges 01, 12, 20 with their ends ascending.
-pub(super) fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)])
 }
