@@ -32,7 +32,7 @@ fn held_remedy(step: usize, friction: Option<f64>, coupling: Option<&FreeCouplin
     };
     let before = match step {
         0 => "",
-        _ => "; the steps before this one can be solved: end the analysis there",
+        _ => "; the steps before this one are not refused: end the analysis there to see them",
     };
     others + &freed_remedy(coupling) + before
 }

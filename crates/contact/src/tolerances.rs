@@ -428,6 +428,8 @@ pub(crate) const DEEP: f64 = 3.0;
 /// Height of an arc over the edge that stands for it below which gaps are measured to it: of eleven edges around a
 /// circle and more; fewer are those of a prism.
 pub(crate) const FLAT_ARC: f64 = 0.075;
+/// Error of an arc that the normals of uneven facets tell, over the arc.
+pub(crate) const ARC_ERROR: f64 = 0.1;
 /// Tilt of the normal at one end of an edge over that at the other end, below which the edge is between flat sides.
 pub(crate) const KINK: f64 = 0.3;
 

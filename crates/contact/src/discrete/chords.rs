@@ -1,22 +1,58 @@
 //! Edges of straight facets as chords of the curve that they stand for.
 
-use crate::tolerances::{FLAT_ARC, KINK};
-use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
+use crate::tolerances::{BENT, FLAT_ARC, KINK};
+use signorini_fem_mesh::vec3::{add, cross, dot, norm, scale, sub, unit};
 use signorini_fem_mesh::{Surface, TetMesh};
 use std::collections::HashMap;
 
 /// The heights of the arcs over the edges of a surface in a mesh of order 1, by their mesh nodes, ascending: of those
-/// that have one, m. Edges that turn by much are those of a prism.
+/// that have one, m. Edges that turn by much are those of a prism, and those at kinks between flat sides are flat.
 pub(super) fn arcs(mesh: &TetMesh, surface: &Surface) -> HashMap<[u32; 2], f64> {
-    let chords = Chords::new(mesh, surface);
-    let all = surface.triangles().iter().flat_map(|t| edges(*t));
+    let chords = Chords::new(mesh, surface, smooth_normals(mesh, surface));
+    let all = || surface.triangles().iter().flat_map(|t| edges(*t));
+    let length = |edge: [u32; 2]| norm(sub(chords.place(edge[1]), chords.place(edge[0])));
+    // a kink turns towards a flat side as much as anywhere
+    let (mut most, mut flat) = (
+        vec![0.0_f64; surface.nodes().len()],
+        vec![0.0_f64; surface.nodes().len()],
+    );
+    for edge in all() {
+        let (tilts, length) = (chords.tilts(edge), length(edge));
+        for (node, other, tilt) in [(edge[0], edge[1], tilts[0]), (edge[1], edge[0], tilts[1])] {
+            let turn = tilt.abs() / length;
+            most[node as usize] = most[node as usize].max(turn);
+            if !are_bent(tilts) && !chords.at_rim[other as usize] {
+                flat[node as usize] = flat[node as usize].max(turn);
+            }
+        }
+    }
+    let is_kink = |node: u32| flat[node as usize] > KINK * most[node as usize];
     let arc = |edge: [u32; 2]| {
         let height = chords.arc(edge, None);
-        let length = norm(sub(chords.place(edge[1]), chords.place(edge[0])));
-        let is_arc = height != 0.0 && height.abs() < FLAT_ARC * length;
-        is_arc.then(|| (edge.map(|n| surface.nodes()[n as usize]), height))
+        let is_arc = (BENT * length(edge)..FLAT_ARC * length(edge)).contains(&height.abs());
+        (is_arc && !edge.into_iter().any(is_kink)).then(|| (edge.map(|n| surface.nodes()[n as usize]), height))
     };
-    all.filter_map(arc).collect()
+    all().filter_map(arc).collect()
+}
+
+/// Normals of nodes that are exact on spheres, and nearly so on other curves, however uneven the facets (N. Max, J.
+/// Graphics Tools 4, 1999): each facet counts by the sine of its angle over the lengths of both edges.
+fn smooth_normals(mesh: &TetMesh, surface: &Surface) -> Vec<[f64; 3]> {
+    let place = |node: u32| mesh.points()[surface.nodes()[node as usize] as usize];
+    let mut sums = vec![[0.0; 3]; surface.nodes().len()];
+    for triangle in surface.triangles() {
+        for k in 0..3 {
+            let [own, next, last] = [0, 1, 2].map(|c| triangle[(k + c) % 3]);
+            let [u, v] = [next, last].map(|end| sub(place(end), place(own)));
+            let sum = &mut sums[own as usize];
+            *sum = add(*sum, scale(1.0 / (dot(u, u) * dot(v, v)), cross(u, v)));
+        }
+    }
+    let frames = surface.frames().iter().map(|frame| frame.normal);
+    let normals = sums.into_iter().zip(frames);
+    normals
+        .map(|(sum, frame)| if norm(sum) > 0.0 { unit(sum) } else { frame })
+        .collect()
 }
 
 /// The edges 01, 12, 20 with their ends ascending.
@@ -28,6 +64,8 @@ pub(super) fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
 pub(super) struct Chords<'a> {
     mesh: &'a TetMesh,
     surface: &'a Surface,
+    /// Of its nodes.
+    normals: Vec<[f64; 3]>,
     /// Nodes at a rim, whose normals are those of facets on one side of them.
     at_rim: Vec<bool>,
     /// Ends of edges that are bent.
@@ -35,13 +73,14 @@ pub(super) struct Chords<'a> {
 }
 
 impl<'a> Chords<'a> {
-    pub(super) fn new(mesh: &'a TetMesh, surface: &'a Surface) -> Self {
+    pub(super) fn new(mesh: &'a TetMesh, surface: &'a Surface, normals: Vec<[f64; 3]>) -> Self {
         let mut edges: Vec<[u32; 2]> = surface.triangles().iter().flat_map(|t| edges(*t)).collect();
         edges.sort_unstable();
         let count = surface.nodes().len();
         let mut out = Self {
             mesh,
             surface,
+            normals,
             at_rim: vec![false; count],
             on_arc: vec![false; count],
         };
@@ -60,7 +99,7 @@ impl<'a> Chords<'a> {
     }
 
     fn normal(&self, node: u32) -> [f64; 3] {
-        self.surface.frames()[node as usize].normal
+        self.normals[node as usize]
     }
 
     /// How far the normals of the ends of an edge tilt outward over its length, m.

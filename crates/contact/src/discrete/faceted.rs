@@ -12,7 +12,7 @@ use super::partners::Paired;
 use super::points::{ContactPoint, of_contact};
 use crate::error::ContactError;
 use crate::scene::{Closing, Gap, Scene};
-use crate::tolerances::{DEEP, DIGITS, FACETED, SHARP, TOUCHING};
+use crate::tolerances::{ARC_ERROR, DEEP, DIGITS, FACETED, SHARP, TOUCHING};
 use signorini_fem_mesh::internal::{DisjointSets, Lists, distinct};
 use signorini_fem_mesh::vec3::{cross, dot, norm, sub};
 use signorini_fem_mesh::{FacetTag, Surface, TetMesh};
@@ -201,8 +201,14 @@ fn touch(group: &[&Faceted], conditions: &[ContactPoint], deepest: f64) -> bool 
             for (side, nodes) in faceted.sides.iter().zip([own, partner]) {
                 let at = |(node, weight): &(u32, f64)| side.bends.get(node).map_or(0.0, |bend| weight * bend.behind);
                 let behind: f64 = nodes.iter().map(at).sum();
-                open -= if point.to_curve { 0.0 } else { behind };
-                before += (-behind).max(0.0);
+                // of gaps to the curve only what that is not known by
+                let (taken, part) = if point.to_curve {
+                    (0.0, ARC_ERROR)
+                } else {
+                    (behind, 1.0)
+                };
+                open -= taken;
+                before += part * (-behind).max(0.0);
             }
             gap += point.area * open;
             hollow += point.area * before;
@@ -263,7 +269,8 @@ impl Side {
 
 /// How far the facets of a surface are from the curve at its nodes.
 fn bends(mesh: &TetMesh, surface: &Surface) -> HashMap<u32, Bend> {
-    let chords = Chords::new(mesh, surface);
+    let normals = surface.frames().iter().map(|frame| frame.normal);
+    let chords = Chords::new(mesh, surface, normals.collect());
     let mut corners = vec![Bend::default(); surface.nodes().len()];
     let mut areas = vec![0.0; corners.len()];
     let mut mids = Vec::new();

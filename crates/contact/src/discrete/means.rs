@@ -129,7 +129,8 @@ pub(super) fn opened(
     (index, contact): (usize, &Contact),
     mut paired: Paired,
 ) -> Result<Paired, ContactError> {
-    if mesh.order() == 1 || contact.tied || paired.is_apart() {
+    let is_told = matches!(contact.gap, Gap::None | Gap::Constant(_));
+    if mesh.order() == 1 || contact.tied || is_told || paired.is_apart() {
         return Ok(paired);
     }
     let surface = &paired.surface;

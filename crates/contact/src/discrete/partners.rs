@@ -9,7 +9,7 @@ use super::chords::arcs;
 use super::crossing::flush;
 use super::normals::{differ, fixed_frame};
 use crate::error::ContactError;
-use crate::mortar::{Arcs, MortarNode, mortar_nodes};
+use crate::mortar::{Arcs, MortarNode, Rim, mortar_nodes};
 use crate::scene::{Contact, Gap};
 use crate::tolerances::{BESIDE, COARSER, FACING, HARDER, LOCKING, MOST_TILT, MUCH_COARSER, OVERLAP, TILT};
 use rayon::prelude::*;
@@ -102,15 +102,23 @@ impl Paired {
         let [own, others] = [facet(&paired.surface), facet(&other.surface)];
         let crossing = crossing();
         let flush = |from: &Surface, seen: &[Option<MortarNode>]| flush(mesh, contact, from, seen, &crossing);
+        // told gaps are meant, quadratic facets have their own curves, and fixed directions are not those of facets
+        let measured = !contact.tied && matches!(contact.gap, Gap::Measured);
+        let mut curves = Arcs::new();
+        if measured && mesh.order() == 1 && fixed.is_none() {
+            let sides = [&paired.surface, &other.surface];
+            curves.extend(sides.into_iter().flat_map(|side| arcs(mesh, side)));
+            // convex sides touch in a point or along a line: means know more of what is between nodes
+            if curves.values().all(|arc| *arc > 0.0) {
+                curves.clear();
+            }
+        }
         let seen = |from: &Surface, to: &Surface| {
-            // quadratic facets have their own curves
-            let arcs = if contact.tied || mesh.order() == 2 {
-                Arcs::new()
-            } else {
-                arcs(mesh, to)
-            };
+            let rim = (measured && mesh.order() == 2).then(|| Rim::new(mesh, from, contact.crease));
             let choices = (contact.tied, contact.crease);
-            mortar_nodes(mesh, from, to, choices, &arcs, |seen| flush(from, seen))
+            mortar_nodes(mesh, from, to, choices, (rim.as_ref(), &curves), |seen| {
+                flush(from, seen)
+            })
         };
         let there = || seen(&paired.surface, &other.surface);
         let back = || seen(&other.surface, &paired.surface);

@@ -150,7 +150,8 @@ pub(super) fn conditions(
                     (one[0].frame, one[0].area) = (seen.frame, seen.area);
                     let normal = fixed.unwrap_or(seen.frame).normal;
                     let gap = mortar_gap(scene, index, surface, (local, &normal), seen)?;
-                    // weights are in part negative: over a curved side a mean may be inside where nothing is
+                    // weights are in part negative: over a curved side, or beside an edge, a mean may be inside where
+                    // no facet is
                     let deepest = seen.nearest.min(0.0);
                     let inside = !contact.tied && gap < deepest - rounding;
                     let gap = match seen.curve {

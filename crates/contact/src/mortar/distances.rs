@@ -3,10 +3,12 @@
 use super::cover::{Flat, Laid, Piece, Point, area, barycentric, mean};
 use crate::tolerances::OVERLAP;
 
-/// The distances of the corners of a facet from the curve that pieces stand for, m, if any of them is bent.
-pub(super) fn curve(corners: &[Point; 3], pieces: &[Piece]) -> Option<[f64; 3]> {
-    let is_bent = |piece: &Piece| piece.laid.arcs != [0.0; 3];
-    if !pieces.iter().any(is_bent) || !are_covered(corners, pieces) {
+/// The distances of the corners of a facet from the curve that pieces stand for, m, if they or the facet itself are bent,
+/// as the arcs over its `own` edges tell.
+pub(super) fn curve(corners: &[Point; 3], own: [f64; 3], pieces: &[Piece]) -> Option<[f64; 3]> {
+    let arcs = pieces.iter().map(|piece| piece.laid.arcs).chain([own]);
+    let is_bent = arcs.flatten().any(|arc| arc != 0.0);
+    if !is_bent || !are_covered(corners, pieces) {
         return None;
     }
     let mut out = [0.0; 3];
@@ -24,7 +26,7 @@ fn are_covered(corners: &[Point; 3], pieces: &[Piece]) -> bool {
     covered >= (1.0 - OVERLAP) * area(corners)
 }
 
-/// The triangle that is nearest to a point in the plane.
+/// The triangle in which a point of the plane is, or outside of which least.
 fn nearest(pieces: &[Piece], p: Point) -> Option<&Laid> {
     let inside = |piece: &Piece| {
         let coordinates = barycentric(&piece.laid.corners, p);

@@ -1,7 +1,6 @@
 //! The other side of each node of a surface.
 
-use super::opening::Rim;
-use super::search::{Arcs, Normals, Seen, covers, in_order};
+use super::search::{Bends, Normals, Seen, covers, in_order};
 use crate::tolerances::{COVERED, NO_WEIGHT, SAME_NORMAL};
 use crate::vec3::edge_cosine;
 use rayon::prelude::*;
@@ -89,16 +88,15 @@ pub(crate) fn mortar_nodes(
     surface: &Surface,
     other: &Surface,
     (tied, crease): (bool, f64),
-    arcs: &Arcs,
+    bends: Bends<'_>,
     crossing: impl Fn(&[Option<MortarNode>]) -> HashSet<u32>,
 ) -> Vec<Option<MortarNode>> {
     let triangles = in_order(mesh, surface);
-    let rim = (mesh.order() == 2 && !tied).then(|| Rim::new(mesh, surface, crease));
-    let covers = covers(mesh, &triangles, other, tied, rim.as_ref(), arcs);
+    let covers = covers(mesh, &triangles, other, tied, bends);
     let corners: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.nodes).collect();
     let around = Lists::by_key(mesh.points().len(), corners.as_flattened());
     // tied sides need no normal, and means of displacements have their own
-    let bends = !tied && mesh.order() == 1;
+    let may_bend = !tied && mesh.order() == 1;
     let crease = crease.to_radians().cos();
     let node = |(local, &own): (usize, &u32), shared: &HashSet<u32>| {
         let is_tip = |node: u32| other.local(node).is_some() || shared.contains(&node);
@@ -118,7 +116,7 @@ pub(crate) fn mortar_nodes(
             return None;
         }
         let facets: Vec<&[u32; 3]> = places().map(|place| &corners[place / 3]).collect();
-        let frame = match bends && is_bent(mesh, &facets, crease) {
+        let frame = match may_bend && is_bent(mesh, &facets, crease) {
             true => surface.frames()[local],
             false => SurfaceFrame::from_normal(sums.normal)?,
         };

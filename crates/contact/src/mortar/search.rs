@@ -125,7 +125,7 @@ struct OtherSide<'a> {
     tree: RTree<GeomWithData<Rectangle<[f64; 3]>, u32>>,
     corners: Vec<Corners>,
     normals: Vec<[f64; 3]>,
-    /// Heights of the curve over edges, by their nodes, m.
+    /// Heights of the curves over edges of both sides, by their nodes, m.
     arcs: &'a Arcs,
 }
 
@@ -144,6 +144,9 @@ pub(super) enum Normals {
     Plane([f64; 3]),
     Curved([[f64; 3]; 6]),
 }
+
+/// The rim of the first side, from which gaps may open, and the arcs over edges of both.
+pub(crate) type Bends<'a> = (Option<&'a Rim<'a>>, &'a Arcs);
 
 /// What a facet sees of the other side.
 #[derive(Debug, Clone)]
@@ -164,8 +167,7 @@ pub(super) fn covers(
     triangles: &[Triangle],
     other: &Surface,
     tied: bool,
-    rim: Option<&Rim<'_>>,
-    arcs: &Arcs,
+    (rim, arcs): Bends<'_>,
 ) -> Vec<Option<Seen>> {
     let other = OtherSide::new(mesh, other, arcs);
     let planes: Vec<Option<Plane>> = triangles.iter().map(|t| Plane::new(&t.corners(mesh))).collect();
@@ -190,7 +192,7 @@ pub(super) fn covers(
                 let seen = cover.map(|cover| Seen {
                     cover,
                     normals: triangles[k].normals(mesh, plane),
-                    curve: curve(&own.corners, &pieces),
+                    curve: curve(&own.corners, other.arcs_of(triangles[k].nodes), &pieces),
                 });
                 Some((k, seen, farthest))
             })
@@ -256,6 +258,11 @@ impl<'a> OtherSide<'a> {
             triangles,
             arcs,
         }
+    }
+
+    /// Those of the edges 01, 12, 20 of a facet.
+    fn arcs_of(&self, [a, b, c]: [u32; 3]) -> [f64; 3] {
+        [[a, b], [b, c], [c, a]].map(|[a, b]| self.arcs.get(&[a.min(b), a.max(b)]).copied().unwrap_or(0.0))
     }
 
     /// A distance beyond which no facet can be.
@@ -328,7 +335,7 @@ impl<'a> OtherSide<'a> {
             mids: self.triangles[facet].mids.map(|[ij, jk, ki]| [ki, jk, ij]),
             bend: None,
             heights: [seen[0].1, seen[1].1, seen[2].1, 0.0, 0.0, 0.0],
-            arcs: [[i, k], [k, j], [j, i]].map(|[a, b]| self.arcs.get(&[a.min(b), a.max(b)]).copied().unwrap_or(0.0)),
+            arcs: self.arcs_of([i, k, j]),
             way: None,
         };
         for (height, mid) in laid.heights[3..].iter_mut().zip(laid.mids.into_iter().flatten()) {

@@ -7,7 +7,7 @@ use signorini_fem_mesh::internal::replace_file;
 use signorini_fem_mesh::output::OutputError;
 use std::fmt::Write as _;
 use std::fs::OpenOptions;
-use std::io::{Seek, SeekFrom, Write as _};
+use std::io::Write as _;
 use std::path::PathBuf;
 
 /// A table that grows by a row after every step.
@@ -15,10 +15,10 @@ use std::path::PathBuf;
 pub(super) struct Table {
     path: PathBuf,
     probes: Vec<u32>,
-    /// What comes before the next row, and is not written yet.
-    before: String,
-    /// Bytes of the file that are whole rows.
-    written: u64,
+    /// All that was written, and what comes before the next row.
+    text: String,
+    /// Whether the file is that of this run.
+    is_begun: bool,
 }
 
 impl Table {
@@ -27,8 +27,8 @@ impl Table {
         Self {
             path,
             probes: probes.to_vec(),
-            before: head(probes, result),
-            written: 0,
+            text: head(probes, result),
+            is_begun: false,
         }
     }
 
@@ -47,16 +47,20 @@ impl Table {
             found: old.lines().nth(line).unwrap_or_default().to_owned(),
             expected: expected.to_owned(),
         };
-        let same = table.before.lines().count();
-        for (line, expected) in table.before.lines().enumerate() {
+        let same = table.text.lines().count();
+        for (line, expected) in table.text.lines().enumerate() {
             if old.lines().nth(line) != Some(expected) {
                 return Err(wrong(line, &format!("{expected:?}")));
             }
         }
         let mut rows = String::new();
-        // of a row that was cut short its step is not known
-        let whole = old.rfind('\n').map_or(0, |end| end + 1);
-        for (line, row) in old[..whole].lines().enumerate().skip(same) {
+        let columns = |row: &str| row.split(',').count();
+        let wanted = table.text.lines().last().map_or(0, columns);
+        for (line, row) in old.lines().enumerate().skip(same) {
+            // one that was cut short
+            if line + 1 == old.lines().count() && columns(row) < wanted {
+                break;
+            }
             let step = row.split(',').next().and_then(|s| s.parse::<usize>().ok());
             let step = step.ok_or_else(|| wrong(line, "a row that begins with the number of its step"))?;
             if step < result.step() {
@@ -64,33 +68,29 @@ impl Table {
                 rows.push('\n');
             }
         }
-        table.before += &rows;
+        table.text += &rows;
         Ok(table)
     }
 
-    /// Adds a row: the first with the whole table, in place of what was there, later ones at its end.
+    /// Adds a row: at the end of the table as it was left, else with all of it.
     pub(super) fn write(&mut self, result: &StepResult) -> Result<(), ContactError> {
-        let text = format!("{}{}", self.before, row(&self.probes, result));
-        let done = match self.written {
-            0 => replace_file(&self.path, text.as_bytes()),
-            _ => self.append(text.as_bytes()),
+        let row = row(&self.probes, result);
+        let length = std::fs::metadata(&self.path).map_or(0, |file| file.len());
+        let before = self.text.len();
+        let goes_on = self.is_begun && length == before as u64;
+        self.text += &row;
+        let done = match goes_on {
+            true => OpenOptions::new()
+                .append(true)
+                .open(&self.path)
+                .and_then(|mut file| file.write_all(row.as_bytes())),
+            false => replace_file(&self.path, self.text.as_bytes()),
         };
-        let failed = |source| OutputError::Io {
-            path: self.path.clone(),
-            source,
-        };
-        done.map_err(failed)?;
-        self.written += text.len() as u64;
-        self.before.clear();
-        Ok(())
-    }
-
-    fn append(&self, row: &[u8]) -> std::io::Result<()> {
-        let mut file = OpenOptions::new().write(true).open(&self.path)?;
-        // what a write that failed has left
-        file.set_len(self.written)?;
-        file.seek(SeekFrom::End(0))?;
-        file.write_all(row)
+        self.is_begun |= done.is_ok();
+        let Err(source) = done else { return Ok(()) };
+        self.text.truncate(before);
+        let path = self.path.clone();
+        Err(OutputError::Io { path, source }.into())
     }
 }
 

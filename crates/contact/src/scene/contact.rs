@@ -193,7 +193,8 @@ impl Contact {
     /// A constant gap in m; 0 for surfaces that touch, whatever their coordinates. It takes the place of the distance
     /// to an obstacle or another body; beside a [field](Self::with_gap_field) it is refused.
     pub fn with_gap(mut self, gap: f64) -> Self {
-        (self.gap, self.plane) = (Gap::Constant(gap), None);
+        self.gap = Gap::Constant(gap);
+        self.leave_plane();
         self.given[0] = true;
         self
     }
@@ -202,7 +203,8 @@ impl Contact {
     /// obstacle [moves](Self::with_motion) along the surface, it is also evaluated beside the surface. With quadratic
     /// elements it is a mean around a corner, and where it jumps there the value in the middle.
     pub fn with_gap_field(mut self, gap: impl Fn([f64; 3]) -> f64 + Send + Sync + 'static) -> Self {
-        (self.gap, self.plane) = (Gap::Field(Function(Arc::new(gap))), None);
+        self.gap = Gap::Field(Function(Arc::new(gap)));
+        self.leave_plane();
         self.given[1] = true;
         self
     }
@@ -246,10 +248,17 @@ impl Contact {
 
     fn along(mut self, normal: ContactNormal) -> Self {
         self.normal = normal;
-        if let Some(plane) = self.plane.take() {
-            (self.gap, self.shape) = (Gap::Obstacle, Some(plane));
+        if let Some(plane) = &self.plane {
+            (self.gap, self.shape) = (Gap::Obstacle, Some(plane.clone()));
         }
         self
+    }
+
+    /// Its gap is told.
+    fn leave_plane(&mut self) {
+        if self.plane.take().is_some() {
+            self.shape = None;
+        }
     }
 
     /// The angle between the normals of adjacent facets, in degrees, from which on their common edge is a crease (60 by

@@ -52,20 +52,33 @@ impl Simulation {
     }
 
     /// The attempts, and one without contact forces where loads do no work on what contact alone stops: first, if
-    /// bodies stood apart or their forces fade, else after a brief one.
-    fn with_apart(&self, mut attempts: Vec<Start>, state: &State, way: &Way) -> Result<Vec<Start>, ContactError> {
+    /// bodies stood apart or their forces fade, else after a brief one. So it is after that where all loads end.
+    fn with_apart(
+        &self,
+        mut attempts: Vec<Start>,
+        state: &State,
+        way: &Way,
+        told: bool,
+    ) -> Result<Vec<Start>, ContactError> {
         // friction may lock bodies that were pressed, and a first step is mostly to press them
         let locks = self.model.plan.effects.friction != FrictionKind::None;
         let by_tolerance = self.settings.accuracy == Accuracy::Tolerance;
-        if !by_tolerance || !self.falls_back() || locks && state.step() == 0 {
+        if !by_tolerance || !self.falls_back() || locks && (told || state.step() == 0) {
             return Ok(attempts);
         }
         let loose = self.model.loose_motions()?;
-        if loose.is_empty() || !self.problem.is_balanced(loose) {
+        let held = loose.is_empty();
+        // forces of bodies that supports hold may vanish with the loads, too
+        let ends = |start| self.problem.is_unloaded(&self.model, start);
+        let may_vanish = match held {
+            true => way.increment().start.is_some_and(ends),
+            false => self.problem.is_balanced(loose),
+        };
+        if !may_vanish {
             return Ok(attempts);
         }
         let apart = (false, Attempt::Apart);
-        if self.stood_apart(state) || !locks && self.fades(state, way) {
+        if !held && (self.stood_apart(state) || !locks && self.fades(state, way)) {
             attempts.insert(0, apart);
             return Ok(attempts);
         }
@@ -91,9 +104,7 @@ impl Simulation {
     ) -> Result<(StepReport, Recovered), ContactError> {
         let mut sets_out = tried.status.converged();
         let mut report = tried;
-        if told.is_none() {
-            attempts = self.with_apart(attempts, state, way)?;
-        }
+        attempts = self.with_apart(attempts, state, way, told.is_some())?;
         let mut found = None;
         for (line, attempt) in attempts {
             self.spare = found.take().unwrap_or_else(|| std::mem::take(&mut self.spare));

@@ -131,15 +131,56 @@ fn linear_facets_press_as_their_circle_does() {
             assert!(force < 1e-2 * unit, "{cells:?}: {force}, {unit}");
         }
         for over in [0.002, 0.01, 0.05] {
-            let (force, warnings) = pressed(10.0 + over, meshes(), Contact::with_measured_overlaps);
-            let (told, _) = pressed(10.0 + over, meshes(), |fit| fit.with_gap(-over));
-            println!("{cells:?}, {over}: {force} of {told}");
-            assert!((force / told - 1.0).abs() < 0.05, "{cells:?}, {over}: {force}, {told}");
-            assert!(
-                !warnings.iter().any(|w| matches!(w, Warning::FacetedOverlap { .. })),
-                "{warnings:?}"
-            );
+            for with in [|fit| fit, Contact::with_measured_overlaps] {
+                let (force, warnings) = pressed(10.0 + over, meshes(), with);
+                let (told, _) = pressed(10.0 + over, meshes(), |fit| fit.with_gap(-over));
+                println!("{cells:?}, {over}: {force} of {told}");
+                assert!((force / told - 1.0).abs() < 0.05, "{cells:?}, {over}: {force}, {told}");
+                assert_eq!(warnings, []);
+            }
         }
+    }
+}
+
+/// So do uneven ones: cells in turn one and two long.
+#[test]
+fn uneven_linear_facets_press_as_their_circle_does() {
+    let uneven = |radii: [f64; 2], cells: usize| {
+        let place = |[x, y, z]: [f64; 3]| {
+            let cell = (y * cells as f64).round();
+            let angle = (cell - if cell % 2.0 == 0.0 { 0.0 } else { 1.0 / 3.0 }) / cells as f64;
+            let (radius, angle) = (radii[0] + x * (radii[1] - radii[0]), 0.5 * std::f64::consts::PI * angle);
+            [radius * angle.cos(), radius * angle.sin(), z]
+        };
+        block([1.0; 3], [1, cells, 1]).map_points(place).expect("arc")
+    };
+    for cells in [[12, 20], [20, 12]] {
+        let meshes = || [uneven([4.0, 10.0], cells[0]), uneven([10.0, 14.0], cells[1])];
+        let (told, _) = pressed(10.01, meshes(), |fit| fit.with_gap(-0.01));
+        let [touching, over] = [10.0, 10.01].map(|radius| pressed(radius, meshes(), |fit| fit).0);
+        println!("{cells:?}: {touching}, {over} of {told}");
+        assert!(touching < 0.02 * told, "{cells:?}: {touching}, {told}");
+        assert!((over / told - 1.0).abs() < 0.1, "{cells:?}: {over}, {told}");
+    }
+}
+
+/// A land of one cell between two chamfers is no arc: it lies on a plate of other cells without a force.
+#[test]
+fn a_land_between_chamfers_is_flat() {
+    for slope in [0.1_f64, 0.36, 0.55] {
+        let chamfered = |[x, y, z]: [f64; 3]| [x, y, z + slope * ((x - 1.5).abs() - 0.5).max(0.0) * (1.0 - z)];
+        let upper = block([3.0, 1.0, 1.0], [3, 2, 2])
+            .map_points(chamfered)
+            .expect("chamfered");
+        let lower = block([3.0, 1.0, 1.0], [8, 3, 2])
+            .map_points(|[x, y, z]| [x, y, z - 1.0])
+            .expect("plate");
+        let scene = Scene::new(with_second(&upper, &lower), uniform(1e3, 0.3))
+            .with_support(Support::fixed(brick::Z_MAX))
+            .with_support(Support::fixed(second(brick::Z_MIN)))
+            .with_contact(Contact::between(brick::Z_MIN, second(brick::Z_MAX)));
+        let force = solve(scene, at(1e-8)).summary.normal_force;
+        assert!(force < 1e-9, "{slope}: {force}");
     }
 }
 

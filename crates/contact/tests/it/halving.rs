@@ -44,12 +44,14 @@ fn noting(scene: Scene) -> (Scene, Arc<Mutex<Vec<f64>>>) {
     (scene.with_load(Load::body([1.0, 0.0, 0.0]).with_history(none)), times)
 }
 
-/// The times that were gone on from: a halved increment is followed by an earlier end.
+/// The times that were gone on from: a halved increment is followed by an earlier end, others perhaps by their starts.
 fn passed(asked: &[f64]) -> Vec<f64> {
-    let mut asked = asked.to_vec();
-    asked.dedup();
     let mut passed: Vec<f64> = asked.windows(2).filter(|w| w[1] > w[0]).map(|w| w[0]).collect();
     passed.extend(asked.last());
+    passed.extend(asked.iter().copied().reduce(f64::max));
+    passed.retain(|time| *time > 0.0);
+    passed.sort_by(f64::total_cmp);
+    passed.dedup();
     passed
 }
 
