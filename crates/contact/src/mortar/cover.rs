@@ -4,8 +4,8 @@
 //! With `P` the L2 projection on linear functions on the covered part `C` of a facet with corners `x_j`, a multiplier
 //! takes of a function `f` the integral `int_C psi_j f = d_j (P f)(x_j)`, `d_j = int_C l_j` (docs/theory.md, section 5;
 //! A. Popp, B. I. Wohlmuth, M. W. Gee, W. A. Wall, SIAM J. Sci. Comput. 34, 2012). On quadratic facets it is half the
-//! sum of that and of the shape function of the corner, but where a gap opens from the rim; edges that are bent in the plane, as at the rim of a disc,
-//! count.
+//! sum of that and of the shape function of the corner, but where a gap opens from the rim; edges that are bent in the
+//! plane, as at the rim of a disc, count.
 
 use crate::tolerances::{BENT_STEPS, COVERED, NO_EXTENT};
 use signorini_fem_mesh::internal::{facet_shape, triangle};

@@ -3,8 +3,8 @@
 use super::cover::{Flat, Laid, Piece, Point, area, barycentric, mean};
 use crate::tolerances::OVERLAP;
 
-/// The distances of the corners of a facet from the curve that pieces stand for, m, if they or the facet itself are bent,
-/// as the arcs over its `own` edges tell.
+/// The distances of the corners of a facet from the curve that pieces stand for, m, if they or the facet itself are
+/// bent, as the arcs over its `own` edges tell.
 pub(super) fn curve(corners: &[Point; 3], own: [f64; 3], pieces: &[Piece]) -> Option<[f64; 3]> {
     let arcs = pieces.iter().map(|piece| piece.laid.arcs).chain([own]);
     let is_bent = arcs.flatten().any(|arc| arc != 0.0);

@@ -47,8 +47,8 @@ impl<'a> Rim<'a> {
         Self { mesh, surface, nodes }
     }
 
-    /// Whether gaps at the nodes of a quadratic facet (corners, then those on its edges 01, 12, 20; `None` where they are
-    /// not known) open linearly from the rim. Plane facets of a curved side seem to, but the side does not: normals
+    /// Whether gaps at the nodes of a quadratic facet (corners, then those on its edges 01, 12, 20; `None` where they
+    /// are not known) open linearly from the rim. Plane facets of a curved side seem to, but the side does not: normals
     /// around them tell.
     pub(crate) fn opens(&self, nodes: [u32; 6], gaps: impl FnOnce() -> Option<[f64; 6]>) -> bool {
         let is_rim = [0, 1, 2].map(|k| self.nodes.contains(&nodes[k]));

@@ -217,9 +217,9 @@ impl Contact {
         self
     }
 
-    /// Measured overlaps press as they are; between linear meshes that do not match they are measured to the curves that
-    /// facets stand for. Without it, those of bodies that touch but for straight facets of a hollow
-    /// side, as of a bolt in its bore, or of quadratic ones around an obstacle, are closed, which
+    /// Measured overlaps press as they are; between linear meshes that do not match they are measured to the curves
+    /// that facets stand for. Without it, those of bodies that touch but for straight facets of a hollow side, as of a
+    /// bolt in its bore, or of quadratic ones around an obstacle, are closed, which
     /// [`ClosedOverlaps`](crate::Warning::ClosedOverlaps) tells.
     pub fn with_measured_overlaps(mut self) -> Self {
         self.closing = Closing::Nothing;

@@ -1,9 +1,10 @@
 //! The simulation: one step after another, each prepared, solved, recovered, certified and stored.
 //!
-//! `step` is one step, `attempts` those at it, `accuracy` solves it until certificate or estimates are satisfied, `run` takes all steps,
-//! `halving` repeats a failed step in halves, `stages` sets up anew where supports and contacts start or end, `resume`
-//! continues from a stored state, `checkpoints` (feature `checkpoint`) keeps states in a folder, `result` is what the
-//! user sees, `step_doubling` estimates errors in time, `unloaded` leaves bodies where loads that vanish leave them.
+//! `step` is one step, `attempts` those at it, `accuracy` solves it until certificate or estimates are satisfied, `run`
+//! takes all steps, `halving` repeats a failed step in halves, `stages` sets up anew where supports and contacts start
+//! or end, `resume` continues from a stored state, `checkpoints` (feature `checkpoint`) keeps states in a folder,
+//! `result` is what the user sees, `step_doubling` estimates errors in time, `unloaded` leaves bodies where loads that
+//! vanish leave them.
 //!
 //! Uses: everything below.
 //! In: a scene and settings. Out: a [`StepResult`] per step.
