@@ -18,11 +18,14 @@ pub(crate) struct Rim<'a> {
 impl<'a> Rim<'a> {
     /// `crease` in degrees.
     pub(crate) fn new(mesh: &'a TetMesh, surface: &'a Surface, crease: f64) -> Self {
-        let corners = |facet: u32| mesh.facets()[facet as usize].nodes;
         let vector = |nodes: &[u32; 3]| area_vector(&nodes.map(|n| mesh.points()[n as usize]));
-        let facets: Vec<[u32; 3]> = surface.facets().iter().map(|facet| corners(*facet)).collect();
-        let triangles: Vec<u32> = surface.triangles().iter().flatten().copied().collect();
-        let around = Lists::by_key(surface.nodes().len(), &triangles).map(|corner| corner / 3);
+        let facets: Vec<[u32; 3]> = surface
+            .facets()
+            .iter()
+            .map(|f| mesh.facets()[*f as usize].nodes)
+            .collect();
+        let corners = surface.triangles().as_flattened();
+        let around = Lists::by_key(surface.nodes().len(), corners).map(|corner| corner / 3);
         let crease = crease.to_radians().cos();
         // an edge goes on if some other facet around its first node has both ends and does not meet it at a crease
         let goes_on = |own: usize, [from, to]: [usize; 2]| {

@@ -56,9 +56,10 @@ impl Table {
         let mut rows = String::new();
         let columns = |row: &str| row.split(',').count();
         let wanted = table.text.lines().last().map_or(0, columns);
+        let last = old.lines().count();
         for (line, row) in old.lines().enumerate().skip(same) {
             // one that was cut short
-            if line + 1 == old.lines().count() && columns(row) < wanted {
+            if line + 1 == last && columns(row) < wanted {
                 break;
             }
             let step = row.split(',').next().and_then(|s| s.parse::<usize>().ok());
