@@ -164,7 +164,7 @@ fn meshes_and_materials() {
         "a region with two materials": made(Materials::new(vec![(1, lame), (1, lame)])) => Error::Material(MaterialError::Repeated { region: 1 }), "region 1";
         "a region without a material": attempt(
             Scene::new(two_regions(), Materials::new(vec![(0, lame)]).expect("materials")).with_support(Support::fixed(brick::X_MIN))
-        ) => Error::Tfeti(TfetiError::Material { element: 2, .. }), "tetrahedron 2", "region 7";
+        ) => Error::Material(MaterialError::Unknown { .. }), "region 7", "[0]";
     });
     assert_eq!(count, 20);
 }
