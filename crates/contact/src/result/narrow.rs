@@ -4,7 +4,6 @@
 //! larger than at the node, which is then inside the other side before the point touches. The means of the neighbours
 //! tell the gap at the node, as if it were linear between the corners.
 
-use super::points::PointState;
 use super::recovered::Recovered;
 use crate::model::{ConstrainedPoint, Model};
 use crate::report::Warning;
@@ -79,15 +78,18 @@ pub(super) fn narrow_contact(
         let own = &mut way[point.surface()];
         *own = own.max((point.gap() - state.gap).abs()).max(-point.gap());
     }
-    let inside = |(point, (weight, others)): (&PointState, &View)| {
-        let seen: f64 = others.iter().map(|(other, share)| share * points[*other].gap).sum();
-        (seen - point.gap) / weight
+    let inside = |own: usize, gap: &dyn Fn(usize) -> f64| {
+        let (weight, others) = &views[own];
+        let seen: f64 = others.iter().map(|(other, share)| share * gap(*other)).sum();
+        (seen - gap(own)) / weight
     };
-    let overlaps = points
-        .iter()
-        .zip(views)
-        .filter(|own| !model.scene.contacts[own.0.surface].tied);
-    let parts = overlaps.map(|own| (own.0, inside(own) / way[own.0.surface]));
+    let overlaps = (0..points.len()).filter(|own| !model.scene.contacts[points[*own].surface].tied);
+    let parts = overlaps.map(|own| {
+        // where a gap was not linear at first, as before an edge of the other side, that tells nothing
+        let first = inside(own, &|k| model.points[k].gap()).max(0.0);
+        let now = inside(own, &|k| points[k].gap);
+        (&points[own], (now - first) / way[points[own].surface])
+    });
     let finite = parts.filter(|own| own.1.is_finite());
     let (point, part) = finite.max_by(|a, b| a.1.total_cmp(&b.1))?;
     (part > NARROW).then(|| Warning::NarrowContact {
