@@ -97,16 +97,15 @@ impl Simulation {
     /// before, if that converged. Where loads end, it was told where bodies stand: then without forces, too.
     pub(super) fn attempt(
         &mut self,
-        mut attempts: Vec<Start>,
+        attempts: Vec<Start>,
         state: &State,
         way: &Way,
         (tried, told): (StepReport, Option<&Targets>),
     ) -> Result<(StepReport, Recovered), ContactError> {
         let mut sets_out = tried.status.converged();
         let mut report = tried;
-        attempts = self.with_apart(attempts, state, way, told.is_some())?;
         let mut found = None;
-        for (line, attempt) in attempts {
+        for (line, attempt) in self.with_apart(attempts, state, way, told.is_some())? {
             self.spare = found.take().unwrap_or_else(|| std::mem::take(&mut self.spare));
             self.controller = state.controller;
             if attempt == Attempt::Apart {
