@@ -4,6 +4,7 @@ use std::fmt;
 
 /// How the solve of a step ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum StepStatus {
     /// The certificate is at most the tolerance (usually a tenth), however the solver ended; or the solver reached the
@@ -73,6 +74,7 @@ impl fmt::Display for StepStatus {
 
 /// A coupling that leaves free a motion which nothing else stops.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct FreeCoupling {
     /// Its number in the scene.
@@ -103,6 +105,7 @@ impl fmt::Display for FreeCoupling {
 
 /// How a body slides away that friction does not hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Slide {
     /// Its number; bodies are numbered by their first subdomain.

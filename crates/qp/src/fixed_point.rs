@@ -9,6 +9,7 @@ use crate::vector;
 
 /// What the sequence of iterates tells about the map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum Verdict {
     /// The relative change fell below the tolerance.
@@ -62,6 +63,7 @@ impl Contraction {
 
 /// Result of [`successive_approximations`].
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[must_use = "it may not have converged: see `verdict`"]
 pub struct FixedPointReport {
     /// How it ended.

@@ -2,6 +2,7 @@
 
 /// Cost of one step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Counters {
     /// Products with F, including recoveries of the displacement.

@@ -4,6 +4,7 @@ use crate::tolerances::LEAST_SHARE;
 
 /// Estimated algebraic error of a step, by the duality gap.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct AlgebraicError {
     /// The duality gap: bounds half the squared energy norm of the error of the torn displacement, J. Not less than
@@ -32,6 +33,7 @@ pub(crate) fn relative(energy: f64, scale: f64) -> f64 {
 
 /// What the estimates of a step say.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct AccuracyReport {
     /// Estimated algebraic error of this step alone.
@@ -63,7 +65,8 @@ pub struct AccuracyReport {
 /// Algebraic error with what earlier steps have left in it: the sum of the roots of all gaps, and the root of their
 /// sum.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[cfg_attr(feature = "checkpoint", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(any(feature = "checkpoint", feature = "serde"), derive(serde::Serialize))]
+#[cfg_attr(feature = "checkpoint", derive(serde::Deserialize))]
 pub struct AccumulatedError {
     /// Sum of the roots of the gaps, square root of J.
     sum: f64,

@@ -7,6 +7,7 @@ use signorini_qp::{FixedPointReport, Steps};
 
 /// Report of one step's solve.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct StepReport {
     /// How it ended.

@@ -6,6 +6,7 @@
 
 /// A violation and the quantity it is relative to, in the same unit.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct Violation {
     /// How large the violation is.
     pub value: f64,
@@ -34,6 +35,7 @@ impl Violation {
 
 /// Violations of all conditions at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Certificate {
     /// Equilibrium of every subdomain, N.

@@ -7,6 +7,7 @@ use signorini_tfeti::TangentialRows;
 
 /// What a contact point does.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum ContactState {
     /// No normal force. Tresca friction does not depend on pressure and acts even so.
@@ -19,6 +20,7 @@ pub enum ContactState {
 
 /// State of one contact point at the end of a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct PointState {
     /// Mesh node. At edges and corners of obstacles a node has several states, one for each normal.

@@ -20,6 +20,7 @@ use std::collections::BTreeMap;
 
 /// A force and its moment about a point.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Resultant {
     /// Sum of the forces, N.
@@ -46,6 +47,7 @@ impl std::ops::AddAssign for Resultant {
 
 /// The force at a node.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct NodalForce {
     /// Mesh node.
@@ -56,6 +58,7 @@ pub struct NodalForce {
 
 /// The reaction of one support on the body.
 #[derive(Debug, Clone, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct SupportReaction {
     /// Force on the body and its moment.
@@ -73,6 +76,7 @@ impl SupportReaction {
 
 /// The motion of a [coupling](crate::Coupling).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct CouplingMotion {
     /// Displacement of its reference point, m.
@@ -83,6 +87,7 @@ pub struct CouplingMotion {
 
 /// The force of a linear equation.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct EquationForce {
     /// Each node, and point, is pushed by this, N, times its coefficients in the equation. Zero of equations that say
@@ -98,6 +103,7 @@ pub struct EquationForce {
 /// later ones have only what they add at right angles. If a support fixes the normal of a contact node, its reaction
 /// includes the force of the obstacle.
 #[derive(Debug, Clone, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct Reactions {
     /// The point of all moments, m.

@@ -9,6 +9,7 @@ use crate::step::{StepProblem, entry_or_zero};
 /// Sums over all contact points at the end of a step. Between bodies, forces act on the body named first
 /// ([`Contact::between`](crate::Contact::between)).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct ContactSummary {
     /// Points with a normal force.

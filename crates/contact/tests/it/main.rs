@@ -59,6 +59,8 @@ mod refusals;
 mod relative;
 mod restart;
 mod sanity;
+#[cfg(feature = "serde")]
+mod serialised;
 mod shapes;
 mod sheets;
 mod slices;
