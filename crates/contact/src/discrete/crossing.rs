@@ -9,17 +9,19 @@ use crate::tolerances::FLUSH;
 use signorini_fem_mesh::{Surface, TetMesh};
 use std::collections::HashSet;
 
-/// Nodes at which other contacts have conditions that may nearly depend on those of one between linear meshes: friction
-/// of either acts along normals of the other. Of two between bodies the first keeps its conditions.
-pub(super) fn crossing(scene: &Scene, index: usize) -> HashSet<u32> {
-    let own = &scene.contacts[index];
+/// Nodes at which other contacts have conditions that may nearly depend on those of one between linear meshes, or of a
+/// group that goes on in one another: friction of either acts along normals of the other. Of two between bodies the
+/// first keeps its conditions.
+pub(super) fn crossing(scene: &Scene, group: &[usize]) -> HashSet<u32> {
+    let (index, own) = (group[0], &scene.contacts[group[0]]);
     if own.tied || own.partner.is_empty() || scene.mesh.order() == 2 {
         return HashSet::new();
     }
     let times = scene.analysis.times();
     let crosses = |(other, contact): &(usize, &Contact)| {
-        let keeps = contact.partner.is_empty() && *other != index || *other < index;
-        let rough = own.friction().is_some() || contact.friction().is_some();
+        let keeps = !group.contains(other) && (contact.partner.is_empty() || *other < index);
+        let is_rough = |k: &usize| scene.contacts[*k].friction().is_some();
+        let rough = group.iter().any(is_rough) || contact.friction().is_some();
         keeps && rough && !contact.tied && own.span.meets(&contact.span, times)
     };
     let others = scene.contacts.iter().enumerate().filter(crosses);

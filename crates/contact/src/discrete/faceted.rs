@@ -10,13 +10,14 @@ use super::chords::{Chords, edges};
 use super::creases::area_vector;
 use super::partners::Paired;
 use super::points::{ContactPoint, of_contact};
+use super::united::smooth_sets;
 use crate::error::ContactError;
 use crate::scene::{Closing, Gap, Scene};
-use crate::tolerances::{ARC_ERROR, DEEP, DIGITS, FACETED, SHARP, TOUCHING};
+use crate::tolerances::{ARC_ERROR, DEEP, DIGITS, FACETED, TOUCHING};
 use signorini_fem_mesh::internal::{DisjointSets, Lists, distinct};
-use signorini_fem_mesh::vec3::{cross, dot, norm, sub};
+use signorini_fem_mesh::vec3::{cross, norm, sub};
 use signorini_fem_mesh::{FacetTag, Surface, TetMesh};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// An overlap and the largest distance of the facets there from their curve, m.
@@ -134,28 +135,11 @@ pub(super) fn close_faceted(
     Ok(out)
 }
 
-/// Bends sides that go on smoothly in one another, as tags of one curve do, as one: at a rim that is none normals are
-/// those of both.
+/// Bends sides that go on smoothly in one another as one: at a rim that is none normals are those of both.
 fn unite(mesh: &TetMesh, faceted: &mut [Faceted]) -> Result<(), ContactError> {
     let mut sides: Vec<&mut Side> = faceted.iter_mut().flat_map(|f| &mut f.sides).collect();
-    // of each two that share nodes the least cosine between their normals
-    let mut cosines: BTreeMap<[usize; 2], f64> = BTreeMap::new();
-    let mut seen: HashMap<u32, Vec<(usize, [f64; 3])>> = HashMap::new();
-    for (k, side) in sides.iter().enumerate() {
-        for (node, frame) in side.surface.nodes().iter().zip(side.surface.frames()) {
-            let known = seen.entry(*node).or_default();
-            for (other, normal) in known.iter() {
-                let least = cosines.entry([*other, k]).or_insert(1.0);
-                *least = least.min(dot(frame.normal, *normal));
-            }
-            known.push((k, frame.normal));
-        }
-    }
-    let mut sets = DisjointSets::new(sides.len());
-    for ([k, j], _) in cosines.into_iter().filter(|(_, least)| *least > SHARP) {
-        sets.join(k, j);
-    }
-    let united = Lists::by_key(sides.len(), &sets.numbers());
+    let surfaces: Vec<&Surface> = sides.iter().map(|side| &side.surface).collect();
+    let united = Lists::by_key(sides.len(), &smooth_sets(&surfaces));
     for own in (0..united.count())
         .map(|set| united.of(set))
         .filter(|own| own.len() > 1)

@@ -30,6 +30,7 @@ mod side;
 mod springs;
 mod supports;
 mod turn;
+mod united;
 
 pub(crate) use couplings::Couplings;
 pub(crate) use creases::area_vector;

@@ -61,31 +61,23 @@ impl Paired {
         matches!(self.partners, Partners::Mortar(_))
     }
 
-    /// Finds the sides of a contact. Where meshes match the first side has the points, else the coarser one, of sides
-    /// with facets of one size that with fewer points: rows are farther from depending on one another, and pressures
-    /// smoother. But a curved side that hardly changes its volume has them, in meshes of order 2: between points of
-    /// larger facets it gives way, and loses its pressure. Linear tetrahedra are too stiff to. And a flat one that
-    /// reaches beyond has none if it is much coarser, as its points beyond would hold the other side from tipping over
-    /// its edge, or if its body is much harder (linear meshes): a rim of the softer one would be all that several of
-    /// them press.
-    pub(super) fn new(
+    /// The sides of a contact with an obstacle, or of two whose meshes match: the first one has the points. `None` where
+    /// they do not.
+    pub(super) fn matching(
         mesh: &TetMesh,
-        materials: &Materials,
-        index: usize,
-        contact: &Contact,
-        crossing: impl Fn() -> HashSet<u32>,
+        (index, contact): (usize, &Contact),
         rounding: f64,
-    ) -> Result<Self, ContactError> {
+    ) -> Result<Option<Self>, ContactError> {
         let surface = Surface::new(mesh, &contact.tags)?;
         let fixed = fixed_frame(index, contact, &surface)?;
-        let mut paired = Self {
+        let paired = |surface, partners| Self {
             surface,
             fixed,
-            partners: Partners::Obstacle,
+            partners,
             swapped: false,
         };
         if contact.partner.is_empty() {
-            return Ok(paired);
+            return Ok(Some(paired(surface, Partners::Obstacle)));
         }
         if let Some(tag) = contact.tags.iter().find(|t| contact.partner.contains(t)) {
             return Err(ContactError::SameSide {
@@ -94,19 +86,32 @@ impl Paired {
             });
         }
         let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
-        if let Some(nodes) = nodes(mesh, index, contact, &paired.surface, fixed.as_ref(), &other, rounding)? {
-            paired.partners = Partners::Nodes(nodes);
-            return Ok(paired);
-        }
+        let nodes = nodes(mesh, index, contact, &surface, fixed.as_ref(), &other, rounding)?;
+        Ok(nodes.map(|nodes| paired(surface, Partners::Nodes(nodes))))
+    }
+
+    /// The sides of a contact whose meshes do not match. The coarser one has the points, of sides with facets of one
+    /// size that with fewer: rows are farther from depending on one another, and pressures smoother. But a curved side
+    /// that hardly changes its volume has them, in meshes of order 2: between points of larger facets it gives way, and
+    /// loses its pressure. Linear tetrahedra are too stiff to. And a flat one that reaches beyond has none if it is
+    /// much coarser, as its points beyond would hold the other side from tipping over its edge, or if its body is much
+    /// harder (linear meshes): a rim of the softer one would be all that several of them press.
+    pub(super) fn apart(
+        (mesh, materials): (&TetMesh, &Materials),
+        (index, contact): (usize, &Contact),
+        crossing: &HashSet<u32>,
+    ) -> Result<Self, ContactError> {
+        let surface = Surface::new(mesh, &contact.tags)?;
+        let other = Surface::new(mesh, &contact.partner)?;
+        let fixed = fixed_frame(index, contact, &surface)?;
         let facet = |s: &Surface| s.total_area() / s.triangles().len() as f64;
-        let [own, others] = [facet(&paired.surface), facet(&other.surface)];
-        let crossing = crossing();
-        let flush = |from: &Surface, seen: &[Option<MortarNode>]| flush(mesh, contact, from, seen, &crossing);
+        let [own, others] = [facet(&surface), facet(&other)];
+        let flush = |from: &Surface, seen: &[Option<MortarNode>]| flush(mesh, contact, from, seen, crossing);
         // told gaps are meant, quadratic facets have their own curves, and fixed directions are not those of facets
         let measured = !contact.tied && matches!(contact.gap, Gap::Measured);
         let mut curves = Arcs::new();
         if measured && mesh.order() == 1 && fixed.is_none() {
-            let sides = [&paired.surface, &other.surface];
+            let sides = [&surface, &other];
             curves.extend(sides.into_iter().flat_map(|side| arcs(mesh, side)));
             // convex sides touch in a point or along a line: means know more of what is between nodes
             if curves.values().all(|arc| *arc > 0.0) {
@@ -120,11 +125,11 @@ impl Paired {
                 flush(from, seen)
             })
         };
-        let there = || seen(&paired.surface, &other.surface);
-        let back = || seen(&other.surface, &paired.surface);
+        let there = || seen(&surface, &other);
+        let back = || seen(&other, &surface);
         let is_curved = |s: &Surface| differ(s.frames().iter().map(|f| f.normal));
         let keeps = |s: &Surface| mesh.order() == 2 && is_curved(s) && keeps_volume(mesh, materials, s);
-        let (mortar, swapped) = match [keeps(&paired.surface), keeps(&other.surface)] {
+        let (mortar, swapped) = match [keeps(&surface), keeps(&other)] {
             [true, false] => (there(), false),
             [false, true] => (back(), true),
             _ if others > COARSER * own => (back(), true),
@@ -141,7 +146,7 @@ impl Paired {
         // of the side with the points, then of the other one
         let in_order = |[own, others]: [f64; 2]| if swapped { [others, own] } else { [own, others] };
         let [coarser, finer] = in_order([own, others]);
-        let sides = [&paired.surface, &other.surface];
+        let sides = [&surface, &other];
         let is_flat = !sides.into_iter().any(is_curved);
         let is_harder = || {
             let [harder, softer] = in_order(sides.map(|s| hardness(mesh, materials, s)));
@@ -156,17 +161,21 @@ impl Paired {
             (false, _) => (mortar, swapped),
         };
         if mortar.iter().all(Option::is_none) {
-            let distance = other.distance(&paired.surface);
+            let distance = OtherSide::new(mesh, other).distance(&surface);
             let contact = index;
             return Err(ContactError::NoPartner { contact, distance });
         }
-        paired.partners = Partners::Mortar(mortar);
-        paired.swapped = swapped;
-        if swapped {
-            paired.surface = other.surface;
-            paired.fixed = fixed.and_then(|frame| SurfaceFrame::from_normal(frame.normal.map(|c| -c)));
-        }
-        Ok(paired)
+        let turned = |frame: SurfaceFrame| SurfaceFrame::from_normal(frame.normal.map(|c| -c));
+        let (surface, fixed) = match swapped {
+            true => (other, fixed.and_then(turned)),
+            false => (surface, fixed),
+        };
+        Ok(Self {
+            surface,
+            fixed,
+            partners: Partners::Mortar(mortar),
+            swapped,
+        })
     }
 }
 
@@ -377,11 +386,7 @@ impl<'a> OtherSide<'a> {
 mod tests {
     use super::*;
     use signorini_fem_mesh::mesh::orient_tets;
-    use signorini_fem_mesh::{Brick, Facet, FacetTag, Hooke, brick};
-
-    fn steel() -> Materials {
-        Materials::uniform(Hooke::isotropic(2e11, 0.3).expect("Hooke"))
-    }
+    use signorini_fem_mesh::{Brick, Facet, FacetTag, brick};
 
     fn lower(tag: FacetTag) -> FacetTag {
         FacetTag(tag.0 + 100)
@@ -411,8 +416,13 @@ mod tests {
         for gap in [0.0, 1e-3, 0.02, 0.3] {
             let mesh = bent(gap);
             let contact = Contact::between(brick::Z_MIN, lower(brick::Z_MAX));
-            let paired = Paired::new(&mesh, &steel(), 0, &contact, HashSet::new, 1e-12).expect("partners");
-            let (Partners::Nodes(found), surface) = (paired.partners, paired.surface) else {
+            let paired = Paired::matching(&mesh, (0, &contact), 1e-12).expect("partners");
+            let Some(Paired {
+                partners: Partners::Nodes(found),
+                surface,
+                ..
+            }) = paired
+            else {
                 panic!("meshes match");
             };
             assert_eq!(found.len(), surface.nodes().len());
@@ -454,8 +464,8 @@ mod tests {
         let contact = Contact::between(above, below);
         for (inner, apart) in [(None, false), (Some([0.3, 0.3, 0.0]), true)] {
             let mesh = cone(None, 1.0, above).append(&cone(inner, -1.0, below)).expect("two");
-            let paired = Paired::new(&mesh, &steel(), 0, &contact, HashSet::new, 1e-12).expect("partners");
-            assert_eq!(paired.is_apart(), apart);
+            let paired = Paired::matching(&mesh, (0, &contact), 1e-12).expect("partners");
+            assert_eq!(paired.is_none(), apart);
         }
     }
 }

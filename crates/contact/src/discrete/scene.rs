@@ -1,17 +1,15 @@
 //! The discrete scene: a scene at the nodes of its mesh, made and checked once.
 
 use super::couplings::Couplings;
-use super::crossing::crossing;
 use super::equations::equations;
 use super::faceted::{FacetedOverlaps, close_faceted};
-use super::means::opened;
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
-use super::partners::Paired;
 use super::penetration::check_penetration;
 use super::points::{ContactPoint, HandedOn, conditions, handed_on, of_contact, points};
 use super::springs::Springs;
 use super::supports::Supports;
 use super::turn::check_turn;
+use super::united::pair;
 use crate::error::ContactError;
 use crate::scene::{Pose, Scene, check_laws};
 use crate::tolerances::ROUNDING;
@@ -71,14 +69,8 @@ impl DiscreteScene {
         let springs = Springs::new(scene, &supports)?;
         let largest = |m: f64, v: &f64| m.max(v.abs());
         let rounding = ROUNDING * scene.mesh.points().iter().flatten().fold(0.0, largest);
-        let contacts = scene.contacts.iter().enumerate();
         let started = Instant::now();
-        let paired = contacts.map(|(index, contact)| {
-            let crossing = || crossing(scene, index);
-            let paired = Paired::new(&scene.mesh, &scene.materials, index, contact, crossing, rounding)?;
-            opened(&scene.mesh, (index, contact), paired)
-        });
-        let paired = paired.collect::<Result<Vec<_>, _>>()?;
+        let paired = pair(scene, rounding)?;
         let search = started.elapsed();
         let mortar = paired.iter().enumerate().filter(|(_, p)| p.is_apart());
         let apart = mortar.map(|(index, p)| (index, p.swapped)).collect();

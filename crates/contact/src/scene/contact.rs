@@ -125,7 +125,8 @@ impl Contact {
     /// curved side of a Poisson's ratio above 0.45, if the other's is below), and the partner of each is a weighted
     /// mean of nodes (mortar method with dual multipliers): uniform pressure is transferred exactly, for any ratio of
     /// mesh sizes and for sides that overlap only in part. Nodes with nothing opposite have no point. Put flat sides
-    /// that meet at an edge into separate contacts.
+    /// that meet at an edge into separate contacts. Those that go on smoothly in one another on both sides, without
+    /// motions, act as one: each node is in the contact whose partner it sees most of.
     ///
     /// All quantities of a contact point are those of the body of its [node](crate::result::PointState::node): the
     /// outward normal, the force on it, its displacement *relative* to the partner; sums over a contact are those of

@@ -228,6 +228,67 @@ fn a_pin_presses_its_bore_as_circles_do() {
     }
 }
 
+/// Half a pin in half a bore, cut into patches with a contact each, or one for each two of them, as CAD cuts a circle:
+/// forces are those of one contact, whatever faces what across a seam, and friction is that of the patch.
+#[test]
+fn a_curve_in_patches_presses_as_one() {
+    let mesh = |radii: [f64; 2], (cells, order): (usize, usize), outer: f64, patches: usize| {
+        let place = |[x, y, z]: [f64; 3]| {
+            let (radius, angle) = (radii[0] + x * (radii[1] - radii[0]), std::f64::consts::PI * (y - 0.5));
+            [radius * angle.sin(), -radius * angle.cos(), z]
+        };
+        let tag = |[_, y, _]: [f64; 3], [normal, ..]: [f64; 3]| match outer * normal {
+            n if n > 0.5 => Some(FacetTag(10 + (patches as f64 * y) as u32)),
+            n if n < -0.5 => Some(brick::X_MIN),
+            _ => None,
+        };
+        let straight = block([1.0; 3], [4, cells, 1]).tag_boundary(tag);
+        let straight = match order {
+            2 => straight.raise_order().expect("order 2"),
+            _ => straight,
+        };
+        straight.map_points(place).expect("half a ring")
+    };
+    let press = |cells: [usize; 2], order, patches: [usize; 2], rough: bool| {
+        let pin = mesh([2.0, 10.0], (cells[0], order), 1.0, patches[0]);
+        let bore = mesh([10.02, 30.0], (cells[1], order), -1.0, patches[1]);
+        let law = |k: usize| match rough && 2 * k < patches[0] {
+            true => Friction::coulomb(0.3),
+            false => Friction::None,
+        };
+        let scene = Scene::new(with_second(&pin, &bore), uniform(200.0, 0.3))
+            .with_support(Support::fixed(second(brick::X_MIN)))
+            .with_support(Support::fixed(brick::X_MIN).with_motion([0.0, -0.05, 0.0], ramp()));
+        let tag = |k: usize| FacetTag(10 + k as u32);
+        let pairs = (0..patches[0]).flat_map(|k| (0..patches[1]).map(move |j| [k, j]));
+        let met = pairs.filter(|[k, j]| patches[0] != patches[1] || k == j);
+        let contact = |[k, j]: [usize; 2]| Contact::between(tag(k), second(tag(j))).with_friction(law(k));
+        let scene = met.fold(scene, |scene, pair| scene.with_contact(contact(pair)));
+        let places = scene.mesh().points().to_vec();
+        let result = solve(scene, at(1e-9));
+        let place = |node: u32| places[node as usize][0];
+        let sheared = result.points.iter().filter(|p| norm(&p.friction_force) > 0.0);
+        let sheared: Vec<f64> = sheared.map(|p| place(p.node)).collect();
+        let mut forces: Vec<(u32, f64)> = result.points.iter().map(|p| (p.node, p.normal_force)).collect();
+        forces.sort_by_key(|force| force.0);
+        (forces, sheared)
+    };
+    for (cells, order) in [([20, 24], 1), ([24, 20], 1), ([23, 36], 1), ([12, 16], 2)] {
+        let (expected, _) = press(cells, order, [1, 1], false);
+        let most = expected.iter().map(|force| force.1.abs()).fold(0.0, f64::max);
+        for patches in [[2, 2], [4, 4], [1, 2], [3, 2]] {
+            let (forces, _) = press(cells, order, patches, false);
+            assert_eq!(forces.len(), expected.len());
+            for (own, one) in forces.iter().zip(&expected) {
+                let off = (own.1 - one.1).abs() / most;
+                assert!(own.0 == one.0 && off < 1e-6, "{cells:?} {patches:?}: {own:?} {one:?}");
+            }
+        }
+    }
+    let (_, sheared) = press([20, 24], 1, [2, 2], true);
+    assert!(!sheared.is_empty() && sheared.iter().all(|x| *x < 1e-9), "{sheared:?}");
+}
+
 /// Two flats of an octagon, of few cells each, are no curve: their interference presses.
 #[test]
 fn flats_that_meet_in_a_kink_press() {
