@@ -9,6 +9,7 @@
 //! | `crack` | a crack that slides to and fro under pressure |
 //! | `own_mesh` | a mesh of Gmsh, files for ParaView |
 //! | `deck` | a deck of CalculiX or Abaqus, from file to ParaView |
+//! | `parameters` | a study of friction: errors told apart, results as JSON |
 //! | `restart` | a run that is stopped and continued |
 //! | `qp_only` | quadratic programming without mechanics |
 //!

@@ -9,6 +9,8 @@ mod deck;
 mod from_mesh;
 #[path = "../own_mesh.rs"]
 mod own_mesh;
+#[path = "../parameters.rs"]
+mod parameters;
 #[path = "../qp_only.rs"]
 mod qp_only;
 #[path = "../tresca.rs"]
@@ -99,6 +101,23 @@ fn a_slip_bound_that_is_data_takes_one_quadratic_program_a_step() {
         panic!("a slip bound cannot be negative");
     };
     assert!(error.to_string().contains("slip bound"));
+}
+
+/// The pull is a quarter of the pressing force.
+#[test]
+fn a_quarter_holds_the_block() {
+    use parameters::Outcome;
+    let block = parameters::block().expect("block");
+    for coefficient in [0.1, 0.24, 0.26, 1.0] {
+        match parameters::solve(&block, coefficient).expect("solved") {
+            Outcome::Slides(needed) => assert!(coefficient < 0.25 && (needed - 0.25).abs() < 1e-4, "{needed}"),
+            Outcome::Held(result) => {
+                let sum = result.summary();
+                let pull = sum.friction_force[0] / sum.normal_force;
+                assert!(coefficient > 0.25 && (pull + 0.25).abs() < 1e-6, "{pull}");
+            }
+        }
+    }
 }
 
 #[test]
