@@ -107,10 +107,10 @@ impl Paired {
         let facet = |s: &Surface| s.total_area() / s.triangles().len() as f64;
         let [own, others] = [facet(&surface), facet(&other)];
         let flush = |from: &Surface, seen: &[Option<MortarNode>]| flush(mesh, contact, from, seen, crossing);
-        // told gaps are meant, quadratic facets have their own curves, and fixed directions are not those of facets
+        // told gaps are meant, and quadratic facets have their own curves
         let measured = !contact.tied && matches!(contact.gap, Gap::Measured);
         let mut curves = Arcs::new();
-        if measured && mesh.order() == 1 && fixed.is_none() {
+        if measured && mesh.order() == 1 {
             let sides = [&surface, &other];
             curves.extend(sides.into_iter().flat_map(|side| arcs(mesh, side)));
             // convex sides touch in a point or along a line: means know more of what is between nodes

@@ -16,7 +16,7 @@ use super::side::{Sides, mean_place, rounded, turned};
 use crate::error::ContactError;
 use crate::mortar::MortarNode;
 use crate::scene::{Contact, Pose, Scene};
-use crate::tolerances::SAME_NORMAL;
+use crate::tolerances::{FACING, SAME_NORMAL};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh, vec3};
 use signorini_qp::vector;
 use signorini_tfeti::Side;
@@ -148,8 +148,7 @@ pub(super) fn conditions(
                         continue;
                     };
                     (one[0].frame, one[0].area) = (seen.frame, seen.area);
-                    let normal = fixed.unwrap_or(seen.frame).normal;
-                    let gap = mortar_gap(scene, index, surface, (local, &normal), seen)?;
+                    let gap = mortar_gap(scene, index, surface, local, seen)?;
                     // weights are in part negative: over a curved side, or beside an edge, a mean may be inside where
                     // no facet is
                     let deepest = seen.nearest.min(0.0);
@@ -162,7 +161,9 @@ pub(super) fn conditions(
                     };
                     to_curve = seen.curve.is_some();
                     let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
-                    measured = rounded(gap, weights * rounding);
+                    // along an inclined direction it is farther
+                    let along = fixed.map_or(1.0, |frame| frame.normal_part(seen.frame.normal).max(FACING));
+                    measured = rounded(gap / along, weights * rounding);
                     mean.clone_from(&seen.own);
                     Some(Side::new(seen.partner.clone()))
                 }
@@ -300,17 +301,17 @@ fn turn(mesh: &TetMesh, sides: &mut Sides, rounding: f64) {
     });
 }
 
-/// The weighted gap of a node of a surface along a normal, m: from the node to the weighted mean of what it sees.
+/// The weighted gap of a node of a surface along its normal, m: from the node to the weighted mean of what it sees.
 fn mortar_gap(
     scene: &Scene,
     contact: usize,
     surface: &Surface,
-    (local, normal): (usize, &[f64; 3]),
+    local: usize,
     seen: &MortarNode,
 ) -> Result<f64, ContactError> {
     let node = surface.nodes()[local];
     let from = scene.mesh.points()[node as usize];
-    let gap = seen.gap(&scene.mesh, from, normal);
+    let gap = seen.gap(&scene.mesh, from, &seen.frame.normal);
     let (nodes, size) = ([node, seen.partner[0].0], surface.areas()[local].sqrt());
     check_overlap(contact, &scene.contacts[contact], nodes, gap, size)?;
     Ok(gap)

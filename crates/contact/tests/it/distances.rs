@@ -64,3 +64,40 @@ fn functions_that_are_no_distances_are_refused_with_their_place() {
         assert!(Plan::new(&near, &Settings::default()).is_ok());
     }
 }
+
+/// Inclined sides of two bodies, of the same cells or others, are as far from each other along a fixed direction as one
+/// was moved along it; what moves back by as much touches.
+#[test]
+fn gaps_along_a_fixed_direction_are_those_along_it() {
+    for (slope, order) in [(0.0, 1), (0.6, 1), (1.5, 1), (0.6, 2)] {
+        for cells in [[3, 3], [3, 4], [4, 3], [2, 5]] {
+            let wedge = |cells: usize, up: f64| {
+                let straight = block([1.0; 3], [cells; 3]);
+                let straight = if order == 2 {
+                    straight.raise_order().expect("order 2")
+                } else {
+                    straight
+                };
+                let place = |[x, y, z]: [f64; 3]| [x, y, z + up + slope * x];
+                straight.map_points(place).expect("inclined")
+            };
+            let mesh = with_second(&wedge(cells[0], 0.0), &wedge(cells[1], 1.02));
+            let contact = Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_normal([0.0, 0.0, -1.0]);
+            let gaps = |down: f64| {
+                let moved = Support::fixed(second(brick::Z_MAX)).with_motion([0.0, 0.0, -down], ramp());
+                let scene = Scene::new(mesh.clone(), uniform(1e9, 0.3))
+                    .with_support(Support::fixed(brick::Z_MIN))
+                    .with_support(moved)
+                    .with_support(Support::fixed(second(brick::Z_MIN)).with_motion([0.0, 0.0, -down], ramp()))
+                    .with_contact(contact.clone());
+                let points = solve(scene, at(1e-8)).points;
+                points.iter().map(|p| p.gap).collect::<Vec<_>>()
+            };
+            let gaps = gaps(0.01);
+            assert!(!gaps.is_empty());
+            for gap in gaps {
+                assert!((gap - 0.01).abs() < 1e-9, "{slope} {order} {cells:?}: {gap}");
+            }
+        }
+    }
+}
