@@ -14,13 +14,14 @@ pub fn place(place: &[f64; 3]) -> String {
 
 /// Defines an error. A variant is `Name { fields } = "message";`: the message says what is wrong, where, and the
 /// remedy; it is the documentation of the variant, too, and what a `main` that returns the error prints. Behind `from`
-/// stand errors of other crates that are passed on as they are.
+/// stand errors of other crates that are passed on as they are, behind `as` those that are not converted by `?`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! errors {
     (
         $(#[$about:meta])*
-        $name:ident $(from { $($(#[$gate:meta])* $other:ident($error:ty)),* $(,)? })? {
+        $name:ident $(from { $($(#[$gate:meta])* $other:ident($error:ty)),* $(,)? })?
+            $(as { $($own:ident($own_error:ty)),* })? {
             $(
                 $variant:ident $({ $($field:ident: $type:ty),* })? $(($(#[$from:meta])? $inner:ty))?
                 = $message:literal $(, $argument:expr)*;
@@ -41,6 +42,11 @@ macro_rules! errors {
                 $(#[$gate])*
                 #[error(transparent)]
                 $other(#[from] $error),
+            )*)?
+            $($(
+                /// An error of another crate, as it is.
+                #[error(transparent)]
+                $own($own_error),
             )*)?
         }
 

@@ -37,8 +37,8 @@
 //! ```
 //!
 //! Features: `vtu` writes ParaView files, `gmsh` reads Gmsh meshes, `deck` reads CalculiX and Abaqus decks,
-//! `checkpoint` turns states into bytes and back, `serde` serialises tags, facets, frames and bricks. All are off by
-//! default.
+//! `checkpoint` turns states into bytes and back, `serde` serialises reports, certificates, reactions,
+//! contact points, tags, facets, frames and bricks. All are off by default.
 
 pub use signorini_contact as contact;
 #[cfg(feature = "deck")]

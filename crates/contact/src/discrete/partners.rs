@@ -22,6 +22,8 @@ use std::collections::{HashMap, HashSet};
 
 /// Distance over the size of the facets up to which partners are looked for first: gaps are mostly small.
 const NEAR: f64 = 10.0;
+/// How many nodes are looked at first, evenly spread: a node without a partner looks at all of the other side.
+const PROBES: usize = 64;
 
 /// The partner of a contact node.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -235,6 +237,11 @@ fn nodes(
         }
         Ok(Some(partner))
     };
+    let every = surface.nodes().len().div_ceil(PROBES);
+    let mut probes = surface.nodes().iter().enumerate().step_by(every);
+    if probes.any(|node| matches!(partner(node), Ok(None))) {
+        return Ok(None);
+    }
     let found: Vec<_> = surface.nodes().par_iter().enumerate().map(partner).collect();
     // of several errors the first, whichever thread has found one
     let found: Option<Vec<Partner>> = found.into_iter().collect::<Result<_, ContactError>>()?;

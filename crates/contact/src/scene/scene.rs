@@ -38,11 +38,11 @@ pub struct Scene {
 impl Scene {
     /// A free body without loads but the eigenstrains of its materials, which are the first ones: static, with an
     /// automatic partition into subdomains.
-    pub fn new(mesh: TetMesh, mut materials: Materials) -> Self {
+    pub fn new(mesh: impl Into<Arc<TetMesh>>, mut materials: Materials) -> Self {
         let constant = |(factor, strain)| Load::eigenstrain(strain).with_history(History::constant(factor));
         let loads = materials.take_eigenstrains().into_iter().map(constant).collect();
         Self {
-            mesh: Arc::new(mesh),
+            mesh: mesh.into(),
             materials,
             supports: Vec::new(),
             springs: Vec::new(),

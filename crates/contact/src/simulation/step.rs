@@ -200,8 +200,8 @@ impl Simulation {
         kept.motions = motions.map(along).collect();
         let spans = model.scene.has_spans() && model.scene.stage_steps().end < model.plan.steps;
         let goes_on = kept.between || problem.index + 1 < model.plan.steps;
-        let loose = || model.loose_motions().is_ok_and(|motions| !motions.is_empty());
-        if spans || history && goes_on && loose() {
+        let is_held = || model.loose_motions().is_ok_and(|motions| motions.is_empty());
+        if spans || history && goes_on && !is_held() {
             kept.displacement = model.tfeti.nodal_mean(&recovered.torn);
         }
         if history && model.any_law(Friction::depends_on_rate) {

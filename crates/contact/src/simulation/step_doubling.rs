@@ -124,15 +124,16 @@ impl StepDoubling {
         sum
     }
 
-    /// Takes the next step in all ways.
+    /// Takes the next step in all ways. After an error, runs that are behind catch up.
     ///
     /// # Errors
     /// As [`Simulation::step`].
     pub fn step(&mut self) -> Result<TimeError, ContactError> {
         let [of_half, of_quarter] = &mut self.solver;
         let whole = self.whole.step()?;
-        let half = advance(&mut self.half, 2, of_half)?;
-        let quarter = advance(&mut self.quarter, 4, of_quarter)?;
+        let steps = whole.step() + 1;
+        let half = advance(&mut self.half, 2 * steps, of_half)?;
+        let quarter = advance(&mut self.quarter, 4 * steps, of_quarter)?;
         let mut error = TimeError {
             step: whole.step(),
             time: whole.time(),
@@ -157,15 +158,15 @@ impl StepDoubling {
     }
 }
 
-/// Takes some steps of a run, the last of which it returns, and adds up algebraic errors.
-fn advance(run: &mut Simulation, steps: usize, errors: &mut AccumulatedError) -> Result<Arc<StepResult>, ContactError> {
-    let mut result = run.step()?;
-    errors.add(&result);
-    for _ in 1..steps {
-        result = run.step()?;
+/// Takes steps of a run until so many are solved, returns the last, and adds up algebraic errors.
+fn advance(run: &mut Simulation, until: usize, errors: &mut AccumulatedError) -> Result<Arc<StepResult>, ContactError> {
+    loop {
+        let result = run.step()?;
         errors.add(&result);
+        if run.state().step() >= until {
+            return Ok(result);
+        }
     }
-    Ok(result)
 }
 
 /// The times with one more in the middle of each step.

@@ -94,8 +94,8 @@ impl SymmetricOperator for SelectedPreconditioner {
                 vector::copy(x, y);
                 vector::scale(*factor, y);
             }
-            // a scratch of another preconditioner
-            _ => y.fill(0.0),
+            // a scratch of another preconditioner: none is one, too
+            _ => vector::copy(x, y),
         }
     }
 }

@@ -83,7 +83,7 @@ impl State {
     ///
     /// # Errors
     /// [`ContactError::CheckpointFile`] if the file system refuses, with [`NotFound`](std::io::ErrorKind::NotFound)
-    /// where there is no file yet; [`ContactError::Checkpoint`] as [`from_bytes`](Self::from_bytes), with the file.
+    /// where there is no file yet; as [`from_bytes`](Self::from_bytes), with the file.
     pub fn load(path: impl AsRef<Path>) -> Result<Self, ContactError> {
         let path = path.as_ref();
         let bytes = std::fs::read(path).map_err(failed("read", path))?;

@@ -1,6 +1,6 @@
 //! Nodes and elements as a mesh.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 use std::path::Path;
 
@@ -36,6 +36,8 @@ pub(super) struct Raw {
     by_first: Lists<u32>,
     /// Copies of nodes where the mesh is cut; its tetrahedra here do not know of them.
     copies: BTreeMap<u32, Vec<u32>>,
+    /// The node of each copy.
+    first_of: HashMap<u32, u32>,
     /// Positions and numbers in the deck of the elements of the tetrahedra.
     pub(super) elements: Vec<u32>,
     pub(super) element_labels: Vec<u32>,
@@ -114,6 +116,7 @@ impl Raw {
             added,
             by_first: Lists::default(),
             copies: BTreeMap::new(),
+            first_of: HashMap::new(),
             elements: Vec::new(),
             element_labels: Vec::new(),
         };
@@ -233,8 +236,8 @@ impl Raw {
         for &node in nodes {
             let copy = self.points.len() as u32;
             // a copy of a copy is one of the node
-            let first = self.copies.iter().find(|(_, copies)| copies.contains(&node));
-            let first = first.map_or(node, |(first, _)| *first);
+            let first = *self.first_of.get(&node).unwrap_or(&node);
+            self.first_of.insert(copy, first);
             self.copies.entry(first).or_default().push(copy);
             self.points.push(self.points[node as usize]);
             self.node_labels.push(self.node_labels[node as usize]);

@@ -159,15 +159,14 @@ fn are_free(sets: &Sets, bodies: &[Body]) -> Result<Vec<bool>, DeckError> {
     for line in model.supports.iter().chain(lines) {
         let nodes = sets.nodes.find(&line.target, &line.word)?;
         for (held, body) in held.iter_mut().zip(bodies) {
-            for node in nodes.iter() {
-                let first = match () {
-                    () if *node == body.reference => 0,
-                    () if Some(*node) == body.rotation => 3,
-                    () => continue,
-                };
-                (first..6)
-                    .filter(|c| line.kind.on[c - first])
-                    .for_each(|c| held[c] = true);
+            let rotation = body.rotation.filter(|node| *node != body.reference);
+            let led = [(rotation, 3), (Some(body.reference), 0)];
+            for (node, first) in led {
+                if node.is_some_and(|node| nodes.contains(&node)) {
+                    (first..6)
+                        .filter(|c| line.kind.on[c - first])
+                        .for_each(|c| held[c] = true);
+                }
             }
         }
     }

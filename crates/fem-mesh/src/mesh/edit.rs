@@ -141,6 +141,10 @@ pub fn merge_nodes<const N: usize>(
     facets: &mut [Facet],
     distance: f64,
 ) -> usize {
+    // what is not a number is no distance either
+    if distance.is_nan() || distance < 0.0 {
+        return 0;
+    }
     let pairs = check::close_pairs(points, distance);
     let mut sets = DisjointSets::new(points.len());
     for (a, b) in pairs {

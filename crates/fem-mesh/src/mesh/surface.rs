@@ -318,10 +318,12 @@ fn check_tags(mesh: &TetMesh, tags: &[FacetTag]) -> Result<(), SurfaceError> {
     if tags.is_empty() {
         return Err(SurfaceError::NoTags);
     }
-    let known = mesh.tags();
     for (i, &tag) in tags.iter().enumerate() {
-        if !known.contains(&tag) {
-            return Err(SurfaceError::UnknownTag { tag, known });
+        if !mesh.facets().iter().any(|facet| facet.tag == tag) {
+            return Err(SurfaceError::UnknownTag {
+                tag,
+                known: mesh.tags(),
+            });
         }
         if tags[..i].contains(&tag) {
             return Err(SurfaceError::RepeatedTag { tag });

@@ -27,6 +27,16 @@ fn parts_meshed_apart_become_one_body() {
         assert_eq!((gone, body), (count, Some(last)), "{distance}");
         assert_abs_diff_eq!(volume, 2.0, epsilon = 1e-6);
     }
+    // no distance merges nothing, not even what is in one place
+    let both = lower.append(&lower.map_points(|[x, y, z]| [x, y, z + 1.0]).unwrap());
+    let (points, tets) = both.map(|b| (b.points().to_vec(), b.tets().to_vec())).unwrap();
+    for (distance, count) in [(f64::NAN, 0), (-1.0, 0), (0.0, 9)] {
+        assert_eq!(
+            merge_nodes(&points, &mut tets.clone(), &mut [], distance),
+            count,
+            "{distance}"
+        );
+    }
     // too far: tetrahedra lose nodes, which the mesh reports; wrong numbers are left to it, too
     let (points, mut tets) = (lower.points().to_vec(), lower.tets().to_vec());
     assert_eq!(merge_nodes(&points, &mut tets, &mut [], 0.6), 26);
