@@ -168,12 +168,6 @@ pub(crate) const BEHIND_PATH: f64 = 0.01;
 pub(crate) const PATIENCE: usize = 12;
 /// Sets without progress after which the solved set tells what is active next, not the point moved to.
 pub(crate) const UNSURE: usize = 4;
-/// Products of a solve after which slips are tried, again after so many times as many, with so large a part of them.
-pub(crate) const TRIAL: usize = 500;
-pub(crate) const TRIAL_AGAIN: usize = 4;
-pub(crate) const TRIAL_PART: f64 = 0.5;
-/// Decrease of the error on a set in a trial: with less the residual does not tell which way discs slip.
-pub(crate) const SLIPPING: f64 = 0.1;
 /// Decrease of the error on sets behind a start that tells its active set.
 pub(crate) const TOLD: f64 = 1e-3;
 /// Times that a body which constraints alone hold is balanced with a set that follows.

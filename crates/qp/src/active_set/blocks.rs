@@ -23,9 +23,6 @@ pub(crate) struct ActiveSet {
     /// Bounds that are active in the next classification, then discs that slide, see [`foresee`](Self::foresee);
     /// empty where its own residual tells.
     pub(crate) foreseen: Vec<bool>,
-    /// Slips of the discs that are foreseen to slide, where the solved set tells them, see
-    /// [`foresee_slips`](Self::foresee_slips); else empty.
-    pub(crate) slips: Vec<f64>,
     /// Whether they stay where they are inside of their boundary, too.
     pub(crate) near: bool,
     /// Largest radius of a disc that is held until a move takes it across its circle.
@@ -50,7 +47,6 @@ impl ActiveSet {
         self.discs.resize(discs, Disc::Fixed);
         self.blocked.clear();
         self.foreseen.clear();
-        self.slips.clear();
         self.changed = bounds;
         self.freed = 0;
         self.free_bounds = 0;

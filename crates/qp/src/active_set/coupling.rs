@@ -73,10 +73,6 @@ impl Coupling {
         self.slopes.extend_from_slice(slopes);
     }
 
-    pub(crate) fn slopes(&self) -> &[RadiusSlope] {
-        &self.slopes
-    }
-
     /// Makes ready for a solve with so many `constrained` components.
     pub(crate) fn start(&mut self, set: &ProductSet, constrained: usize) -> Result<(), QpError> {
         (self.on, self.failed, self.from) = (false, self.slopes.is_empty(), 0);

@@ -33,14 +33,6 @@ pub(crate) fn along_circle(x: [f64; 2], radius: f64) -> Disc {
     outward(x, radius).map_or(Disc::Free, |n| slides(n, 0.0, 1.0, 0.0))
 }
 
-/// Sliding with this slip; free inside of the circle.
-pub(crate) fn with_slip(x: [f64; 2], slip: f64, radius: f64, scale: f64) -> Disc {
-    if radius <= 0.0 {
-        return Disc::Fixed;
-    }
-    outward(x, radius).map_or(Disc::Free, |n| slides(n, slip, radius, scale))
-}
-
 /// The outward normal at a point that is not inside.
 fn outward(x: [f64; 2], radius: f64) -> Option<[f64; 2]> {
     let length = x[0].hypot(x[1]);

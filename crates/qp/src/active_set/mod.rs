@@ -3,9 +3,9 @@
 //!
 //! From above: `solver` (the loop), `start`, `moves` and `run` (what happens between one active set and the next),
 //! `descent` (safeguard against cycles of predictions), `path` and `compliance` (springs that lead to another set),
-//! `trial` (slips, tried where a run takes long), `cg` and `weights` (the linear problem), `iterate` (the point),
-//! `balance` (modes that constraints alone stop), `coupling` (radii that depend on the solution), `natural_map`,
-//! `blocks` and `disc` (states); `problem`, `settings`, `view`.
+//! `cg` and `weights` (the linear problem), `iterate` (the point), `balance` (modes that constraints alone stop),
+//! `coupling` (radii that depend on the solution), `natural_map`, `blocks` and `disc` (states); `problem`, `settings`,
+//! `view`.
 //!
 //! Uses: `problem`, `report`, `vector`, `settings`, `error`, `tolerances`. In: operator, preconditioner, projector,
 //! set, load, a start. Out: the minimiser and its product, a report.
@@ -26,7 +26,6 @@ mod run;
 mod settings;
 mod solver;
 mod start;
-mod trial;
 mod view;
 mod weights;
 mod workspace;

@@ -20,13 +20,10 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
     pub(crate) fn move_on(&mut self, length: f64, place: &Place) -> Result<(), QpError> {
         let constrained = self.at.constrained();
         self.at.mark();
-        let (joint, unsure, slipping) = (self.joint_step(length), self.is_unsure(), self.is_slipping());
+        let (joint, unsure) = (self.joint_step(length), self.is_unsure());
         let at = &mut self.at;
         at.work.before.copy_from_slice(&at.x[..constrained]);
-        if slipping {
-            at.tell_map(ActiveSet::foresee);
-            at.tell_map(ActiveSet::foresee_slips);
-        } else if self.repairs_suffice && unsure {
+        if self.repairs_suffice && unsure {
             at.tell_map(ActiveSet::foresee);
         }
         self.moved.followed = (self.safeguard.is_none() || place.solved) && self.has_settled();
@@ -34,7 +31,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             self.settle()?;
         } else {
             self.settle_loose(false, self.moved.followed)?;
-            if unsure && !slipping {
+            if unsure {
                 self.at.tell_map(ActiveSet::foresee_moved);
             }
         }

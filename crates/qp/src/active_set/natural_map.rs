@@ -11,7 +11,7 @@ use crate::problem::{ProductSet, for_bounds, for_discs};
 use crate::tolerances::MAY_SLIDE;
 
 use super::blocks::ActiveSet;
-use super::disc::{Disc, along_circle, crosses, disc_state, settle_disc, with_slip};
+use super::disc::{Disc, along_circle, crosses, disc_state, settle_disc};
 
 /// Gradient and lengths of the natural map.
 #[derive(Clone, Copy)]
@@ -44,7 +44,6 @@ impl ActiveSet {
             blocked,
             near,
             foreseen,
-            slips,
             ..
         } = self;
         let near = *near;
@@ -71,14 +70,6 @@ impl ActiveSet {
                 crossing = crossing.max(radius);
             }
             discs[k] = match (foreseen.get(bounds + k), state) {
-                (Some(true), state) if !slips.is_empty() => {
-                    let own = if let Disc::Sliding { slip, .. } = state {
-                        slip
-                    } else {
-                        0.0
-                    };
-                    with_slip(at, own.max(slips[k]), radius, map.scale[i])
-                }
                 (Some(true), Disc::Free) => along_circle(at, radius),
                 (Some(false), Disc::Sliding { .. }) => Disc::Free,
                 (None, Disc::Free) if stays(bounds + k) => along_circle(at, if near { 0.0 } else { radius }),
@@ -86,7 +77,6 @@ impl ActiveSet {
             };
         });
         foreseen.clear();
-        slips.clear();
         self.crossing = crossing;
         self.changed = changed;
         self.freed = freed;
@@ -107,20 +97,6 @@ impl ActiveSet {
             foreseen.push(match discs[k] {
                 Disc::Sliding { .. } => g[0] * x[i] + g[1] * x[i + 1] < 0.0,
                 _ => map.of(x, i).hypot(map.of(x, i + 1)) > radius,
-            });
-        });
-    }
-
-    /// After [`foresee`](Self::foresee): how far the discs slip there. For one that begins to slide that is what the
-    /// natural map goes beyond the circle, over its step.
-    pub(crate) fn foresee_slips(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
-        let (slips, discs) = (&mut self.slips, &self.discs);
-        slips.clear();
-        for_discs(set, |i, k, radius| {
-            let g = map.on_disc(i);
-            slips.push(match discs[k] {
-                Disc::Sliding { .. } => -(g[0] * x[i] + g[1] * x[i + 1]) / x[i].hypot(x[i + 1]),
-                _ => (map.of(x, i).hypot(map.of(x, i + 1)) - radius) / (map.step * map.scale[i]),
             });
         });
     }

@@ -7,7 +7,7 @@ use crate::problem::{ConvexSet, EqualityProjector, Hook, MovingSet, ProductSet, 
 use crate::report::Status;
 use crate::tolerances::{
     BEHIND_PATH, FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NATURAL_STEP, NEGLIGIBLE, ON_PATH, PASSING_PART, PATIENCE,
-    PROGRESS, ROUNDED, RUNAWAY, SHRUNK, SLIPPING, SMALL_PART, TOLD, TRIAL, UNBALANCED,
+    PROGRESS, ROUNDED, RUNAWAY, SHRUNK, SMALL_PART, TOLD, UNBALANCED,
 };
 use crate::vector;
 
@@ -102,11 +102,6 @@ pub(crate) struct Run<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) first_error: f64,
     pub(crate) least_error: f64,
     pub(crate) path: Path,
-    /// Products at which the next [trial](super::trial) begins, and the work of those before.
-    pub(crate) next_trial: usize,
-    pub(crate) tried: ActiveSetReport,
-    /// Whether this is a trial of another run.
-    pub(crate) is_trial: bool,
     /// Once predictions ran in circles.
     pub(crate) safeguard: Option<DescentSafeguard>,
 }
@@ -159,9 +154,6 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
             first_error: f64::INFINITY,
             least_error: f64::INFINITY,
             path: Path::default(),
-            next_trial: TRIAL,
-            tried: ActiveSetReport::new(),
-            is_trial: false,
             safeguard: None,
             at: Iterate {
                 problem,
@@ -409,7 +401,7 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
     /// Conjugate gradients on the active set. Returns the length of the last step, zero if another one is not worth
     /// while.
     pub(crate) fn solve_on_set(&mut self, place: &Place) -> Result<f64, QpError> {
-        let (settled, near_path, slipping) = (self.has_settled(), self.is_near_path(), self.is_slipping());
+        let (settled, near_path) = (self.has_settled(), self.is_near_path());
         let at = &mut self.at;
         if let Some(safeguard) = &mut self.safeguard {
             safeguard.enter(at.x, at.ax, &at.work.residual);
@@ -425,7 +417,6 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
             true => self.forcing.min(BEHIND_PATH),
             false => self.forcing,
         };
-        let forcing = if slipping { forcing.min(SLIPPING) } else { forcing };
         // a set that a start tells is worth solving
         let forcing = match self.told && self.progress.waited == 0 {
             true => forcing.min(TOLD),
@@ -485,7 +476,6 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
             self.at.catch_up();
         }
         self.at.report.status = status;
-        self.at.report.add(&self.tried);
         self.at.report
     }
 }

@@ -21,7 +21,7 @@ settings! {
         patience, with_patience: usize = usize::MAX, in "[1, inf)";
         /// Most active sets; five times as many once descent is enforced, or a path has led to another set.
         max_active_sets, with_max_active_sets: usize = 100, in "[1, inf)";
-        /// Most operator products, besides those of trials, at most two thirds as many.
+        /// Most operator products.
         max_products, with_max_products: usize = 10_000, in "[1, inf)";
     }
 }
@@ -73,16 +73,6 @@ impl ActiveSetReport {
             error: f64::INFINITY,
             constrained_error: f64::INFINITY,
         }
-    }
-
-    /// Adds the work of another run.
-    pub(crate) fn add(&mut self, other: &Self) {
-        self.active_sets += other.active_sets;
-        self.cg_steps += other.cg_steps;
-        self.corrections += other.corrections;
-        self.preconditionings += other.preconditionings;
-        self.factorisations += other.factorisations;
-        self.hook_calls += other.hook_calls;
     }
 
     /// All operator products.

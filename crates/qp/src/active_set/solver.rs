@@ -8,9 +8,8 @@
 //! moved there, made to satisfy `G x = e` again, and one product keeps `A x` exact. That product is shared with the
 //! next step of conjugate gradients, of the length of the last one. A set of which much has just changed is not solved:
 //! this step leads over it, and over the first one where the product of the start is known before the set has moved it.
-//! Where predictions run in circles, or away from a start that told nothing, a path
-//! of compliant constraints leads to another set ([`path`](super::path)), and slips are tried
-//! ([`trial`](super::trial)).
+//! Where predictions run in circles, or away from a start that told nothing, a path of compliant constraints leads to
+//! another set ([`path`](super::path)).
 //!
 //! The error is the length of the preconditioned residual. After `PATIENCE` sets without progress they are solved
 //! more accurately, every move has to lower the cost, and the set follows the solution only where the problem with
@@ -80,21 +79,11 @@ pub fn enter_active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSet
 }
 
 /// From the start to a solution, or to where the run gives up.
-pub(super) fn solve<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
+fn solve<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
     run: &mut Run<'_, A, C, M>,
 ) -> Result<Status, QpError> {
     run.start()?;
-    go_on(run)
-}
-
-/// From one active set to the next, likewise.
-pub(super) fn go_on<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
-    run: &mut Run<'_, A, C, M>,
-) -> Result<Status, QpError> {
     loop {
-        if run.wants_trial() && run.try_slips()? {
-            return Ok(Status::Converged);
-        }
         // 1. the active set that the natural map predicts, and how far its solution is
         let Some(place) = run.enter()? else {
             return Ok(Status::Stagnated);
