@@ -112,10 +112,6 @@ pub(crate) const ASTRAY: f64 = 4.0;
 pub(crate) const ASTRAY_STEP: f64 = 0.1;
 /// Part of the tolerance below which further steps buy nothing: the move after them brings some of it back.
 pub(crate) const ENOUGH: f64 = 0.6;
-/// Estimated error over `|x|` from which on the next set would be predicted from next to nothing but error, as in thin
-/// bodies that bend; and what it is to fall to then.
-pub(crate) const WILD: f64 = 100.0;
-pub(crate) const TAMED: f64 = 0.03;
 /// Share of the free bounded components whose change, most of it one way, makes a set not worth it: one step leads over
 /// it to the next.
 pub(crate) const PASSING: f64 = 0.05;

@@ -18,7 +18,7 @@ use crate::error::QpError;
 use crate::problem::{Constrained, EqualityProjector, SymmetricOperator, for_constrained};
 use crate::tolerances::{
     ASTRAY, ASTRAY_STEP, ENOUGH, FEW_STEPS, FLAT, FLAT_GRADIENT, GROWN, LENT, LONG, MOST_STEPS, NEGATIVE_CURVATURE,
-    PASSING, PASSING_STEP, ROUNDED_STEPS, TAMED, WILD,
+    PASSING, PASSING_STEP, ROUNDED_STEPS,
 };
 use crate::vector;
 
@@ -68,7 +68,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         };
         let last = goal.max_products.min(self.report.products().saturating_add(most));
         self.first_direction();
-        let (mut rho, mut steps, mut tamed) = (rho, 0, false);
+        let (mut rho, mut steps) = (rho, 0);
         while self.report.products() < last && rho > 0.0 {
             let coupled = self.multiply_direction();
             steps += 1;
@@ -89,16 +89,6 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
             let errors = self.errors();
             if errors.within(enough) {
                 let more = !errors.within(goal.limits);
-                // the next set would be predicted from what is mostly error
-                let wild = |size: f64| errors.all > WILD * size;
-                if more && !tamed && wild(goal.size) {
-                    let size = self.problem.operator.norm(self.x).max(goal.size);
-                    if wild(size) {
-                        let all = TAMED * size;
-                        (enough, tamed) = (Lengths { all, constrained: all }, true);
-                        continue;
-                    }
-                }
                 let exact = errors.all > digits * first.all;
                 if more && exact && goal.goes_on && self.stays(goal) {
                     enough = fallen(errors);
