@@ -175,10 +175,9 @@ pub(crate) const SWINGING_ROUNDS: usize = 8;
 pub(crate) const LEAST_PART: f64 = 0.1;
 /// Factor on `PATIENCE` for moves in a row that find no balance, from which on there seems to be none.
 pub(crate) const UNBALANCED: usize = 2;
-/// With the safeguard: factor on the forcing; factor on `PATIENCE` and sets; very short steps in a row that end it.
+/// With the safeguard: factor on the forcing; factor on `PATIENCE` and sets.
 pub(crate) const FINER: f64 = 0.05;
 pub(crate) const LONGER: usize = 5;
-pub(crate) const HELD_UP: usize = 20;
 /// With the safeguard: part of the last move of the set to which its problem is solved before it follows again.
 pub(crate) const FOLLOW: f64 = 0.1;
 /// Share of the decrease on the active set that a move has to keep.
@@ -186,8 +185,6 @@ pub(crate) const KEPT_DECREASE: f64 = 1e-2;
 /// Part of its length below which a step is held up by blocks at their boundary, and the shortest that is tried.
 pub(crate) const SHORT: f64 = 0.3;
 pub(crate) const SHORTEST: f64 = 1e-3;
-/// Length in units of the shortest up to which a step counts as very short.
-pub(crate) const VERY_SHORT: f64 = 16.0;
 /// Lengths of a failed step within which blocks that it takes across their boundary are held.
 pub(crate) const REACH: f64 = 2.0;
 /// Part of the error without blocked blocks to which the problem with them is solved before they are released.

@@ -35,8 +35,6 @@ pub(crate) struct DescentSafeguard {
     /// Whether the set followed at the last move, and how far constrained components moved when it did.
     pub(crate) current: bool,
     pub(crate) drift: f64,
-    /// Very short steps in a row.
-    pub(crate) held_up: usize,
 }
 
 impl DescentSafeguard {
@@ -55,7 +53,6 @@ impl DescentSafeguard {
             unblocked: f64::INFINITY,
             current: true,
             drift: f64::INFINITY,
-            held_up: 0,
         }
     }
 

@@ -3,7 +3,7 @@
 use crate::error::QpError;
 use crate::problem::{EqualityProjector, SymmetricOperator};
 use crate::tolerances::{
-    BALANCE_ROUNDS, LEAST_PART, NEGLIGIBLE, SETTLED, SHORT, SHORTEST, SWING, SWINGING_ROUNDS, UNSURE, VERY_SHORT,
+    BALANCE_ROUNDS, LEAST_PART, NEGLIGIBLE, SETTLED, SHORT, SHORTEST, SWING, SWINGING_ROUNDS, UNSURE,
 };
 use crate::vector;
 
@@ -176,11 +176,6 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             self.moved.jump = at.restore();
             t *= 0.5;
         }
-        safeguard.held_up = if t > VERY_SHORT * SHORTEST {
-            0
-        } else {
-            safeguard.held_up + 1
-        };
         let (rises, reach) = safeguard.judge(at.problem.operator, at.set, (at.x, at.ax), t);
         if t >= SHORT {
             at.work.active.blocked.clear();

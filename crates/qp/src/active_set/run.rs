@@ -6,8 +6,8 @@ use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, Hook, MovingSet, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    BEHIND_PATH, FINER, FOLLOW, HELD_UP, LONGER, MAGNIFIED, NATURAL_STEP, NEGLIGIBLE, ON_PATH, PASSING_PART, PATIENCE,
-    PROGRESS, ROUNDED, RUNAWAY, SHRUNK, SMALL_PART, TOLD, UNBALANCED,
+    BEHIND_PATH, FINER, FOLLOW, LONGER, MAGNIFIED, NATURAL_STEP, NEGLIGIBLE, ON_PATH, PASSING_PART, PATIENCE, PROGRESS,
+    ROUNDED, RUNAWAY, SHRUNK, SMALL_PART, TOLD, UNBALANCED,
 };
 use crate::vector;
 
@@ -384,8 +384,7 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         if self.moved.unbalanced >= PATIENCE * UNBALANCED {
             return Some(Status::Infeasible);
         }
-        let held_up = self.safeguard.as_ref().map_or(0, |safeguard| safeguard.held_up);
-        if self.progress.waited >= PATIENCE * LONGER || held_up >= HELD_UP {
+        if self.progress.waited >= PATIENCE * LONGER {
             return Some(Status::Stagnated);
         }
         let longer = if self.safeguard.is_some() || self.path.begun > 0 {
