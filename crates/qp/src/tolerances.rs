@@ -175,8 +175,7 @@ pub(crate) const SWINGING_ROUNDS: usize = 8;
 pub(crate) const LEAST_PART: f64 = 0.1;
 /// Factor on `PATIENCE` for moves in a row that find no balance, from which on there seems to be none.
 pub(crate) const UNBALANCED: usize = 2;
-/// With the safeguard: factor on the forcing; factor on `PATIENCE` and sets.
-pub(crate) const FINER: f64 = 0.05;
+/// With the safeguard: factor on `PATIENCE` and sets.
 pub(crate) const LONGER: usize = 5;
 /// With the safeguard: part of the last move of the set to which its problem is solved before it follows again.
 pub(crate) const FOLLOW: f64 = 0.1;

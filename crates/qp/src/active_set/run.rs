@@ -6,7 +6,7 @@ use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, Hook, MovingSet, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    BEHIND_PATH, FINER, FOLLOW, LONGER, MAGNIFIED, NATURAL_STEP, NEGLIGIBLE, ON_PATH, PASSING_PART, PATIENCE, PROGRESS,
+    BEHIND_PATH, FOLLOW, LONGER, MAGNIFIED, NATURAL_STEP, NEGLIGIBLE, ON_PATH, PASSING_PART, PATIENCE, PROGRESS,
     ROUNDED, RUNAWAY, SHRUNK, SMALL_PART, TOLD, UNBALANCED,
 };
 use crate::vector;
@@ -87,7 +87,6 @@ pub(crate) struct Run<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) ax_known: bool,
     /// Whether unconstrained components alone stop every mode of the equality.
     pub(crate) repairs_suffice: bool,
-    forcing: f64,
     /// How far the natural map moves the constrained part of `x = 0`.
     reach: f64,
     /// Whether gaps alone can call for forces.
@@ -137,7 +136,6 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
             repairs_suffice: projector.loose().is_empty(),
             settings,
             hook: hook.map(|hook| hook as _),
-            forcing: settings.forcing,
             reach,
             unloaded,
             peak: 0.0,
@@ -370,10 +368,9 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         waited && self.safeguard.is_none()
     }
 
-    /// From now on the problem on a set is solved better, and moves have to descend.
+    /// From now on moves have to descend.
     pub(crate) fn start_safeguard(&mut self) {
         self.safeguard = Some(DescentSafeguard::new(self.at.x.len()));
-        self.forcing *= FINER;
         self.progress.best = self.progress.last;
         self.progress.waited = 0;
     }
@@ -413,8 +410,8 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         let expected = |left: f64| MAGNIFIED * (self.moved.jump + left);
         // behind a path a set that is hardly solved may lead away again
         let forcing = match near_path && at.compliance.c == 0.0 && self.progress.waited > 0 {
-            true => self.forcing.min(BEHIND_PATH),
-            false => self.forcing,
+            true => self.settings.forcing.min(BEHIND_PATH),
+            false => self.settings.forcing,
         };
         // a set that a start tells is worth solving
         let forcing = match self.told && self.progress.waited == 0 {

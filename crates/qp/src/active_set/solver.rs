@@ -11,10 +11,10 @@
 //! Where predictions run in circles, or away from a start that told nothing, a path of compliant constraints leads to
 //! another set ([`path`](super::path)).
 //!
-//! The error is the length of the preconditioned residual. After `PATIENCE` sets without progress they are solved
-//! more accurately, every move has to lower the cost, and the set follows the solution only where the problem with
-//! the present set is solved. [`Status::Stagnated`] tells that this did not help either; [`smalse`](crate::smalse())
-//! lowers a cost in every step, and is proved to converge with [`Expansion::FixedStep`](crate::Expansion).
+//! The error is the length of the preconditioned residual. After `PATIENCE` sets without progress every move has to
+//! lower the cost, and the set follows the solution only where the problem with the present set is solved.
+//! [`Status::Stagnated`] tells that this did not help either; [`smalse`](crate::smalse()) lowers a cost in every step,
+//! and is proved to converge with [`Expansion::FixedStep`](crate::Expansion).
 //!
 //! | local | meaning |
 //! |---|---|
