@@ -246,7 +246,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         if self.project_start() || self.approach() {
             return Ok(());
         }
-        if self.set_weights(false)?.is_none() {
+        if self.set_weights()?.is_none() {
             self.set_all_free()?;
         }
         self.projector.balance(self.x, self.problem.rhs);

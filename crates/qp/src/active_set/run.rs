@@ -182,8 +182,7 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         let (at, settings) = (&mut self.at, self.settings);
         at.residual();
         at.tell_map(ActiveSet::classify);
-        let sparing = self.safeguard.is_some() && self.repairs_suffice;
-        match at.hold_modes(sparing) {
+        match at.hold_modes() {
             Ok(true) if at.projector.project_gradient_again(&mut at.work.residual) => {}
             Ok(true) => at.residual(),
             Ok(false) => {}

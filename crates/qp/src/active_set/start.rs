@@ -26,7 +26,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             self.at.work.active.guess_sliding(self.at.set, self.at.x);
         }
         let stopped = if self.repairs_suffice || told {
-            self.at.set_weights(false)?.is_some()
+            self.at.set_weights()?.is_some()
         } else {
             self.is_known() && self.at.project_start()
         };
@@ -49,7 +49,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
                 self.at.work.active.guess_sliding(self.at.set, self.at.x);
             }
         }
-        if !(stopped && self.repairs_suffice) && self.at.set_weights(false)?.is_none() {
+        if !(stopped && self.repairs_suffice) && self.at.set_weights()?.is_none() {
             self.at.set_all_free()?;
         }
         self.at.projector.repair(self.at.x, self.at.problem.rhs);

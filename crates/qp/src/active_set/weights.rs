@@ -10,10 +10,9 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
     /// Hands the weights of the active set to the projector; whether it factored anew, `None` if they do not hold
     /// every mode.
     ///
-    /// The directions of points that slide belong to them, too. Where predictions run in circles, they are left out
-    /// as long as the other components suffice (`sparing`): measured, not proved, to need fewer sets there.
-    pub(crate) fn set_weights(&mut self, sparing: bool) -> Result<Option<bool>, QpError> {
-        match self.weigh(sparing) {
+    /// The directions of points that slide belong to them, too.
+    pub(crate) fn set_weights(&mut self) -> Result<Option<bool>, QpError> {
+        match self.weigh() {
             Ok(factored) => Ok(Some(factored)),
             Err(QpError::CoarseDeficient { .. }) => Ok(None),
             Err(error) => Err(error),
@@ -26,18 +25,14 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
     /// [`QpError::CoarseDeficient`] if not even they hold every mode.
     pub(crate) fn set_all_free(&mut self) -> Result<bool, QpError> {
         self.work.active.free_all();
-        self.weigh(false)
+        self.weigh()
     }
 
-    fn weigh(&mut self, sparing: bool) -> Result<bool, QpError> {
+    fn weigh(&mut self) -> Result<bool, QpError> {
         let work = &mut *self.work;
         work.active.weights(self.set, &mut work.w);
         self.compliance.damp(&mut work.w);
-        if sparing {
-            work.lines.clear();
-        } else {
-            work.active.lines(self.set, &mut work.lines);
-        }
+        work.active.lines(self.set, &mut work.lines);
         let factored = self.projector.set_weights_and_lines(&work.w, &work.lines)?;
         self.report.factorisations += usize::from(factored);
         Ok(factored)
@@ -46,20 +41,15 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
     /// As [`set_weights`](Iterate::set_weights); where the free components, and the points that slide along their
     /// circles, do not hold every mode, those that slide least are taken for sticking, as many as it needs, and in
     /// the end every component for free.
-    pub(crate) fn hold_modes(&mut self, sparing: bool) -> Result<bool, QpError> {
+    pub(crate) fn hold_modes(&mut self) -> Result<bool, QpError> {
         let mut factored = false;
-        let mut sparing = sparing;
         let mut count = 2;
         loop {
-            if let Some(anew) = self.set_weights(sparing)? {
+            if let Some(anew) = self.set_weights()? {
                 factored |= anew;
                 if self.projector.balances(self.x, self.problem.rhs) {
                     return Ok(factored);
                 }
-            }
-            if sparing {
-                sparing = false;
-                continue;
             }
             if !self.work.active.release(count) {
                 break;
