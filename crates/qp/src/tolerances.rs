@@ -184,8 +184,6 @@ pub(crate) const KEPT_DECREASE: f64 = 1e-2;
 /// Part of its length below which a step is held up by blocks at their boundary, and the shortest that is tried.
 pub(crate) const SHORT: f64 = 0.3;
 pub(crate) const SHORTEST: f64 = 1e-3;
-/// Lengths of a failed step within which blocks that it takes across their boundary are held.
-pub(crate) const REACH: f64 = 2.0;
 /// Part of the error without blocked blocks to which the problem with them is solved before they are released.
 pub(crate) const RELEASE: f64 = 0.01;
 /// Distance from the set over `|x|` up to which a point is feasible.

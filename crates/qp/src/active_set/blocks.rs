@@ -23,8 +23,6 @@ pub(crate) struct ActiveSet {
     /// Bounds that are active in the next classification, then discs that slide, see [`foresee`](Self::foresee);
     /// empty where its own residual tells.
     pub(crate) foreseen: Vec<bool>,
-    /// Whether they stay where they are inside of their boundary, too.
-    pub(crate) near: bool,
     /// Largest radius of a disc that is held until a move takes it across its circle.
     pub(crate) crossing: f64,
     /// Bounded components that changed between free and active in the last [`classify`](Self::classify).
@@ -120,24 +118,20 @@ impl ActiveSet {
         !sliding.is_empty()
     }
 
-    /// Keeps the blocks where they are that stand at their boundary in `x` and that `step` takes across it; with a
-    /// `reach` also those that this part of the step takes across. Whether there are more than before.
-    pub(crate) fn block(&mut self, set: &ProductSet, x: &[f64], step: &[f64], reach: f64) -> bool {
+    /// Keeps the blocks where they are that stand at their boundary in `x` and that `step` takes across it. Whether there
+    /// are more than before.
+    pub(crate) fn block(&mut self, set: &ProductSet, x: &[f64], step: &[f64]) -> bool {
         let (bounds, discs) = (self.free.len(), self.discs.len());
         let blocked = &mut self.blocked;
         blocked.resize(bounds + discs, false);
         let before = blocked.iter().filter(|b| **b).count();
         for_bounds(set, |i, k, lo, hi| {
-            let end = x[i] + reach * step[i];
-            blocked[k] |= (x[i].min(end) <= lo && step[i] < 0.0) || (x[i].max(end) >= hi && step[i] > 0.0);
+            blocked[k] |= (x[i] <= lo && step[i] < 0.0) || (x[i] >= hi && step[i] > 0.0);
         });
         for_discs(set, |i, k, radius| {
             let outward = x[i] * step[i] + x[i + 1] * step[i + 1];
-            let end = (x[i] + reach * step[i]).hypot(x[i + 1] + reach * step[i + 1]);
-            let far = x[i].hypot(x[i + 1]).max(end);
-            blocked[bounds + k] |= far >= radius * (1.0 - MAY_SLIDE) && outward > 0.0;
+            blocked[bounds + k] |= x[i].hypot(x[i + 1]) >= radius * (1.0 - MAY_SLIDE) && outward > 0.0;
         });
-        self.near = reach > 0.0;
         blocked.iter().filter(|b| **b).count() > before
     }
 

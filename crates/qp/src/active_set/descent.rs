@@ -6,13 +6,13 @@
 //! descends as long as components that the gradient presses against their bound are active). Costs are compared by
 //! their difference, which keeps its digits near the solution.
 //!
-//! Blocks that a shortened step takes across their boundary are held (*blocked*), also those a little inside of it.
+//! Blocks that a shortened step takes across their boundary are held (*blocked*).
 //! Where no length descends, the point stays and more blocks are held. They are released when the problem with them
 //! is solved. All this holds between feasible points only: where set and equality hardly meet, moves that do not
 //! descend are taken, too.
 
 use crate::problem::{ConvexSet, ProductSet, SymmetricOperator};
-use crate::tolerances::{INSIDE, KEPT_DECREASE, PROGRESS, REACH, RELEASE, SHORT};
+use crate::tolerances::{INSIDE, KEPT_DECREASE, PROGRESS, RELEASE};
 use crate::vector;
 
 /// The last feasible point and the step from it to the minimum on its active set.
@@ -100,20 +100,18 @@ impl DescentSafeguard {
         operator.sum(&changes) <= KEPT_DECREASE * t * self.full
     }
 
-    /// After a step of length `t`: whether it is one between feasible points that does not descend, and the part of the
-    /// step within which blocks are to be held.
+    /// After a step of length `t`: whether it is one between feasible points that does not descend.
     pub(crate) fn judge(
         &mut self,
         operator: &impl SymmetricOperator,
         set: &ProductSet,
         (x, ax): (&[f64], &[f64]),
         t: f64,
-    ) -> (bool, f64) {
+    ) -> bool {
         let limit = 2.0 * INSIDE * operator.norm(x);
         self.exact = set.violation(&self.x) <= limit && set.violation(x) <= limit;
         self.stuck = false;
-        let reach = if self.exact { (REACH * t).min(SHORT) } else { 0.0 };
-        (self.exact && !self.descends(operator, (x, ax), t), reach)
+        self.exact && !self.descends(operator, (x, ax), t)
     }
 
     /// Back to the last feasible point.
@@ -179,11 +177,10 @@ mod tests {
         let (mut safeguard, set) = (safeguard(), half_space());
         // to the other side: feasible, and the cost rises
         let (x, ax) = ([-1.0, 0.0], [-1.0, 0.0]);
-        let (rises, reach) = safeguard.judge(&Identity(2), &set, (&x, &ax), 0.1);
-        assert!(rises && reach == REACH * 0.1 && safeguard.exact);
-        // out of the set: nothing is held, nothing taken back
-        let (rises, reach) = safeguard.judge(&Identity(2), &set, (&[1.0; 2], &[1.0; 2]), 0.1);
-        assert!(!rises && reach == 0.0 && !safeguard.exact);
+        assert!(safeguard.judge(&Identity(2), &set, (&x, &ax), 0.1) && safeguard.exact);
+        // out of the set: nothing taken back
+        let rises = safeguard.judge(&Identity(2), &set, (&[1.0; 2], &[1.0; 2]), 0.1);
+        assert!(!rises && !safeguard.exact);
     }
 
     #[test]

@@ -176,13 +176,13 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             self.moved.jump = at.restore();
             t *= 0.5;
         }
-        let (rises, reach) = safeguard.judge(at.problem.operator, at.set, (at.x, at.ax), t);
+        let rises = safeguard.judge(at.problem.operator, at.set, (at.x, at.ax), t);
         if t >= SHORT {
             at.work.active.blocked.clear();
             return;
         }
         let (from, step) = safeguard.path();
-        let more = at.work.active.block(at.set, from, step, reach);
+        let more = at.work.active.block(at.set, from, step);
         if rises && more {
             safeguard.back(at.x, at.ax);
             self.moved.jump = f64::INFINITY;

@@ -42,11 +42,9 @@ impl ActiveSet {
             free,
             discs,
             blocked,
-            near,
             foreseen,
             ..
         } = self;
-        let near = *near;
         let bounds = free.len();
         let stays = |k: usize| blocked.get(k).is_some_and(|b| *b);
         let (mut changed, mut freed, mut free_bounds, mut crossing) = (0, 0, 0, 0.0_f64);
@@ -54,8 +52,7 @@ impl ActiveSet {
             let s = map.of(x, i);
             // a component is active only if it also is at its bound
             let agrees = |beyond: bool| foreseen.get(k).copied().unwrap_or(beyond || stays(k));
-            let active =
-                lo >= hi || (x[i] <= lo && agrees(s <= lo)) || (x[i] >= hi && agrees(s >= hi)) || (near && stays(k));
+            let active = lo >= hi || (x[i] <= lo && agrees(s <= lo)) || (x[i] >= hi && agrees(s >= hi));
             changed += usize::from(free[k] == active);
             freed += usize::from(!free[k] && !active);
             free[k] = !active;
@@ -72,7 +69,7 @@ impl ActiveSet {
             discs[k] = match (foreseen.get(bounds + k), state) {
                 (Some(true), Disc::Free) => along_circle(at, radius),
                 (Some(false), Disc::Sliding { .. }) => Disc::Free,
-                (None, Disc::Free) if stays(bounds + k) => along_circle(at, if near { 0.0 } else { radius }),
+                (None, Disc::Free) if stays(bounds + k) => along_circle(at, radius),
                 _ => state,
             };
         });
@@ -218,35 +215,32 @@ mod tests {
         f(&set, &NaturalMap { gradient, scale, step })
     }
 
-    fn active_set(set: &ProductSet, blocked: &[bool], near: bool) -> ActiveSet {
+    fn active_set(set: &ProductSet, blocked: &[bool]) -> ActiveSet {
         let mut own = ActiveSet::default();
         own.resize(set);
         own.blocked = blocked.to_vec();
-        own.near = near;
         own
     }
 
     #[test]
     fn components_are_active_where_they_are_and_would_be_so() {
-        // x, gradient, blocked, near: free?
-        for (x, g, blocked, near, free) in [
-            (0.0, 0.5, false, false, false),
-            (0.0, -0.5, false, false, true),
-            (1.0, -0.5, false, false, false),
-            (1.0, 0.5, false, false, true),
+        // x, gradient, blocked: free?
+        for (x, g, blocked, free) in [
+            (0.0, 0.5, false, false),
+            (0.0, -0.5, false, true),
+            (1.0, -0.5, false, false),
+            (1.0, 0.5, false, true),
             // predicted to be active, but not there
-            (0.5, 2.0, false, false, true),
-            (0.5, -2.0, false, false, true),
+            (0.5, 2.0, false, true),
+            (0.5, -2.0, false, true),
             // a step was stopped there
-            (0.0, -0.5, true, false, false),
-            (1.0, 0.5, true, false, false),
-            (0.5, 0.1, true, false, true),
-            (0.5, 0.1, true, true, false),
-            (0.5, 0.1, false, true, true),
+            (0.0, -0.5, true, false),
+            (1.0, 0.5, true, false),
+            (0.5, 0.1, true, true),
         ] {
-            let what = format!("{x} {g} {blocked} {near}");
+            let what = format!("{x} {g} {blocked}");
             with(Segment::bounds(vec![0.0], vec![1.0]), &[g], |set, map| {
-                let mut own = active_set(set, &[blocked], near);
+                let mut own = active_set(set, &[blocked]);
                 own.classify(set, &[x], map);
                 assert_eq!(own.free, [free], "{what}");
                 let count = usize::from(free);
@@ -258,7 +252,7 @@ mod tests {
             });
         }
         with(Segment::bounds(vec![1.0], vec![1.0]), &[-3.0], |set, map| {
-            let mut own = active_set(set, &[], false);
+            let mut own = active_set(set, &[]);
             own.classify(set, &[1.0], map);
             assert_eq!(own.free, [false]);
         });
@@ -275,13 +269,13 @@ mod tests {
             (0.0, -0.05, false, false),
         ] {
             with(Segment::bounds(vec![0.0], vec![1.0]), &[g], |set, map| {
-                let mut own = active_set(set, &[], false);
+                let mut own = active_set(set, &[]);
                 own.free = vec![free];
                 assert_eq!(own.contradicted(set, &[x], map, 0.1), expected, "{x} {g}");
             });
         }
         with(Segment::bounds(vec![1.0], vec![1.0]), &[-3.0], |set, map| {
-            assert!(!active_set(set, &[], false).contradicted(set, &[1.0], map, 0.1));
+            assert!(!active_set(set, &[]).contradicted(set, &[1.0], map, 0.1));
         });
     }
 
@@ -297,7 +291,7 @@ mod tests {
             (0.0, -0.5, false, false),
         ] {
             with(Segment::bounds(vec![0.0], vec![1.0]), &[g], |set, map| {
-                let mut own = active_set(set, &[], false);
+                let mut own = active_set(set, &[]);
                 own.free = vec![free];
                 assert_eq!(own.stays(set, &[x], map), stays, "{x} {g} {free}");
             });
@@ -310,7 +304,7 @@ mod tests {
             (sliding, [2.0, 0.0], [-1.0, 0.0], false),
         ] {
             with(Segment::discs(vec![2.0]), &g, |set, map| {
-                let mut own = active_set(set, &[], false);
+                let mut own = active_set(set, &[]);
                 own.discs = vec![state];
                 assert_eq!(own.stays(set, &x, map), stays, "{state:?} {x:?} {g:?}");
             });
@@ -330,13 +324,13 @@ mod tests {
             let what = format!("{x} {before} {free} {after}");
             let segment = || Segment::bounds(vec![0.0], vec![1.0]);
             let own = with(segment(), &[before], |set, map| {
-                let mut own = active_set(set, &[], false);
+                let mut own = active_set(set, &[]);
                 own.free = vec![free];
                 own.foresee_moved(set, &[x], map);
                 own.foreseen
             });
             with(segment(), &[after], |set, map| {
-                let mut next = active_set(set, &[], false);
+                let mut next = active_set(set, &[]);
                 next.foreseen.clone_from(&own);
                 next.classify(set, &[x], map);
                 assert_eq!(next.free, [expected], "{what}");
@@ -350,7 +344,7 @@ mod tests {
             (sliding, [2.0, 0.0], [1.0, 0.0], false),
         ] {
             with(Segment::discs(vec![2.0]), &g, |set, map| {
-                let mut own = active_set(set, &[], false);
+                let mut own = active_set(set, &[]);
                 own.discs = vec![state];
                 own.foresee_moved(set, &x, map);
                 assert_eq!(own.foreseen, [expected], "{state:?} {x:?} {g:?}");
@@ -379,21 +373,21 @@ mod tests {
     fn discs_stick_inside_and_slide_on_the_circle() {
         let (n, radius) = ([0.6, 0.8], 2.0);
         let on = n.map(|c| radius * c);
-        let state = |radius: f64, x: [f64; 2], g: [f64; 2], blocked: bool, near: bool| {
+        let state = |radius: f64, x: [f64; 2], g: [f64; 2], blocked: bool| {
             with(Segment::discs(vec![radius]), &g, |set, map| {
-                let mut own = active_set(set, &[blocked], near);
+                let mut own = active_set(set, &[blocked]);
                 own.classify(set, &x, map);
                 own.discs[0]
             })
         };
-        assert_eq!(state(0.0, [0.0; 2], [1.0; 2], false, false), Disc::Fixed);
-        assert_eq!(state(radius, [0.6, 0.8], [-6.0, -8.0], false, false), Disc::Free);
+        assert_eq!(state(0.0, [0.0; 2], [1.0; 2], false), Disc::Fixed);
+        assert_eq!(state(radius, [0.6, 0.8], [-6.0, -8.0], false), Disc::Free);
         // drawn inward
-        assert_eq!(state(radius, on, [0.6, 0.8], false, false), Disc::Free);
+        assert_eq!(state(radius, on, [0.6, 0.8], false), Disc::Free);
         // far beyond the other side: held for the move across, once
         let far = n.map(|c| 4.0 * ACROSS * radius * c);
         with(Segment::discs(vec![radius]), &far, |set, map| {
-            let mut own = active_set(set, &[], false);
+            let mut own = active_set(set, &[]);
             own.discs = vec![Disc::Free];
             for (expected, crossing) in [(Disc::Fixed, radius), (Disc::Free, 0.0), (Disc::Fixed, radius)] {
                 own.classify(set, &on, map);
@@ -405,7 +399,7 @@ mod tests {
             assert!((x[0] + on[0]).abs() + (x[1] + on[1]).abs() < 1e-14, "{x:?}");
         });
         // pushed out with 3 N: curvature 3 / 2, scale 2
-        let pushed = state(radius, on, [-1.8, -2.4], false, false);
+        let pushed = state(radius, on, [-1.8, -2.4], false);
         let Disc::Sliding {
             tau,
             kappa,
@@ -423,9 +417,9 @@ mod tests {
         near(kappa, 1.5);
         near(damp, 0.25);
         near(own, 1.5 * (2.0 * 0.25_f64).powi(2));
-        // stopped there: along the circle without curvature; inside of it only if it is to stay where it is
-        for (x, near, slides) in [(on, false, true), ([0.6, 0.8], false, false), ([0.6, 0.8], true, true)] {
-            let state = state(radius, x, [0.6, 0.8], true, near);
+        // stopped there: along the circle without curvature
+        for (x, slides) in [(on, true), ([0.6, 0.8], false)] {
+            let state = state(radius, x, [0.6, 0.8], true);
             match state {
                 Disc::Sliding {
                     tau, kappa, own, slip, ..
@@ -434,7 +428,7 @@ mod tests {
                     assert_eq!([kappa, own, slip], [0.0; 3]);
                 }
                 Disc::Free if !slides => {}
-                other => panic!("{x:?} {near}: {other:?}"),
+                other => panic!("{x:?}: {other:?}"),
             }
         }
     }
@@ -454,7 +448,7 @@ mod tests {
             (Disc::Fixed, [3.0, 4.0], [1.0, 1.0], 0.0, [0.0, 0.0]),
         ] {
             with(Segment::discs(vec![radius]), &g, |set, map| {
-                let mut own = active_set(set, &[], false);
+                let mut own = active_set(set, &[]);
                 own.discs = vec![state];
                 let mut v = x;
                 own.settle_discs(set, &mut v, map);
