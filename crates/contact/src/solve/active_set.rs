@@ -268,12 +268,6 @@ impl ActiveSetSolver {
             if is_open(status) {
                 // the next step may need it
                 iterate.effort = 0;
-                if !self.space.loose().is_empty() {
-                    // bodies that contact alone holds may need other sets than these
-                    self.use_explicit(false, task, report);
-                    self.begin_again(iterate);
-                    status = self.active_sets(task, iterate, (usize::MAX, usize::MAX), report)?;
-                }
             }
         }
         Ok(status)
