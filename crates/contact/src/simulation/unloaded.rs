@@ -145,8 +145,7 @@ impl Simulation {
     }
 
     /// Moves bodies without contact forces to where, in the mean, points touch and stick that were pressed in the last
-    /// state; if none of them was, to where they stick, or as far as they overlap. They stay as they are if that
-    /// violates conditions.
+    /// state; if none of them was, to where they stick. They stay as they are if that violates conditions.
     ///
     /// Bodies of which it is `told` where next to no load leaves them stand there.
     pub(super) fn stand(
@@ -180,9 +179,6 @@ impl Simulation {
         targets.extend(own().filter(pressed).flat_map(rows).map(offset));
         if targets.is_empty() {
             targets = own().flat_map(|p| p.along().map(|along| offset(along.1))).collect();
-        }
-        if targets.is_empty() {
-            targets = own().map(|p| (p.row, recovered.rows[p.row])).collect();
         }
         // what rounding leaves of forces there is none
         let mut lambda = self.iterate.lambda.clone();
