@@ -34,12 +34,7 @@ impl Simulation {
             // with a formula of more steps the rate is yet to fall; estimates judge what was solved
             let is_one_step = (self.problem.formula).is_some_and(|formula| formula.is_one_step());
             let stands = rests && is_one_step && self.settings.accuracy == Accuracy::Tolerance;
-            let all = [
-                (line, Attempt::Rest),
-                (line, Attempt::First),
-                (!line, Attempt::Whole),
-                (line, Attempt::Fallback),
-            ];
+            let all = [(line, Attempt::Rest), (line, Attempt::First), (!line, Attempt::Whole)];
             return Ok(all[usize::from(!stands)..].to_vec());
         }
         let effects = &self.model.plan.effects;

@@ -150,7 +150,6 @@ impl ActiveSetSolver {
             return self.stay(task, iterate, report);
         }
         report.status = match iterate.attempt {
-            Attempt::Fallback => StepStatus::Stagnated,
             Attempt::Brief => {
                 // whichever an earlier step has left in use a restart does not know
                 self.use_explicit(false, task, &mut report);

@@ -57,8 +57,6 @@ pub(crate) enum Attempt {
     Whole,
     /// The same from where loads alone bring bodies that contact holds, before anything moves.
     Settled,
-    /// From the first start, by the paper's method.
-    Fallback,
 }
 
 /// Status of a step from the status of a quadratic program.
