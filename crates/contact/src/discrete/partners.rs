@@ -238,9 +238,10 @@ fn nodes(
         Ok(Some(partner))
     };
     let every = surface.nodes().len().div_ceil(PROBES);
-    let mut probes = surface.nodes().iter().enumerate().step_by(every);
-    if probes.any(|node| matches!(partner(node), Ok(None))) {
-        return Ok(None);
+    for node in surface.nodes().iter().enumerate().step_by(every) {
+        if partner(node)?.is_none() {
+            return Ok(None);
+        }
     }
     let found: Vec<_> = surface.nodes().par_iter().enumerate().map(partner).collect();
     // of several errors the first, whichever thread has found one
