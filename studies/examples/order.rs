@@ -156,9 +156,10 @@ impl MeshChoice {
 /// Three numbers, or one where they are the same.
 fn three<T: PartialEq + ToString>(numbers: &[T; 3]) -> String {
     let [x, y, z] = numbers;
-    match x == y && y == z {
-        true => x.to_string(),
-        false => numbers.each_ref().map(T::to_string).join(" x "),
+    if x == y && y == z {
+        x.to_string()
+    } else {
+        numbers.each_ref().map(T::to_string).join(" x ")
     }
 }
 

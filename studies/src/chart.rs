@@ -221,9 +221,10 @@ fn short(v: f64) -> String {
     if (0.01..9999.0).contains(&rounded.abs()) {
         let decimals = (1.0 - log.floor()).max(0.0) as usize;
         let text = format!("{rounded:.decimals$}");
-        match text.contains('.') {
-            true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
-            false => text,
+        if text.contains('.') {
+            text.trim_end_matches('0').trim_end_matches('.').to_owned()
+        } else {
+            text
         }
     } else {
         format!("{v:.1e}").replace(".0e", "e")

@@ -63,11 +63,7 @@ pub fn aligned(heads: &[[&str; 2]], rows: &[Vec<String>]) -> String {
         let mut cells = row.iter();
         for column in &mut columns {
             let bar = column[0] == "|";
-            column.push(if bar {
-                "|"
-            } else {
-                cells.next().map_or("", String::as_str)
-            });
+            column.push(if bar { "|" } else { cells.next().map_or("", String::as_str) });
         }
     }
     let width = |c: &Vec<&str>| c.iter().map(|cell| cell.chars().count()).max().unwrap_or(0);

@@ -197,8 +197,9 @@ pub fn warnings(runs: &[&RunRecord]) -> String {
 /// With `on`, an error if any step did not reach the tolerance.
 pub fn strict<'a>(on: bool, mut runs: impl Iterator<Item = &'a RunRecord>) -> Result<(), Failure> {
     let steps: usize = runs.by_ref().map(|r| r.unconverged.len()).sum();
-    match on && steps > 0 {
-        true => Err(format!("{steps} steps did not reach the tolerance (--strict)").into()),
-        false => Ok(()),
+    if on && steps > 0 {
+        Err(format!("{steps} steps did not reach the tolerance (--strict)").into())
+    } else {
+        Ok(())
     }
 }

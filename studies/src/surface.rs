@@ -114,11 +114,7 @@ impl View {
     fn new(eye: [f64; 3]) -> Self {
         let eye = unit(eye);
         let level = [-eye[1], eye[0], 0.0];
-        let right = if dot(level, level) > 1e-12 {
-            unit(level)
-        } else {
-            [1.0, 0.0, 0.0]
-        };
+        let right = if dot(level, level) > 1e-12 { unit(level) } else { [1.0, 0.0, 0.0] };
         Self {
             origin: [0.0; 2],
             zoom: 1.0,
@@ -311,11 +307,7 @@ fn bands(corners: [[f64; 2]; 3], values: [f64; 3], scale: &Scale) -> Vec<(usize,
     let triangle: Vec<_> = corners.into_iter().zip(values).collect();
     let mut out = Vec::new();
     for k in band(low)..=band(high) {
-        let upper = if k + 1 == BANDS {
-            f64::INFINITY
-        } else {
-            scale.level(k + 1)
-        };
+        let upper = if k + 1 == BANDS { f64::INFINITY } else { scale.level(k + 1) };
         let above = clip(&triangle, |v| v - scale.level(k));
         let inside = clip(&above, |v| upper - v);
         if inside.len() > 2 {

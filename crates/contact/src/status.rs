@@ -153,9 +153,10 @@ impl fmt::Display for Slide {
             .flatten()
             .map(|(body, node)| format!("body {body} (with node {node})"))
             .collect();
-        match others.is_empty() {
-            true => Ok(()),
-            false => write!(f, ", together with {}", others.join(" and ")),
+        if others.is_empty() {
+            Ok(())
+        } else {
+            write!(f, ", together with {}", others.join(" and "))
         }
     }
 }
@@ -206,9 +207,10 @@ impl fmt::Display for StepFailure {
             },
         ) = slide
         {
-            let [away, remedy] = match *status == StepStatus::NotHeld {
-                true => ["slides away", ""],
-                false => ["may slide away", "press it more, or hold it by a support; else "],
+            let [away, remedy] = if *status == StepStatus::NotHeld {
+                ["slides away", ""]
+            } else {
+                ["may slide away", "press it more, or hold it by a support; else "]
             };
             write!(
                 f,

@@ -77,10 +77,7 @@ impl Communicator for World {
             let (_, tail) = std::mem::take(&mut rest).split_at_mut(part.start - at);
             let (piece, tail) = tail.split_at_mut(part.len());
             (rest, at) = (tail, part.end);
-            match rank == self.rank {
-                true => own = piece,
-                false => others.push((rank as Rank, piece)),
-            }
+            if rank == self.rank { own = piece } else { others.push((rank as Rank, piece)) }
         }
         let world = SimpleCommunicator::world();
         // straight from and to where the numbers stand: gathers of MPI copy what a rank sends, and own parts once more

@@ -121,13 +121,13 @@ pub fn difference(x: &[f64], y: &[f64], z: &mut [f64]) {
     let part = |((z, x), y): ((&mut [f64], &[f64]), &[f64])| {
         z.iter_mut().zip(x).zip(y).for_each(|((z, x), y)| *z = x - y);
     };
-    match z.len() < PARALLEL {
-        true => part(((z, x), y)),
-        false => z
-            .par_chunks_mut(CHUNK)
+    if z.len() < PARALLEL {
+        part(((z, x), y))
+    } else {
+        z.par_chunks_mut(CHUNK)
             .zip(x.par_chunks(CHUNK))
             .zip(y.par_chunks(CHUNK))
-            .for_each(part),
+            .for_each(part)
     }
 }
 

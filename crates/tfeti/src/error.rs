@@ -77,11 +77,7 @@ signorini_fem_mesh::errors! {
 
 /// A displacement case after the first, which may be the only one.
 fn later(case: u32) -> String {
-    if case > 0 {
-        format!("case {case}, ")
-    } else {
-        String::new()
-    }
+    if case > 0 { format!("case {case}, ") } else { String::new() }
 }
 
 /// Other equations that an error names.
@@ -96,10 +92,7 @@ fn beside(others: &[usize]) -> String {
 impl TfetiError {
     /// An error if a vector does not have the length expected.
     pub(crate) fn check_length(what: &'static str, found: usize, expected: usize) -> Result<(), Self> {
-        match found == expected {
-            true => Ok(()),
-            false => Err(Self::Length { what, expected, found }),
-        }
+        if found == expected { Ok(()) } else { Err(Self::Length { what, expected, found }) }
     }
 
     /// What a failure of a factorisation says of a subdomain.

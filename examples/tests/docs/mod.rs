@@ -78,11 +78,7 @@ fn every_link_leads_somewhere() {
                 }
                 let (file, anchor) = link.split_once('#').unwrap_or((link, ""));
                 let folder = path.parent().expect("a folder");
-                let target = if file.is_empty() {
-                    path.clone()
-                } else {
-                    folder.join(file)
-                };
+                let target = if file.is_empty() { path.clone() } else { folder.join(file) };
                 assert!(target.exists(), "{}: {link}", path.display());
                 if !anchor.is_empty() {
                     let names = anchors(&read_to_string(&target).expect("a page"));

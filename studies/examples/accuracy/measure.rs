@@ -159,11 +159,7 @@ pub(super) fn orders(samples: &[Sample]) -> Errors {
         let (x, y) = (mean(|p| p.0), mean(|p| p.1));
         let up: f64 = points.iter().map(|p| (p.0 - x) * (p.1 - y)).sum();
         let down: f64 = points.iter().map(|p| (p.0 - x).powi(2)).sum();
-        if points.len() > 1 && down > 0.0 {
-            up / down
-        } else {
-            f64::NAN
-        }
+        if points.len() > 1 && down > 0.0 { up / down } else { f64::NAN }
     };
     Errors {
         u: slope(0),

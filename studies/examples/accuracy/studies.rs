@@ -113,11 +113,7 @@ fn tolerance(short: bool) -> Result<Vec<Curve>, Failure> {
 fn method(short: bool) -> Result<Vec<Curve>, Failure> {
     let variant = benchmark(if short { 1 } else { 2 }, short);
     let reference = discrete_reference(&variant)?;
-    let tolerances: &[f64] = if short {
-        &[1e-3, 1e-5]
-    } else {
-        &[1e-2, 1e-4, 1e-6, 1e-8, 1e-10]
-    };
+    let tolerances: &[f64] = if short { &[1e-3, 1e-5] } else { &[1e-2, 1e-4, 1e-6, 1e-8, 1e-10] };
     let default = Settings::default;
     let mut choices = vec![
         ("active set, lumped", default()),
@@ -150,11 +146,7 @@ fn mesh(short: bool) -> Result<Vec<Curve>, Failure> {
         floor: Some(Friction::coulomb(0.3)),
         ..Block::benchmark(n, Loading::B)
     };
-    let (ratio, sizes, fine) = if short {
-        (2, 1..=2, variant(4, 2))
-    } else {
-        (4, 1..=4, variant(8, 4))
-    };
+    let (ratio, sizes, fine) = if short { (2, 1..=2, variant(4, 2)) } else { (4, 1..=4, variant(8, 4)) };
     let reference = solve(&fine.scene()?, &at(1e-8))?;
     let text = format!("cells of 1/{} m, tolerance 1e-8", fine.boxes[1] * fine.cells[1]);
     let balanced = Settings::default().with_accuracy(Accuracy::balanced());
@@ -167,11 +159,7 @@ fn mesh(short: bool) -> Result<Vec<Curve>, Failure> {
     for (name, fixed_ratio, settings) in kinds {
         let mut samples = Vec::new();
         for k in sizes.clone() {
-            let v = if fixed_ratio {
-                variant(k, ratio)
-            } else {
-                variant(1, k * ratio)
-            };
+            let v = if fixed_ratio { variant(k, ratio) } else { variant(1, k * ratio) };
             let cell = 1.0 / (v.boxes[1] * v.cells[1]) as f64;
             let solution = solve(&v.scene()?, &settings)?;
             samples.push(solution.sample(cell, &reference, Some(solution.discretisation))?);

@@ -32,9 +32,5 @@ pub(crate) fn dependence(first: &Outcome, second: &Outcome) -> Option<String> {
 fn percent(a: &[f64], b: &[f64]) -> f64 {
     let squares: f64 = a.iter().zip(b).map(|(x, y)| (x - y).powi(2)).sum();
     let own: f64 = a.iter().map(|x| x * x).sum();
-    if squares == 0.0 {
-        0.0
-    } else {
-        100.0 * (squares / own).sqrt()
-    }
+    if squares == 0.0 { 0.0 } else { 100.0 * (squares / own).sqrt() }
 }

@@ -73,10 +73,7 @@ pub(crate) fn verdict(runs: &[&RunRecord]) -> String {
     if below.is_empty() && above.is_empty() {
         return String::new();
     }
-    let [below, above] = [below, above].map(|list| match list.is_empty() {
-        true => "none".to_owned(),
-        false => list.join(", "),
-    });
+    let [below, above] = [below, above].map(|list| if list.is_empty() { "none".to_owned() } else { list.join(", ") });
     let method = runs.first().map_or("", |r| r.method_name());
     format!("products over the paper's, method {method}: at or below: {below}; above: {above}")
 }

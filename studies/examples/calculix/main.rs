@@ -357,9 +357,10 @@ fn deck(mesh: &TetMesh, loads: &[(u32, [f64; 3])], law: Law, own: bool) -> Resul
         law.kind
     )?;
     writeln!(text, "*BOUNDARY\nCLAMP, 1, 3")?;
-    match own {
-        true => writeln!(text, "{reference}, 1, 6")?,
-        false => (first..reference).try_for_each(|node| writeln!(text, "{node}, 1, 3"))?,
+    if own {
+        writeln!(text, "{reference}, 1, 6")?
+    } else {
+        (first..reference).try_for_each(|node| writeln!(text, "{node}, 1, 3"))?
     }
     writeln!(text, "*STEP\n*STATIC, DIRECT\n1., 1.\n*CLOAD")?;
     for (node, force) in loads {
@@ -415,11 +416,7 @@ fn forces(mesh: &TetMesh) -> Vec<(u32, [f64; 3])> {
             _ => continue,
         };
         let area = norm(area_vector(&mesh.facet_points(k)));
-        let nodes = if mesh.order() == 2 {
-            mesh.facet_mids(k)
-        } else {
-            facet.nodes
-        };
+        let nodes = if mesh.order() == 2 { mesh.facet_mids(k) } else { facet.nodes };
         for node in nodes {
             let force = forces.entry(node).or_insert([0.0; 3]);
             traction

@@ -28,11 +28,7 @@ fn half(cells: usize, outside: usize, size: f64, thick: f64) -> Result<TetMesh, 
     let along = move |x: f64| {
         let x = x - 0.5 * all;
         let over = x.abs() - 0.5 * inner;
-        if over > 0.0 {
-            x.signum() * (1.0 + beyond(over))
-        } else {
-            x * first
-        }
+        if over > 0.0 { x.signum() * (1.0 + beyond(over)) } else { x * first }
     };
     let mesh = brick.map_points(|[x, y, z]| [along(x), beyond(y), z])?;
     // the part of the lower side that is the crack

@@ -196,17 +196,9 @@ fn row(f: &Finding) -> Vec<String> {
         f.case.clone(),
         f.quantity.to_owned(),
         format!("{:.6e}", f.value),
-        if f.target == 0.0 {
-            "0".to_owned()
-        } else {
-            format!("{:.6e}", f.target)
-        },
+        if f.target == 0.0 { "0".to_owned() } else { format!("{:.6e}", f.target) },
         format!("{:.1e}", f.error()),
-        if f.asked == 0.0 {
-            "-".to_owned()
-        } else {
-            format!("{:e}", f.asked)
-        },
+        if f.asked == 0.0 { "-".to_owned() } else { format!("{:e}", f.asked) },
         f.run.tets.to_string(),
         f.run.products.to_string(),
         format!("{:.2}", f.run.seconds),
@@ -217,10 +209,7 @@ fn row(f: &Finding) -> Vec<String> {
 fn page(findings: &[Finding], options: &CasesOptions) -> String {
     let command = format!(
         "cargo run --release --example cases -- --out docs/reports/cases.md{}",
-        match options.short {
-            true => " --short",
-            false => "",
-        }
+        if options.short { " --short" } else { "" }
     );
     let mut text = format!(
         "# Cases with known answers\n\nBodies in contact or tied, mostly with non-matching meshes, compared with closed-form solutions and \

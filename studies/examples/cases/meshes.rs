@@ -26,11 +26,7 @@ pub fn graded([part, whole]: [f64; 2], [near, far]: [usize; 2]) -> impl Fn(f64) 
     let beyond = series(first, far + 1, whole - part + first);
     move |k| {
         let over = k - near as f64;
-        if over > 0.0 {
-            part - first + beyond(over + 1.0)
-        } else {
-            k * first
-        }
+        if over > 0.0 { part - first + beyond(over + 1.0) } else { k * first }
     }
 }
 

@@ -52,11 +52,7 @@ pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
         let (mut found, mut direction) = ([0.0; 2], 0.0);
         // of all points those that are farthest off
         let worse = |old: f64, new: f64, target: f64| {
-            if (new - target).abs() > (old - target).abs() {
-                new
-            } else {
-                old
-            }
+            if (new - target).abs() > (old - target).abs() { new } else { old }
         };
         let run = solve(scene, Settings::default().with_tolerance(1e-10), |result| {
             let of = |p: &PointState| {

@@ -18,13 +18,12 @@ const ANGLE: f64 = 15.0;
 
 /// The force for four Poisson's ratios on three meshes, and what products grow by towards 1/2.
 pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
-    match short {
-        true => on_mesh([4, 8], &[0.3, 0.4999]),
-        false => {
-            let meshes = [[8, 12], [10, 15], [12, 18]].into_iter();
-            let each = meshes.map(|cells| on_mesh(cells, &[0.3, 0.49, 0.499, 0.4999]));
-            Ok(each.collect::<Result<Vec<_>, _>>()?.concat())
-        }
+    if short {
+        on_mesh([4, 8], &[0.3, 0.4999])
+    } else {
+        let meshes = [[8, 12], [10, 15], [12, 18]].into_iter();
+        let each = meshes.map(|cells| on_mesh(cells, &[0.3, 0.49, 0.499, 0.4999]));
+        Ok(each.collect::<Result<Vec<_>, _>>()?.concat())
     }
 }
 

@@ -105,11 +105,7 @@ fn pressed([upper, lower]: [usize; 2], far: usize, quadratic: bool) -> Result<Fo
 
 /// The largest pressure, and how far pressures are from the formula; orders of convergence where all cells are halved.
 pub fn findings(short: bool) -> Result<Vec<Finding>, Failure> {
-    let finest = if short {
-        pressed([6, 5], 5, false)?
-    } else {
-        pressed([22, 17], 9, false)?
-    };
+    let finest = if short { pressed([6, 5], 5, false)? } else { pressed([22, 17], 9, false)? };
     let of = |quantity, value, target, asked, run| Finding::new("two spheres", quantity, value, target, asked, run);
     let ([peak, radius], run) = (formula(), finest.run);
     let mut all = vec![

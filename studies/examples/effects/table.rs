@@ -100,9 +100,5 @@ pub(super) fn shapes(lines: &[Line], out: &mut impl Write) -> Result<(), Failure
 
 /// One figure if the plan is exact.
 fn pair(plan: usize, truth: usize) -> String {
-    if plan == truth {
-        truth.to_string()
-    } else {
-        format!("{plan} / {truth}")
-    }
+    if plan == truth { truth.to_string() } else { format!("{plan} / {truth}") }
 }

@@ -53,9 +53,10 @@ pub struct PerformanceOptions {
 #[allow(dead_code)]
 fn main() -> ExitCode {
     let (options, mut out) = (PerformanceOptions::parse(), std::io::stdout());
-    match options.cuts {
-        true => exit(cuts::execute(&options, &mut out)),
-        false => exit(execute(&options, &mut out)),
+    if options.cuts {
+        exit(cuts::execute(&options, &mut out))
+    } else {
+        exit(execute(&options, &mut out))
     }
 }
 

@@ -17,11 +17,7 @@ fn loose(lengths: [f64; 3], coefficient: f64, top: [f64; 3]) -> Block {
         top,
         end: [0.0; 3],
         clamped: false,
-        floor: Some(if coefficient > 0.0 {
-            Friction::coulomb(coefficient)
-        } else {
-            Friction::None
-        }),
+        floor: Some(if coefficient > 0.0 { Friction::coulomb(coefficient) } else { Friction::None }),
         steps: 3,
         ..Block::default()
     }

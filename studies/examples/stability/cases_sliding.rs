@@ -68,11 +68,7 @@ impl Sliding {
         // low enough not to tip the upper cube, as a body force on the cube alone is
         let push = self.aside * self.coefficient * PRESSURE;
         let aside = [push * ASIDE[0], push * ASIDE[1], 0.0];
-        let aside = if self.on_cube {
-            LoadDensity::traction(top, aside)
-        } else {
-            LoadDensity::body(aside)
-        };
+        let aside = if self.on_cube { LoadDensity::traction(top, aside) } else { LoadDensity::body(aside) };
         let (ramp, wave) = if self.steps == 0 {
             (History::constant(1.0), History::constant(1.0))
         } else {

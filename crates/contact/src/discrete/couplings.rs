@@ -147,21 +147,14 @@ impl Couplings {
                     values: values.filter(|v| v.1 != 0.0).collect(),
                 });
             }
-            let idle = if coupling.is_point() {
-                idle(scene, index, &axes)?
-            } else {
-                Vec::new()
-            };
+            let idle = if coupling.is_point() { idle(scene, index, &axes)? } else { Vec::new() };
             out.supports.extend(idle.into_iter().map(|along| RigidSupport {
                 subdomain,
                 point,
                 direction: [along, [0.0; 3]],
                 values: Vec::new(),
             }));
-            rigid.push(match relative {
-                true => Rigid::Places(nodes),
-                false => Rigid::Nodes(nodes),
-            });
+            rigid.push(if relative { Rigid::Places(nodes) } else { Rigid::Nodes(nodes) });
             out.axes.push(axes);
             out.about.push(point);
             out.unit.push(unit);

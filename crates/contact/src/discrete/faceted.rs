@@ -89,9 +89,10 @@ pub(super) fn close_faceted(
     }
     let faceted = measured().map(|(index, paired)| {
         let contact = &scene.contacts[index];
-        let (own, partner) = match paired.swapped {
-            true => (&contact.partner, &contact.tags),
-            false => (&contact.tags, &contact.partner),
+        let (own, partner) = if paired.swapped {
+            (&contact.partner, &contact.tags)
+        } else {
+            (&contact.tags, &contact.partner)
         };
         let mut sides = vec![Side::new(&scene.mesh, own, paired.surface.clone())];
         if matches!(contact.gap, Gap::Measured) {
@@ -186,11 +187,7 @@ fn touch(group: &[&Faceted], conditions: &[ContactPoint], deepest: f64) -> bool 
                 let at = |(node, weight): &(u32, f64)| side.bends.get(node).map_or(0.0, |bend| weight * bend.behind);
                 let behind: f64 = nodes.iter().map(at).sum();
                 // of gaps to the curve only what that is not known by
-                let (taken, part) = if point.to_curve {
-                    (0.0, ARC_ERROR)
-                } else {
-                    (behind, 1.0)
-                };
+                let (taken, part) = if point.to_curve { (0.0, ARC_ERROR) } else { (behind, 1.0) };
                 open -= taken;
                 before += part * (-behind).max(0.0);
             }

@@ -16,13 +16,14 @@ pub(super) fn check_point(scene: &Scene, index: usize) -> Result<(), ContactErro
         LoadKind::Coupling(own) => own.coupling == index && own.moment != [0.0; 3],
         LoadKind::Density(_) | LoadKind::Eigenstrain(_) => false,
     });
-    match turned || moments {
-        false => Ok(()),
-        true => Err(ContactError::coupling(
+    if turned || moments {
+        Err(ContactError::coupling(
             index,
             None,
             "a point has no rotations, and takes no moments; give it displacements and forces",
-        )),
+        ))
+    } else {
+        Ok(())
     }
 }
 
@@ -66,9 +67,12 @@ pub(super) fn sizes(scene: &Scene) -> Vec<f64> {
             .into_iter()
             .for_each(|(point, ratio)| sizes[point] = ratio.max(sizes[point]));
     }
-    let rounded = |most: f64| match most > 0.0 && !(1.0 / ALIKE..=ALIKE).contains(&most) {
-        true => most.log2().round().exp2(),
-        false => 1.0,
+    let rounded = |most: f64| {
+        if most > 0.0 && !(1.0 / ALIKE..=ALIKE).contains(&most) {
+            most.log2().round().exp2()
+        } else {
+            1.0
+        }
     };
     sizes.into_iter().map(rounded).collect()
 }
@@ -102,13 +106,14 @@ pub(super) fn idle(scene: &Scene, index: usize, axes: &[Vec3; 3]) -> Result<Vec<
         }
         LoadKind::Density(_) | LoadKind::Eigenstrain(_) => false,
     });
-    match pushed {
-        false => Ok(idle),
-        true => Err(ContactError::coupling(
+    if pushed {
+        Err(ContactError::coupling(
             index,
             None,
             "a load pushes the point in a direction of which no equation says anything, so that it acts on \
                 nothing; give it an equation, or leave the load out",
-        )),
+        ))
+    } else {
+        Ok(idle)
     }
 }

@@ -97,11 +97,7 @@ impl<'a> Means<'a> {
         frame: &SurfaceFrame,
     ) -> Result<(Sides, f64), ContactError> {
         let (index, contact) = self.contact;
-        let triangles = if triangles.is_empty() {
-            self.around.of(local)
-        } else {
-            triangles
-        };
+        let triangles = if triangles.is_empty() { self.around.of(local) } else { triangles };
         let own = self.side(local, triangles);
         let other = |&(node, weight): &(u32, f64)| Some((*self.partners.get(&node)?, weight));
         let partner: Option<Vec<(u32, f64)>> = own.nodes().iter().map(other).collect();

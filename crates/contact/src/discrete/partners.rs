@@ -139,10 +139,7 @@ impl Paired {
             _ => {
                 let count = |nodes: &[Option<MortarNode>]| nodes.iter().flatten().count();
                 let (there, back) = (there(), back());
-                match count(&back) < count(&there) {
-                    true => (back, true),
-                    false => (there, false),
-                }
+                if count(&back) < count(&there) { (back, true) } else { (there, false) }
             }
         };
         // of the side with the points, then of the other one
@@ -168,10 +165,7 @@ impl Paired {
             return Err(ContactError::NoPartner { contact, distance });
         }
         let turned = |frame: SurfaceFrame| SurfaceFrame::from_normal(frame.normal.map(|c| -c));
-        let (surface, fixed) = match swapped {
-            true => (other, fixed.and_then(turned)),
-            false => (surface, fixed),
-        };
+        let (surface, fixed) = if swapped { (other, fixed.and_then(turned)) } else { (surface, fixed) };
         Ok(Self {
             surface,
             fixed,

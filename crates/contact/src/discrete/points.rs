@@ -294,9 +294,10 @@ fn turn(mesh: &TetMesh, sides: &mut Sides, rounding: f64) {
             mean_place(&sides.own, place_of(mesh)),
         );
         let weights: f64 = partner.nodes().iter().map(|(_, weight)| weight.abs()).sum();
-        match vec3::norm(way) > weights * rounding {
-            true => turned(partner, way, |node| mesh.points()[node as usize]),
-            false => partner,
+        if vec3::norm(way) > weights * rounding {
+            turned(partner, way, |node| mesh.points()[node as usize])
+        } else {
+            partner
         }
     });
 }
@@ -418,11 +419,7 @@ fn both(point: &ContactPoint, other: &ContactPoint) -> Side {
 
 /// The sign of a difference of gaps.
 fn order(difference: f64, rounding: f64) -> Ordering {
-    if difference.abs() <= rounding {
-        Ordering::Equal
-    } else {
-        difference.total_cmp(&0.0)
-    }
+    if difference.abs() <= rounding { Ordering::Equal } else { difference.total_cmp(&0.0) }
 }
 
 /// Whether the nearer of two obstacles with one motion stays the nearer one: fields that move along and factors of the

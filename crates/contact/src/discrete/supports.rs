@@ -170,9 +170,10 @@ fn left_free(support: &NodeSupport, held: &BTreeMap<u32, Vec<Vec3>>) -> Directio
     let lists = support.nodes.iter().zip(given);
     let lists = lists.map(|(node, list)| list.iter().filter_map(|d| rest(node, d)).collect());
     let lists: Vec<Vec<Vec3>> = lists.collect();
-    match lists.iter().all(Vec::is_empty) {
-        true => Directions::Nothing,
-        false => Directions::EachNode(lists),
+    if lists.iter().all(Vec::is_empty) {
+        Directions::Nothing
+    } else {
+        Directions::EachNode(lists)
     }
 }
 

@@ -143,10 +143,7 @@ pub(crate) fn turned_to(
     let start = scene.mesh.points()[node as usize];
     let first = shape.see(start, normal);
     // where a side has ended it has no direction
-    let first = match first.has_ended() {
-        true => shape.distance(start).1,
-        false => first.gradient,
-    };
+    let first = if first.has_ended() { shape.distance(start).1 } else { first.gradient };
     angle(first, now.gradient)
 }
 

@@ -47,9 +47,10 @@ pub(super) fn pair(scene: &Scene, rounding: f64) -> Result<Vec<Paired>, ContactE
 fn share_out(scene: &Scene, group: &[usize], whole: Paired) -> Result<Vec<Paired>, ContactError> {
     let sides = group.iter().map(|k| {
         let contact = &scene.contacts[*k];
-        let [own, other] = match whole.swapped {
-            true => [&contact.partner, &contact.tags],
-            false => [&contact.tags, &contact.partner],
+        let [own, other] = if whole.swapped {
+            [&contact.partner, &contact.tags]
+        } else {
+            [&contact.tags, &contact.partner]
         };
         let other = other.iter().flat_map(|tag| scene.mesh.nodes_on(*tag));
         Ok((Surface::new(&scene.mesh, own)?, other.collect::<HashSet<u32>>()))

@@ -71,10 +71,7 @@ impl AdmissibleNode {
         }
         // a node that can move: of several partners, which have other points, only where the node itself cannot
         let couplings = &model.discrete.couplings;
-        let free = |k: usize| match couplings.has(parts[k].0) {
-            true => 0.0,
-            false => freedom(&parts[k].1, &point.stretch),
-        };
+        let free = |k: usize| if couplings.has(parts[k].0) { 0.0 } else { freedom(&parts[k].1, &point.stretch) };
         let moving = match last {
             0 => 0,
             1 => usize::from(free(1) > free(0) + ROUNDING),
@@ -258,11 +255,7 @@ impl Correction {
         let nearest = |bound: f64| {
             let w = [start[0] - moved.force[0] / k, start[1] - moved.force[1] / k];
             let length = length(w);
-            let shrink = if length > 0.0 {
-                (1.0 - bound / (k * length)).max(0.0)
-            } else {
-                0.0
-            };
+            let shrink = if length > 0.0 { (1.0 - bound / (k * length)).max(0.0) } else { 0.0 };
             w.map(|w| shrink * w)
         };
         let change = 0.5 * (moved.bound - size).powi(2) / k;
@@ -316,11 +309,7 @@ impl Correction {
     fn friction_term(&self) -> f64 {
         let ([a, b], [x, y]) = (self.force, self.slip);
         let (size, way, work) = (length(self.force), length(self.slip), a * x + b * y);
-        let angle = if work < 0.0 {
-            (a * y - b * x).powi(2) / (size * way - work)
-        } else {
-            size * way + work
-        };
+        let angle = if work < 0.0 { (a * y - b * x).powi(2) / (size * way - work) } else { size * way + work };
         (self.bound - size).max(0.0) * way + angle
     }
 }

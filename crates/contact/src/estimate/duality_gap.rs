@@ -135,19 +135,16 @@ impl Solved<'_> {
                     planned
                 };
                 let planned: Vec<Correction> = points().map(planned).collect();
-                let targets = match shared.is_scarce() {
-                    false => {
-                        let targets = weights.nodes.iter().zip(&planned);
-                        let targets = targets.flat_map(|(node, planned)| node.targets(offset, planned));
-                        targets.map(Target::At).collect()
-                    }
-                    true => {
-                        let forces = points()
-                            .zip(&planned)
-                            .map(|((state, _), planned)| planned.forces(state));
-                        let rest = weights.nodes.iter().flat_map(|node| node.touching(offset));
-                        shared.settle(forces.collect(), rest.collect(), offset, &mut v)
-                    }
+                let targets = if shared.is_scarce() {
+                    let forces = points()
+                        .zip(&planned)
+                        .map(|((state, _), planned)| planned.forces(state));
+                    let rest = weights.nodes.iter().flat_map(|node| node.touching(offset));
+                    shared.settle(forces.collect(), rest.collect(), offset, &mut v)
+                } else {
+                    let targets = weights.nodes.iter().zip(&planned);
+                    let targets = targets.flat_map(|(node, planned)| node.targets(offset, planned));
+                    targets.map(Target::At).collect()
                 };
                 shared.reach(targets, offset, &mut v);
                 planned

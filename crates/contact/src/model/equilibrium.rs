@@ -184,12 +184,13 @@ fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Option
             // loads that lift it, too, are told as they are
             let slides = friction.is_some() && !tresca && work(&flat) > work(&found);
             let whole = escape(&found);
-            return Ok(Some(match slides {
-                true => Escape {
+            return Ok(Some(if slides {
+                Escape {
                     force: whole.force,
                     ..escape(&flat)
-                },
-                false => whole,
+                }
+            } else {
+                whole
             }));
         }
         approved = Some(b);

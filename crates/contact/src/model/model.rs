@@ -74,9 +74,10 @@ impl Model {
         let stiffness = self.moved_stiffness.get_or_init(|| {
             let of = |rows: Range<usize>| {
                 let mut out = vec![0.0; rows.len()];
-                match couplings.as_ref() == Some(&rows) {
-                    true => self.coupling_stiffness(&mut out),
-                    false => self.tfeti.row_stiffness(rows, &mut out),
+                if couplings.as_ref() == Some(&rows) {
+                    self.coupling_stiffness(&mut out)
+                } else {
+                    self.tfeti.row_stiffness(rows, &mut out)
                 }
                 out
             };
@@ -124,10 +125,7 @@ impl Model {
     /// The factor of a load at a time; 0 where it has no forces, or only those that rounding leaves.
     pub(crate) fn factor(&self, load: usize, time: f64) -> f64 {
         let factor = self.scene.loads[load].history.value(time);
-        match factor.abs() <= self.no_load[load] {
-            true => 0.0,
-            false => factor,
-        }
+        if factor.abs() <= self.no_load[load] { 0.0 } else { factor }
     }
 
     /// The rows of tied contacts, each with its point.
@@ -203,17 +201,21 @@ impl Model {
             .with_contact(&discrete.constraints)
             .with_communicator(&settings.communicator)
             .build()?;
-        let no_load = |(load, forces): (&Load, &Vec<Vec<f64>>)| match forces.iter().flatten().all(|f| *f == 0.0) {
-            true => f64::INFINITY,
-            false => NO_LOAD * scene.analysis.largest_factor(&load.history).0,
+        let no_load = |(load, forces): (&Load, &Vec<Vec<f64>>)| {
+            if forces.iter().flatten().all(|f| *f == 0.0) {
+                f64::INFINITY
+            } else {
+                NO_LOAD * scene.analysis.largest_factor(&load.history).0
+            }
         };
         let no_load = scene.loads.iter().zip(&discrete.loads).map(no_load).collect();
         let loads = std::mem::take(&mut discrete.loads).into_iter().zip(&scene.loads);
         let loads = loads
             .map(|(local, load)| {
-                let mut response = match discrete.points.is_empty() {
-                    true => tfeti.torn_load(&local)?,
-                    false => tfeti.load_response(&local)?,
+                let mut response = if discrete.points.is_empty() {
+                    tfeti.torn_load(&local)?
+                } else {
+                    tfeti.load_response(&local)?
                 };
                 // strain that makes no stress is in balance, and no rounding is to push a body that nothing holds
                 if load.is_eigenstrain() {
@@ -224,13 +226,13 @@ impl Model {
             .collect::<Result<Vec<_>, _>>()?;
         tfeti.check_processes()?;
         let bodies = Bodies::new(&tfeti, &discrete);
-        let strained = loads
-            .iter()
-            .zip(&scene.loads)
-            .map(|(response, load)| match load.is_eigenstrain() {
-                false => Vec::new(),
-                true => bodies.torn_squares(&tfeti, &response.force),
-            });
+        let strained = loads.iter().zip(&scene.loads).map(|(response, load)| {
+            if load.is_eigenstrain() {
+                bodies.torn_squares(&tfeti, &response.force)
+            } else {
+                Vec::new()
+            }
+        });
         let strained = strained.collect();
         let points = constrained_points(&discrete.points, tfeti.gluing());
         let mut with_rows = vec![None; discrete.points.len()];

@@ -116,9 +116,10 @@ pub(crate) fn mortar_nodes(
             return None;
         }
         let facets: Vec<&[u32; 3]> = places().map(|place| &corners[place / 3]).collect();
-        let frame = match may_bend && is_bent(mesh, &facets, crease) {
-            true => surface.frames()[local],
-            false => SurfaceFrame::from_normal(sums.normal)?,
+        let frame = if may_bend && is_bent(mesh, &facets, crease) {
+            surface.frames()[local]
+        } else {
+            SurfaceFrame::from_normal(sums.normal)?
         };
         sums.node(own, frame)
     };

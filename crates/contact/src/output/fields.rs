@@ -98,11 +98,7 @@ pub(super) fn body(result: &StepResult, chosen: &[ResultField], moment: Moment) 
     let stressed = chosen
         .iter()
         .any(|f| matches!(f, ResultField::Stress | ResultField::VonMises));
-    let stress = if rest || !stressed {
-        vec![[0.0; 6]; tets]
-    } else {
-        result.stress()
-    };
+    let stress = if rest || !stressed { vec![[0.0; 6]; tets] } else { result.stress() };
     let nodal = if stressed {
         match mesh.order() {
             2 if !rest => nodal_stresses(mesh, &result.materials(), result.displacement().as_flattened())?,

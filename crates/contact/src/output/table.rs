@@ -80,12 +80,13 @@ impl Table {
         let before = self.text.len();
         let goes_on = self.is_begun && length == before as u64;
         self.text += &row;
-        let done = match goes_on {
-            true => OpenOptions::new()
+        let done = if goes_on {
+            OpenOptions::new()
                 .append(true)
                 .open(&self.path)
-                .and_then(|mut file| file.write_all(row.as_bytes())),
-            false => replace_file(&self.path, self.text.as_bytes()),
+                .and_then(|mut file| file.write_all(row.as_bytes()))
+        } else {
+            replace_file(&self.path, self.text.as_bytes())
         };
         self.is_begun |= done.is_ok();
         let Err(source) = done else { return Ok(()) };
@@ -143,11 +144,7 @@ fn row(probes: &[u32], result: &StepResult) -> String {
     let resultants = reactions.contacts.iter().copied().chain(supports).chain(couplings);
     let motions = result.couplings().into_iter();
     let motions = motions.flat_map(|m| [m.displacement, m.rotation]);
-    let u = if probes.is_empty() {
-        Vec::new()
-    } else {
-        result.displacement()
-    };
+    let u = if probes.is_empty() { Vec::new() } else { result.displacement() };
     let probed = probes.iter().map(|&node| u[node as usize]);
     let resultants = resultants.flat_map(|r| [r.force, r.moment]);
     for vector in resultants.chain(motions).chain(probed) {

@@ -142,9 +142,12 @@ impl ResultWriter {
             return Err(OutputError::SharedSeries { name }.into());
         }
         let goes_on = |name: &str| result.step() > 0 && self.folder.join(format!("{name}.pvd")).exists();
-        let series = |name: &str| match goes_on(name) {
-            true => PvdSeries::open_before(&self.folder, name, result.time()),
-            false => PvdSeries::create(&self.folder, name),
+        let series = |name: &str| {
+            if goes_on(name) {
+                PvdSeries::open_before(&self.folder, name, result.time())
+            } else {
+                PvdSeries::create(&self.folder, name)
+            }
         };
         let body = series(&self.name)?;
         let plan = &result.model.plan;

@@ -210,11 +210,7 @@ impl Plan {
             coarse: 6 * subdomains,
             steps: scene.analysis.steps(),
             stages: scene.stages().len(),
-            method: if effects.contact {
-                settings.method.kind()
-            } else {
-                MethodKind::Linear
-            },
+            method: if effects.contact { settings.method.kind() } else { MethodKind::Linear },
             vector_bytes: 0,
             formed_bytes: 0,
             mesh_error,

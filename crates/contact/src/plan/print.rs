@@ -101,9 +101,10 @@ impl fmt::Display for Plan {
 
 impl Plan {
     fn gluing_text(&self) -> String {
-        match self.effects.gluing {
-            true => format!("{} rows", self.interface_rows),
-            false => "none (one subdomain)".to_owned(),
+        if self.effects.gluing {
+            format!("{} rows", self.interface_rows)
+        } else {
+            "none (one subdomain)".to_owned()
         }
     }
 
@@ -151,9 +152,10 @@ impl Plan {
     }
 
     fn history_text(&self) -> String {
-        match self.effects.history {
-            true => format!("{} steps, old traces kept", self.steps),
-            false => "none (each step stands alone)".to_owned(),
+        if self.effects.history {
+            format!("{} steps, old traces kept", self.steps)
+        } else {
+            "none (each step stands alone)".to_owned()
         }
     }
 }

@@ -62,9 +62,10 @@ fn idle(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
 
 /// The regions of the mesh, ascending; one of them where one law fills all.
 fn regions(scene: &Scene, listed: &[u32]) -> Vec<u32> {
-    match listed.is_empty() {
-        true => scene.mesh.regions().first().copied().into_iter().collect(),
-        false => scene.mesh.distinct_regions(),
+    if listed.is_empty() {
+        scene.mesh.regions().first().copied().into_iter().collect()
+    } else {
+        scene.mesh.distinct_regions()
     }
 }
 

@@ -17,11 +17,7 @@ pub struct Violation {
 impl Violation {
     /// `value / reference`; 0 if nothing is violated.
     pub fn relative(&self) -> f64 {
-        if self.value == 0.0 {
-            0.0
-        } else {
-            self.value / self.reference
-        }
+        if self.value == 0.0 { 0.0 } else { self.value / self.reference }
     }
 
     /// Takes another violation of the same condition in its place if that is relatively larger, or not a number.
@@ -92,10 +88,8 @@ pub(crate) fn contact_violation(certificate: &Certificate) -> f64 {
 
 /// The part with the largest relative violation; `f64::max` would hide what is not a number.
 fn worst<const N: usize>(parts: [(&'static str, Violation); N]) -> (&'static str, Violation) {
-    let worse = |old: (_, Violation), new: (_, Violation)| match is_worse(new.1.relative(), old.1.relative()) {
-        true => new,
-        false => old,
-    };
+    let worse =
+        |old: (_, Violation), new: (_, Violation)| if is_worse(new.1.relative(), old.1.relative()) { new } else { old };
     parts.into_iter().reduce(worse).unwrap_or_default()
 }
 

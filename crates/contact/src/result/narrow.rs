@@ -48,10 +48,7 @@ pub(super) fn views(model: &Model) -> Vec<View> {
         for &(node, share) in point.contact.sides.own.nodes() {
             let ends = ends.get(&node).copied().unwrap_or([node; 2]);
             for seen in ends.map(|end| of(end).unwrap_or(own)) {
-                match seen == own {
-                    true => weight += 0.5 * share,
-                    false => others.push((seen, 0.5 * share)),
-                }
+                if seen == own { weight += 0.5 * share } else { others.push((seen, 0.5 * share)) }
             }
         }
         (weight, others)

@@ -64,9 +64,10 @@ pub(super) fn sizes(m: &Measured<'_>) -> Vec<Sizes> {
         for ((f, u), copy) in nodes.zip(range.start / 3..) {
             let stiffness = copies.weight(copy);
             // a rigid copy by the others of its node
-            let (elastic, counts) = match subdomain < model.discrete.couplings.first {
-                true => (stiffness, stiffness),
-                false => (stiffness / RIGID, 0.0),
+            let (elastic, counts) = if subdomain < model.discrete.couplings.first {
+                (stiffness, stiffness)
+            } else {
+                (stiffness / RIGID, 0.0)
             };
             displacement = displacement.max(vector::max_abs(f) / elastic);
             stiff += counts * counts * vector::dot(u, u);

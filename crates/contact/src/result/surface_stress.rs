@@ -61,11 +61,7 @@ pub(crate) fn points_at_nodes(model: &Model, points: &[PointState], surface: usi
     let first = |a: usize, b: usize| {
         let [p, q] = [a, b].map(|k| &points[k]);
         let order = p.normal_force.total_cmp(&q.normal_force);
-        if order.then(p.gap.total_cmp(&q.gap)).is_le() {
-            a
-        } else {
-            b
-        }
+        if order.then(p.gap.total_cmp(&q.gap)).is_le() { a } else { b }
     };
     let at = |node: &u32| conditions.at(*node).filter_map(|c| conditions.points[c]).reduce(first);
     model.discrete.surfaces[surface].nodes().iter().map(at).collect()

@@ -61,11 +61,7 @@ impl Simulation {
         let mut round = 0;
         loop {
             round += 1;
-            let tolerance = if by_estimates {
-                self.controller.tolerance()
-            } else {
-                certificate.tolerance
-            };
+            let tolerance = if by_estimates { self.controller.tolerance() } else { certificate.tolerance };
             let (mut report, recovered) = self.solve_once(tolerance)?;
             let ended = if by_estimates {
                 self.judge(round, &mut report, &recovered)?
@@ -160,11 +156,7 @@ fn discretisation(
     }
     let found = solved.discretisation_error()?;
     controller.discretisation = Discretisation {
-        relative: if own.scale > own.elastic {
-            relative(found.energy, own.scale)
-        } else {
-            found.relative()
-        },
+        relative: if own.scale > own.elastic { relative(found.energy, own.scale) } else { found.relative() },
         step,
         scale: own.scale,
     };

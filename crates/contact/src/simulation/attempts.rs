@@ -40,9 +40,10 @@ impl Simulation {
         let effects = &self.model.plan.effects;
         let moves = effects.history && (effects.motion || effects.moving_obstacle);
         let settles = state.step() == 0 && moves && self.falls_back() && !self.model.loose_motions()?.is_empty();
-        Ok(match settles {
-            true => vec![(line, Attempt::First), (line, Attempt::Settled)],
-            false => vec![(line, Attempt::Whole)],
+        Ok(if settles {
+            vec![(line, Attempt::First), (line, Attempt::Settled)]
+        } else {
+            vec![(line, Attempt::Whole)]
         })
     }
 
@@ -65,9 +66,10 @@ impl Simulation {
         let held = loose.is_empty();
         // forces of bodies that supports hold may vanish with the loads, too
         let ends = |start| self.problem.is_unloaded(&self.model, start);
-        let may_vanish = match held {
-            true => way.increment().start.is_some_and(ends),
-            false => self.problem.is_balanced(loose),
+        let may_vanish = if held {
+            way.increment().start.is_some_and(ends)
+        } else {
+            self.problem.is_balanced(loose)
         };
         if !may_vanish {
             return Ok(attempts);

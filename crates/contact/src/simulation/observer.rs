@@ -71,10 +71,7 @@ impl<F: FnMut(&StepResult) -> Flow> Observer for F {
 /// [`RunReport::stopped`](crate::report::RunReport::stopped) says so.
 impl Observer for Arc<AtomicBool> {
     fn step(&mut self, _: &StepResult) -> Flow {
-        match self.load(Ordering::Relaxed) {
-            true => Flow::Stop,
-            false => Flow::Continue,
-        }
+        if self.load(Ordering::Relaxed) { Flow::Stop } else { Flow::Continue }
     }
 }
 

@@ -107,9 +107,10 @@ impl Simulation {
     ) -> Result<Option<Recovered>, ContactError> {
         let pressed = |point: &&ConstrainedPoint| was_pressed(state, point);
         let before = || self.model.points.iter().filter(pressed).flat_map(rows);
-        let targets = match targets.is_empty() {
-            true => &before().map(|row| (row, self.problem.offset[row])).collect(),
-            false => targets,
+        let targets = if targets.is_empty() {
+            &before().map(|row| (row, self.problem.offset[row])).collect()
+        } else {
+            targets
         };
         let zeros = vec![0.0; self.iterate.lambda.len()];
         let from = Place {

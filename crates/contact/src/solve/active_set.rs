@@ -289,10 +289,7 @@ impl ActiveSetSolver {
         // what is open in the last iterate is left out at first
         let mut x = iterate.lambda.clone();
         let mut set = model.set_with(0)?;
-        let slopes = match is_coulomb(model) {
-            true => problem.slip_slopes(model),
-            false => Vec::new(),
-        };
+        let slopes = if is_coulomb(model) { problem.slip_slopes(model) } else { Vec::new() };
         let data = (&problem.linear[..], &problem.rhs[..]);
         let mut steps = 0;
         let mut written = Ok(());
@@ -375,9 +372,10 @@ impl ActiveSetSolver {
         let [least, least_contact] = problem.least(task.settings.tolerance);
         let least = least.max(vector::norm(&problem.handed_on));
         let contact = !model.points.is_empty();
-        let tolerance = match contact {
-            true => task.settings.tolerance,
-            false => (task.settings.tolerance * LINEAR_SLACK).min(LINEAR_AT_MOST),
+        let tolerance = if contact {
+            task.settings.tolerance
+        } else {
+            (task.settings.tolerance * LINEAR_SLACK).min(LINEAR_AT_MOST)
         };
         let settings = self
             .settings
@@ -471,9 +469,10 @@ impl ActiveSetSolver {
         iterate.multiplier.clear();
         // other normal forces may hold a body yet that only contact holds
         let most = task.settings.max_fallback_products;
-        let outcome = match self.space.loose().is_empty() {
-            false => paper.solve_while_balancing(most, task, iterate),
-            true => paper.solve_within(most, task, iterate),
+        let outcome = if self.space.loose().is_empty() {
+            paper.solve_within(most, task, iterate)
+        } else {
+            paper.solve_while_balancing(most, task, iterate)
         };
         self.paper = Some(paper);
         let mut second = outcome?;

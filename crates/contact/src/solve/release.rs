@@ -155,10 +155,7 @@ impl Contradiction<'_> {
             let mut stopped = false;
             for place in points {
                 let along = d[place.normal];
-                let opens = match along > 0.0 {
-                    true => (-lambda[own[place.normal]] / along).max(0.0),
-                    false => f64::INFINITY,
-                };
+                let opens = if along > 0.0 { (-lambda[own[place.normal]] / along).max(0.0) } else { f64::INFINITY };
                 let mut stops = vec![(std::slice::from_ref(&place.normal), opens)];
                 // friction of a point that slides follows its bound afterwards
                 if place.tangential.iter().any(|k| !held[*k]) {
@@ -204,9 +201,10 @@ impl Contradiction<'_> {
         let rows = &self.exchange.rows;
         let (point, radius) = (&model.points[place.point], self.radius(place, lambda));
         let normal = rows[place.normal];
-        let slope = match follow && (lambda[normal] < 0.0 || d[place.normal] < 0.0) {
-            true => problem.coefficients[place.point] * point.scale / place.scale,
-            false => 0.0,
+        let slope = if follow && (lambda[normal] < 0.0 || d[place.normal] < 0.0) {
+            problem.coefficients[place.point] * point.scale / place.scale
+        } else {
+            0.0
         };
         let growth = -slope * d[place.normal];
         let (mut aa, mut ad, mut dd) = (-radius * radius, -radius * growth, -growth * growth);

@@ -267,11 +267,7 @@ impl SmalseSolver {
             let new = radii(set);
             updates += 1;
             let difference = vector::distance(&old, &new);
-            last_change = if difference == 0.0 {
-                0.0
-            } else {
-                difference / vector::norm(&new).max(least)
-            };
+            last_change = if difference == 0.0 { 0.0 } else { difference / vector::norm(&new).max(least) };
             contraction.record(difference);
             let settled = last_change < tolerance;
             !settled
@@ -282,11 +278,7 @@ impl SmalseSolver {
         report.counters.slip_bound_updates += updates;
         report.iterations = qp.outer;
         report.status = step_status(qp.status);
-        let verdict = if report.status.converged() {
-            Verdict::Converged
-        } else {
-            Verdict::Unknown
-        };
+        let verdict = if report.status.converged() { Verdict::Converged } else { Verdict::Unknown };
         report.fixed_point = Some(FixedPointReport {
             verdict,
             evaluations: updates,

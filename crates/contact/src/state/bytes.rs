@@ -63,11 +63,7 @@ impl State {
             return Err(damaged("their checksum differs"));
         }
         let (state, rest) = postcard::take_from_bytes(payload).map_err(|e| damaged(&e.to_string()))?;
-        if rest.is_empty() {
-            Ok(state)
-        } else {
-            Err(damaged("more follows the state"))
-        }
+        if rest.is_empty() { Ok(state) } else { Err(damaged("more follows the state")) }
     }
 
     /// Stores the state in a file (feature `checkpoint`). The file is complete at any moment: a kill or a full disk

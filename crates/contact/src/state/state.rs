@@ -167,10 +167,7 @@ impl State {
         let push = |pair: &mut [Vec<f64>; 2], new: Vec<f64>| {
             pair.swap(0, 1);
             let old = std::mem::replace(&mut pair[0], new);
-            match keep_before {
-                true => old,
-                false => std::mem::take(&mut pair[1]),
-            }
+            if keep_before { old } else { std::mem::take(&mut pair[1]) }
         };
         let old = [
             push(&mut self.lambda, new.lambda),

@@ -165,10 +165,7 @@ impl StepProblem {
             (along, square) = (vector::dot(&self.rhs, &before), pushed);
         }
         let growth = along / square - 1.0;
-        match square > 0.0 {
-            true => growth.max(0.0) * (1.0 + ROUNDING),
-            false => f64::INFINITY,
-        }
+        if square > 0.0 { growth.max(0.0) * (1.0 + ROUNDING) } else { f64::INFINITY }
     }
 
     /// Whether no load acts, and one did at that time.

@@ -136,11 +136,7 @@ fn rough() -> Simulation {
 fn run_until(steps: usize, folder: &Path) -> Result<(Simulation, RunReport), ContactError> {
     let mut simulation = rough();
     let mut observer = |result: &StepResult| {
-        if result.step() + 1 == steps {
-            Flow::Stop
-        } else {
-            Flow::Continue
-        }
+        if result.step() + 1 == steps { Flow::Stop } else { Flow::Continue }
     };
     let report = simulation.run_or_resume(folder, 1, &mut observer)?;
     Ok((simulation, report))
@@ -182,10 +178,7 @@ fn checkpoints_of_several_ranks_are_those_of_one_process() {
     let settings = Settings::default().with_share_translates(false);
     let until = |steps: usize, folder: &Path, settings: &Settings| {
         let mut simulation = simulation(&Friction::coulomb(0.3), settings);
-        let mut observer = |result: &StepResult| match result.step() + 1 == steps {
-            true => Flow::Stop,
-            false => Flow::Continue,
-        };
+        let mut observer = |result: &StepResult| if result.step() + 1 == steps { Flow::Stop } else { Flow::Continue };
         let report = simulation.run_or_resume(folder, 1, &mut observer);
         report.map(|report| (report.steps, simulation.state().to_bytes().expect("encode")))
     };

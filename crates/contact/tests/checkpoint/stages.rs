@@ -52,11 +52,7 @@ fn assert_goes_on(scene: &Scene, name: &str) {
     let run = |steps: usize, folder: &Path, settings: Settings| {
         let mut simulation = Simulation::new(scene.clone(), settings.with_share_translates(false)).expect("set-up");
         let mut observer = |result: &StepResult| {
-            if result.step() + 1 == steps {
-                Flow::Stop
-            } else {
-                Flow::Continue
-            }
+            if result.step() + 1 == steps { Flow::Stop } else { Flow::Continue }
         };
         let _ = simulation.run_or_resume(folder, 1, &mut observer).expect("run");
         simulation.state().to_bytes().expect("encode")

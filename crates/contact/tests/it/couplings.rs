@@ -149,11 +149,7 @@ fn a_bar_is_drawn_by_its_end() {
     let inner = |n: &u32| mesh.points()[*n as usize][0] < 1.99;
     let scene = Scene::new(mesh.clone(), uniform(YOUNG, 0.3)).with_support(Support::fixed(brick::X_MIN));
     let scene = sides.into_iter().fold(scene, |scene, side| {
-        let across = if side == brick::Y_MIN || side == brick::Y_MAX {
-            1
-        } else {
-            2
-        };
+        let across = if side == brick::Y_MIN || side == brick::Y_MAX { 1 } else { 2 };
         let nodes: Vec<u32> = mesh.nodes_on(side).into_iter().filter(inner).collect();
         scene.with_support(Support::components(nodes, [1, 2, 3].map(|c| c == across + 1)))
     });

@@ -14,9 +14,10 @@ fn rigid_sides_do_not_touch() {
             .with_support(Support::fixed(brick::Z_MIN))
             .with_contact(Contact::between(brick::Z_MAX, second(brick::Z_MIN)))
             .with_coupling(Coupling::rigid(second(brick::Z_MIN), POINT));
-        match below {
-            true => scene.with_support(Support::components(brick::Z_MAX, [false, false, true])),
-            false => scene.with_coupling(Coupling::rigid(brick::Z_MAX, POINT)),
+        if below {
+            scene.with_support(Support::components(brick::Z_MAX, [false, false, true]))
+        } else {
+            scene.with_coupling(Coupling::rigid(brick::Z_MAX, POINT))
         }
     };
     for below in [true, false] {
@@ -118,13 +119,7 @@ fn faults_are_refused() {
         let node = |x: [f64; 3]| mesh.points().iter().position(|p| *p == x).expect("a corner");
         let corners = [[2.0, 0.0, 0.0], [2.0, 1.0, 0.0], [2.0, 1.0 / 3.0, 0.0]].map(node);
         let shift = corners[2];
-        let moved = mesh.map_points(|x| {
-            if x == mesh.points()[shift] {
-                [x[0], x[1], x[2] + off]
-            } else {
-                x
-            }
-        });
+        let moved = mesh.map_points(|x| if x == mesh.points()[shift] { [x[0], x[1], x[2] + off] } else { x });
         let scene = Scene::new(moved.expect("moved"), steel()).with_support(Support::fixed(brick::X_MIN));
         scene.with_coupling(Coupling::rigid(corners.map(|n| n as u32), POINT))
     };

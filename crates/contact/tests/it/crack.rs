@@ -35,11 +35,7 @@ fn cracked(order: usize, opening: f64) -> TetMesh {
         for skip in 0..4 {
             let [a, b, c] = [1, 2, 3].map(|k| tet[(skip + k) % 4]);
             if [a, b, c].iter().all(|n| in_plane(*n)) && [a, b, c].iter().any(|n| twins.contains_key(n)) {
-                let (nodes, tag) = if above {
-                    ([a, b, c].map(twin), UP)
-                } else {
-                    ([a, b, c], LOW)
-                };
+                let (nodes, tag) = if above { ([a, b, c].map(twin), UP) } else { ([a, b, c], LOW) };
                 facets.push(Facet { nodes, tag });
             }
         }

@@ -66,10 +66,7 @@ fn ball([inside, outside]: [usize; 2], order: usize) -> TetMesh {
 
 fn tie(swap: bool) -> Contact {
     let (inner, outer) = (brick::X_MAX, second(brick::X_MIN));
-    match swap {
-        true => Contact::tied(outer, inner),
-        false => Contact::tied(inner, outer),
-    }
+    if swap { Contact::tied(outer, inner) } else { Contact::tied(inner, outer) }
 }
 
 /// The first body is turned where it is held; the other one turns with it.

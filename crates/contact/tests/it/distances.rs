@@ -73,11 +73,7 @@ fn gaps_along_a_fixed_direction_are_those_along_it() {
         for cells in [[3, 3], [3, 4], [4, 3], [2, 5]] {
             let wedge = |cells: usize, up: f64| {
                 let straight = block([1.0; 3], [cells; 3]);
-                let straight = if order == 2 {
-                    straight.raise_order().expect("order 2")
-                } else {
-                    straight
-                };
+                let straight = if order == 2 { straight.raise_order().expect("order 2") } else { straight };
                 let place = |[x, y, z]: [f64; 3]| [x, y, z + up + slope * x];
                 straight.map_points(place).expect("inclined")
             };

@@ -11,11 +11,7 @@ const LENGTHS: [f64; 3] = [2.0, 1.0, 1.0];
 
 fn block(order: usize) -> TetMesh {
     let mesh = Brick::new(LENGTHS, [4, 2, 2]).perturbed(0.1, 7).build().expect("brick");
-    if order == 2 {
-        mesh.raise_order().expect("order")
-    } else {
-        mesh
-    }
+    if order == 2 { mesh.raise_order().expect("order") } else { mesh }
 }
 
 /// A block on three planes of symmetry, so that it may grow.

@@ -275,11 +275,12 @@ fn points_that_follow_points_may_have_units_of_their_own() {
         for moved in [false, true] {
             let first = Coupling::point([5.0, 0.0, 0.0]);
             let second = Coupling::point([6.0, 0.0, 0.0]);
-            let second = match moved {
-                true => second
+            let second = if moved {
+                second
                     .with_held([true, false, false, false, false, false])
-                    .with_motion([2e-7 / c, 0.0, 0.0, 0.0, 0.0, 0.0], ramp()),
-                false => second,
+                    .with_motion([2e-7 / c, 0.0, 0.0, 0.0, 0.0, 0.0], ramp())
+            } else {
+                second
             };
             let end = mesh.nodes_on(brick::X_MAX);
             let alike = end.into_iter().map(|n| Equation::new([(n, x)]).with_point(0, minus(x)));
@@ -290,9 +291,10 @@ fn points_that_follow_points_may_have_units_of_their_own() {
                 .with_coupling(second)
                 .with_coupling(Coupling::point([9.0; 3]));
             let scene = alike.chain([link]).fold(scene, Scene::with_equation);
-            let scene = match moved {
-                true => scene,
-                false => scene.with_load(Load::on_coupling(1, [force * c, 0.0, 0.0], [0.0; 3])),
+            let scene = if moved {
+                scene
+            } else {
+                scene.with_load(Load::on_coupling(1, [force * c, 0.0, 0.0], [0.0; 3]))
             };
             let found = solved(scene, Settings::default(), &format!("unit {c:e}, moved {moved}"));
             let displacement = found.points[0][0];

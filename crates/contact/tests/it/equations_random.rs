@@ -11,11 +11,7 @@ fn scene(seed: u64) -> Scene {
         .perturbed(0.1, seed)
         .build()
         .expect("brick");
-    let mesh = if dice.random_bool(0.3) {
-        mesh.raise_order().expect("quadratic")
-    } else {
-        mesh
-    };
+    let mesh = if dice.random_bool(0.3) { mesh.raise_order().expect("quadratic") } else { mesh };
     let nodes = mesh.points().len() as u32;
     let boxes = [
         dice.random_range(1..=3),
@@ -28,13 +24,11 @@ fn scene(seed: u64) -> Scene {
     let node = |dice: &mut rand_pcg::Pcg64Mcg| free[dice.random_range(0..free.len())];
     let vector = |dice: &mut rand_pcg::Pcg64Mcg| {
         let size = 10f64.powf(dice.random_range(-1.5..1.5));
-        [0; 3].map(|_| {
-            if dice.random_bool(0.3) {
-                0.0
-            } else {
-                size * dice.random_range(-1.0..1.0)
-            }
-        })
+        [0; 3].map(
+            |_| {
+                if dice.random_bool(0.3) { 0.0 } else { size * dice.random_range(-1.0..1.0) }
+            },
+        )
     };
     let mut scene = Scene::new(mesh, uniform(YOUNG, 0.3)).with_boxes(boxes);
     if dice.random_bool(0.7) {
@@ -60,11 +54,7 @@ fn scene(seed: u64) -> Scene {
         let way = held.map(|held| if held { dice.random_range(-1e-4..1e-4) } else { 0.0 });
         let [x, y, z, ..] = way;
         let point = Coupling::point([k as f64, 3.0, -1.0]).with_held(held);
-        let point = if dice.random_bool(0.5) {
-            point.with_axis([1.0, 2.0, -2.0])
-        } else {
-            point
-        };
+        let point = if dice.random_bool(0.5) { point.with_axis([1.0, 2.0, -2.0]) } else { point };
         scene = scene.with_coupling(point.with_motion([x, y, z, 0.0, 0.0, 0.0], ramp()));
         // so that it knows the body, in all directions
         for e in [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]] {
@@ -79,11 +69,7 @@ fn scene(seed: u64) -> Scene {
         let count = dice.random_range(1..6);
         let terms: Vec<_> = (0..count).map(|_| (node(&mut dice), vector(&mut dice))).collect();
         let equation = Equation::new(terms);
-        let value = if dice.random_bool(0.3) {
-            dice.random_range(-1e-4..1e-4)
-        } else {
-            0.0
-        };
+        let value = if dice.random_bool(0.3) { dice.random_range(-1e-4..1e-4) } else { 0.0 };
         let zero = equation.terms().iter().all(|t| t.1 == [0.0; 3]);
         if !zero {
             scene = scene.with_equation(equation.with_value(value, ramp()));

@@ -333,11 +333,7 @@ fn the_gap_bounds_the_error_and_is_not_far_above_it() {
                 // the bound is for the moved mean of copies, the truth here for the plain one
                 assert!(gap.relative() >= 0.95 * truth, "{name}");
                 // SMALSE, solved loosely, leaves slip bounds that move by per cents: the gap overrates them
-                let most = if method.kind() == MethodKind::ActiveSet {
-                    4.0
-                } else {
-                    30.0
-                };
+                let most = if method.kind() == MethodKind::ActiveSet { 4.0 } else { 30.0 };
                 assert!(gap.relative() <= most * truth + 1e-10, "{name}");
             }
         }

@@ -8,11 +8,7 @@ use crate::relative::{FIRST, SECOND};
 use signorini_fem_mesh::vec3;
 
 fn raised(mesh: TetMesh, order: usize) -> TetMesh {
-    if order == 2 {
-        mesh.raise_order().expect("order 2")
-    } else {
-        mesh
-    }
+    if order == 2 { mesh.raise_order().expect("order 2") } else { mesh }
 }
 
 /// A block with tags of its own.

@@ -189,11 +189,14 @@ fn around(cells: [usize; 3], z: f64, first: u32, is_inside: impl Fn([f64; 3]) ->
     tets.retain(|tet| is_inside(centroid(&tet.map(|n| points[n as usize]))));
     drop_unused_nodes(&mut points, &mut tets, &mut []);
     let end = |x: [f64; 3]| x[0].abs() > 0.5 * lengths[0] - 0.1;
-    let tag = |x: [f64; 3], n: [f64; 3]| match n[2].abs() > 0.5 {
-        true => Some(FacetTag(
-            first + 2 * u32::from(x[2].abs() < 5.0) + u32::from(n[2] > 0.0),
-        )),
-        false => end(x).then_some(FacetTag(first + 4 + u32::from(x[0] > 0.0))),
+    let tag = |x: [f64; 3], n: [f64; 3]| {
+        if n[2].abs() > 0.5 {
+            Some(FacetTag(
+                first + 2 * u32::from(x[2].abs() < 5.0) + u32::from(n[2] > 0.0),
+            ))
+        } else {
+            end(x).then_some(FacetTag(first + 4 + u32::from(x[0] > 0.0)))
+        }
     };
     let mesh = TetMesh::new(points, tets, Vec::new()).expect("a part");
     mesh.tag_boundary(tag)

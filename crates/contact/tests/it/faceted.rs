@@ -9,16 +9,13 @@ fn arc(radii: [f64; 2], cells: usize, order: usize, bent: bool) -> TetMesh {
         [radius * angle.cos(), radius * angle.sin(), z]
     };
     let raised = |mesh: TetMesh| {
-        if order == 2 {
-            mesh.raise_order().expect("order 2")
-        } else {
-            mesh
-        }
+        if order == 2 { mesh.raise_order().expect("order 2") } else { mesh }
     };
     let straight = block([1.0; 3], [1, cells, 1]);
-    match bent {
-        true => raised(straight).map_points(place).expect("arc"),
-        false => raised(straight.map_points(place).expect("arc")),
+    if bent {
+        raised(straight).map_points(place).expect("arc")
+    } else {
+        raised(straight.map_points(place).expect("arc"))
     }
 }
 
@@ -252,10 +249,7 @@ fn a_curve_in_patches_presses_as_one() {
     let press = |cells: [usize; 2], order, patches: [usize; 2], rough: bool| {
         let pin = mesh([2.0, 10.0], (cells[0], order), 1.0, patches[0]);
         let bore = mesh([10.02, 30.0], (cells[1], order), -1.0, patches[1]);
-        let law = |k: usize| match rough && 2 * k < patches[0] {
-            true => Friction::coulomb(0.3),
-            false => Friction::None,
-        };
+        let law = |k: usize| if rough && 2 * k < patches[0] { Friction::coulomb(0.3) } else { Friction::None };
         let scene = Scene::new(with_second(&pin, &bore), uniform(200.0, 0.3))
             .with_support(Support::fixed(second(brick::X_MIN)))
             .with_support(Support::fixed(brick::X_MIN).with_motion([0.0, -0.05, 0.0], ramp()));
@@ -322,9 +316,10 @@ fn straight_quadratic_elements_around_an_obstacle_press_nothing() {
             .expect("brick");
         let raised = |mesh: TetMesh| mesh.raise_order().expect("order 2");
         let place = |[a, r, z]: [f64; 3]| [-(0.8 + r) * a.cos(), (0.8 + r) * a.sin(), z];
-        let ring = match bent {
-            true => raised(straight).map_points(place).expect("ring"),
-            false => raised(straight.map_points(place).expect("ring")),
+        let ring = if bent {
+            raised(straight).map_points(place).expect("ring")
+        } else {
+            raised(straight.map_points(place).expect("ring"))
         };
         let shaft = Obstacle::cylinder([0.0; 3], [0.0, 0.0, 1.0], radius);
         let contact = Contact::obstacle(brick::Y_MIN, shaft).with_friction(Friction::coulomb(0.3));
@@ -384,9 +379,10 @@ fn overlaps_of_facets_do_not_depend_on_how_contacts_are_written() {
         let bore = bore.tag_boundary(sides).map_points(place).expect("bore");
         let contact = |tag: FacetTag, radius: f64| {
             let contact = Contact::obstacle(tag, Obstacle::cylinder([0.0; 3], [0.0, 0.0, 1.0], radius));
-            match moves {
-                true => contact.with_motion([0.0; 3], History::ramp(1.0, 1.0).expect("ramp")),
-                false => contact,
+            if moves {
+                contact.with_motion([0.0; 3], History::ramp(1.0, 1.0).expect("ramp"))
+            } else {
+                contact
             }
         };
         let mut scene = Scene::new(bore.raise_order().expect("order 2"), uniform(2e11, 0.3))
@@ -427,11 +423,7 @@ fn what_tilted_facets_hold_is_told() {
             };
             let straight = block([1.0; 3], cells);
             let mesh = straight.map_points(place).expect("quarter");
-            if order == 2 {
-                mesh.raise_order().expect("order 2")
-            } else {
-                mesh
-            }
+            if order == 2 { mesh.raise_order().expect("order 2") } else { mesh }
         };
         let (post, sleeve) = (part([4.0, 10.0], [2, 9, 4]), part([10.0, 13.0], [1, 8, 4]));
         let touch = Contact::between(brick::X_MAX, second(brick::X_MIN)).with_closed_gaps(0.1);

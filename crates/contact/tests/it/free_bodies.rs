@@ -420,15 +420,11 @@ fn a_motion_along_a_frictionless_plane_is_stopped_by_nothing() {
     let both = with_second(&block([1.0; 3], [3; 3]), &lifted(&block([1.0; 3], [2; 3]), 1.0));
     let (sin, cos) = 0.7_f64.sin_cos();
     for (by, turned) in [(0.0, false), (0.0, true), (1e4, true)] {
-        let place = |[x, y, z]: [f64; 3]| match turned {
-            true => [cos * x + sin * z + by, y - by, cos * z - sin * x + by],
-            false => [x, y, z],
+        let place = |[x, y, z]: [f64; 3]| {
+            if turned { [cos * x + sin * z + by, y - by, cos * z - sin * x + by] } else { [x, y, z] }
         };
         let mesh = both.map_points(place).expect("a mesh");
-        let up = match turned {
-            true => [sin, 0.0, cos],
-            false => [0.0, 0.0, 1.0],
-        };
+        let up = if turned { [sin, 0.0, cos] } else { [0.0, 0.0, 1.0] };
         let regions = mesh.components();
         let law = |young| Hooke::isotropic(young, 0.3).expect("a law");
         let laws = Materials::new(vec![(0, law(1e2)), (1, law(2e5))]).expect("laws");

@@ -5,11 +5,7 @@ use crate::common::*;
 /// Two bricks, one far above the other, with names.
 fn named(order: usize, poisson: f64) -> Scene {
     let both = with_second(&block([1.0; 3], [2; 3]), &lifted(&block([1.0; 3], [3; 3]), 9.0));
-    let both = if order == 2 {
-        both.raise_order().expect("order 2")
-    } else {
-        both
-    };
+    let both = if order == 2 { both.raise_order().expect("order 2") } else { both };
     let above = |tet: usize| 3 + 4 * u32::from(both.tet_points(tet)[0][2] > 5.0);
     let regions = (0..both.tets().len()).map(above).collect();
     let hooke = |poisson| Hooke::isotropic(1e9, poisson).expect("Hooke");

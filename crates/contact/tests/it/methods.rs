@@ -198,11 +198,7 @@ fn soft_part_solved(ratio: f64, friction: Friction) -> (StepStatus, f64, usize, 
 #[test]
 fn jumps_on_interfaces_are_solved() {
     for (ratio, friction, products) in JUMPS {
-        let law = if friction > 0.0 {
-            Friction::coulomb(friction)
-        } else {
-            Friction::None
-        };
+        let law = if friction > 0.0 { Friction::coulomb(friction) } else { Friction::None };
         let (status, certificate, found, fallback) = soft_part_solved(ratio, law);
         let what = format!("ratio {ratio:e}, F {friction}: {found} products, certificate {certificate:e}");
         println!("{what}, fallback {fallback}");
@@ -352,11 +348,7 @@ fn sheets_that_bend_down_touch_in_few_products() {
 fn plates_that_lie_down_are_solved_on_few_sets() {
     for (order, cells, mu, most) in [(1, 32, 0.0, 500), (2, 16, 0.0, 700), (2, 16, 0.3, 900)] {
         let mesh = block([1.0, 1.0, 0.02], [cells, cells, 1]);
-        let mesh = if order == 2 {
-            mesh.raise_order().expect("quadratic")
-        } else {
-            mesh
-        };
+        let mesh = if order == 2 { mesh.raise_order().expect("quadratic") } else { mesh };
         let floor = Contact::rigid(brick::Z_MIN).with_gap(1e-4);
         let mut scene = Scene::new(mesh, uniform(2e11, 0.3))
             .with_support(Support::fixed(brick::X_MIN))

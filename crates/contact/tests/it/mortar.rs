@@ -50,11 +50,7 @@ fn patch_error(mesh: &TetMesh, displacement: &[f64], unit: f64) -> f64 {
 #[test]
 fn uniform_pressure_passes_exactly() {
     let both = |x: FacetTag, y: FacetTag, swap: bool| {
-        if swap {
-            Contact::between(y, x)
-        } else {
-            Contact::between(x, y)
-        }
+        if swap { Contact::between(y, x) } else { Contact::between(x, y) }
     };
     for (lower, upper, boxes, unit) in [
         ([2, 2, 2], [6, 6, 2], [1, 1, 2], 1.0),
@@ -105,11 +101,7 @@ fn pulled(swap: bool, boxes: [usize; 3]) -> Scene {
         .map_points(|[x, y, z]| [x + 0.31, y + 0.17, z + 0.5])
         .expect("lifted");
     let (upper, lower) = (second(brick::Z_MIN), brick::Z_MAX);
-    let contact = if swap {
-        Contact::between(lower, upper)
-    } else {
-        Contact::between(upper, lower)
-    };
+    let contact = if swap { Contact::between(lower, upper) } else { Contact::between(upper, lower) };
     Scene::new(with_second(&below, &above), uniform(1e9, 0.3))
         .with_support(Support::fixed(brick::Z_MIN))
         .with_load(Load::traction(second(brick::Z_MAX), [2e5, 1e5, -1e6]))
@@ -345,9 +337,10 @@ fn quadratic_bodies_meshed_apart_pass_uniform_pressure() {
                 (brick::Z_MAX, second(brick::Z_MIN)),
             ] {
                 let mesh = blocks(lower, upper, 1.0).raise_order().expect("order 2");
-                let contact = match tied {
-                    true => Contact::tied(a, b),
-                    false => Contact::between(a, b).with_friction(Friction::coulomb(0.3)),
+                let contact = if tied {
+                    Contact::tied(a, b)
+                } else {
+                    Contact::between(a, b).with_friction(Friction::coulomb(0.3))
                 };
                 let scene = pressed_blocks(mesh.clone(), 1.0)
                     .with_contact(contact)

@@ -9,9 +9,10 @@ use crate::mortar::{POISSON, PRESSURE, YOUNG, blocks};
 fn planes_of_symmetry_cost_no_products() {
     let partial = |tag, axis: usize| Support::partial(tag, Directions::Components([0, 1, 2].map(|c| c == axis)));
     let products = |tied: bool, symmetric: bool| {
-        let contact = match tied {
-            true => Contact::tied(second(brick::Z_MIN), brick::Z_MAX),
-            false => Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(Friction::coulomb(0.3)),
+        let contact = if tied {
+            Contact::tied(second(brick::Z_MIN), brick::Z_MAX)
+        } else {
+            Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(Friction::coulomb(0.3))
         };
         let mut scene = Scene::new(blocks([6, 6, 4], [4, 8, 4], 1.0), uniform(YOUNG, POISSON))
             .with_contact(contact)
@@ -86,9 +87,10 @@ fn thin_quadratic_cells_between_planes_cost_few_products() {
     let solved = |thick: f64, tied: bool| {
         let mesh = blocks([6, 1, 4], [4, 1, 4], 1.0).map_points(|[x, y, z]| [x, thick * y, z]);
         let mesh = mesh.expect("mapped").raise_order().expect("order 2");
-        let contact = match tied {
-            true => Contact::tied(second(brick::Z_MIN), brick::Z_MAX),
-            false => Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(Friction::coulomb(0.3)),
+        let contact = if tied {
+            Contact::tied(second(brick::Z_MIN), brick::Z_MAX)
+        } else {
+            Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(Friction::coulomb(0.3))
         };
         let mut scene = Scene::new(mesh, uniform(YOUNG, POISSON))
             .with_contact(contact)

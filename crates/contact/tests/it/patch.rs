@@ -243,11 +243,7 @@ fn tied_curved_sides_pass_pressure_up_to_their_facets() {
         let cells = |along: usize| [2 * factor, along * factor, factor];
         let mesh = with_second(&tube(10.0, cells(inside)), &tube(20.0, cells(outside)));
         let (inner, outer) = (brick::X_MAX, second(brick::X_MIN));
-        let tie = if swap {
-            Contact::tied(outer, inner)
-        } else {
-            Contact::tied(inner, outer)
-        };
+        let tie = if swap { Contact::tied(outer, inner) } else { Contact::tied(inner, outer) };
         let mut scene = Scene::new(mesh.clone(), uniform(YOUNG, 0.3)).with_contact(tie);
         for (tag, axis) in [(brick::Y_MIN, 1), (brick::Y_MAX, 0), (brick::Z_MIN, 2)] {
             for tag in [tag, second(tag)] {

@@ -102,11 +102,7 @@ fn the_plan_knows_what_very_small_subdomains_cost() {
             .with_support(Support::fixed(brick::X_MIN))
             .with_load(Load::traction(brick::Z_MAX, [3e8, 0.0, -3e9]))
             .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.01));
-        let scene = if small {
-            scene.with_parts_as_given(parts)
-        } else {
-            scene.with_boxes([3, 1, 1])
-        };
+        let scene = if small { scene.with_parts_as_given(parts) } else { scene.with_boxes([3, 1, 1]) };
         Plan::new(&scene, &Settings::default()).expect("plan")
     };
     let seconds = |p: &Plan| {
@@ -169,11 +165,7 @@ fn the_set_up_of_unshared_subdomains_takes_longer() {
 fn the_plan_expects_the_error_of_the_mesh() {
     let scene = |size: [f64; 3], cells: [usize; 3], order: usize, poisson: f64| {
         let mesh = block(size, cells);
-        let mesh = if order == 2 {
-            mesh.raise_order().expect("order 2")
-        } else {
-            mesh
-        };
+        let mesh = if order == 2 { mesh.raise_order().expect("order 2") } else { mesh };
         Scene::new(mesh, uniform(210e9, poisson))
             .with_support(Support::fixed(brick::X_MIN))
             .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -1e6]))

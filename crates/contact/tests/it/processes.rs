@@ -216,11 +216,7 @@ fn ranks_stop_and_fail_together() {
     let failed = run(|| Flow::Fail("the disk is full".into()));
     for (rank, error) in failed.into_iter().enumerate() {
         let error = error.expect("no panic").expect_err("failed");
-        let expected = if rank == 2 {
-            "the disk is full"
-        } else {
-            "that of rank 2 failed"
-        };
+        let expected = if rank == 2 { "the disk is full" } else { "that of rank 2 failed" };
         assert!(error.contains(expected), "{error}");
     }
 }

@@ -152,11 +152,7 @@ fn pressure_passes_between_quadratic_bodies() {
         let mut scene = Scene::new(mesh.clone(), uniform(young, poisson))
             .with_support(Support::components(brick::Z_MIN, [false, false, true]))
             .with_load(Load::pressure(second(brick::Z_MAX), pressure))
-            .with_contact(if tied {
-                contact
-            } else {
-                contact.with_friction(Friction::coulomb(0.3))
-            })
+            .with_contact(if tied { contact } else { contact.with_friction(Friction::coulomb(0.3)) })
             .with_boxes([2, 1, 2]);
         for tag in [brick::X_MIN, second(brick::X_MIN)] {
             scene = scene.with_support(Support::components(tag, [true, false, false]));

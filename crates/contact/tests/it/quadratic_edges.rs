@@ -69,9 +69,10 @@ fn quadratic_facets_of_two_bodies_feel_an_edge_at_once() {
             .expect("quadratic")
             .map_tags(|t| FacetTag(t.0 + 100));
         let below = |tag: FacetTag| FacetTag(tag.0 + 100);
-        let contact = match swapped {
-            true => Contact::between(below(brick::Z_MAX), brick::Z_MIN),
-            false => Contact::between(brick::Z_MIN, below(brick::Z_MAX)),
+        let contact = if swapped {
+            Contact::between(below(brick::Z_MAX), brick::Z_MIN)
+        } else {
+            Contact::between(brick::Z_MIN, below(brick::Z_MAX))
         };
         let scene = Scene::new(upper.append(&lower).expect("both"), steel())
             .with_support(Support::fixed(brick::Z_MAX).with_motion([0.0, 0.0, -0.08], ramp()))

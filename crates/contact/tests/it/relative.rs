@@ -28,11 +28,7 @@ pub(crate) fn with_tie(order: usize, boxes: [usize; 3], tie: Contact) -> Scene {
         .build()
         .expect("brick");
     let mesh = cut_at(&mesh, 0, 0.9);
-    let mesh = if order == 2 {
-        mesh.raise_order().expect("order 2")
-    } else {
-        mesh
-    };
+    let mesh = if order == 2 { mesh.raise_order().expect("order 2") } else { mesh };
     Scene::new(mesh, uniform(YOUNG, 0.3))
         .with_support(Support::fixed(brick::X_MIN))
         .with_support(Support::fixed(brick::X_MAX))
@@ -155,11 +151,7 @@ fn a_hinge_transfers_no_moment_about_its_axis() {
     for order in [1, 2] {
         let mesh = Brick::new([2.0, 1.0, 1.0], [20, 4, 4]).build().expect("brick");
         let mesh = cut_at(&mesh, 0, 0.9);
-        let mesh = if order == 2 {
-            mesh.raise_order().expect("order 2")
-        } else {
-            mesh
-        };
+        let mesh = if order == 2 { mesh.raise_order().expect("order 2") } else { mesh };
         let place = [0.9, 0.5, 0.5];
         let scene = Scene::new(mesh, uniform(YOUNG, 0.3))
             .with_support(Support::fixed(brick::X_MIN))
@@ -247,11 +239,7 @@ pub(crate) fn joint(friction: f64, order: usize) -> Scene {
         .append(&upper)
         .and_then(|both| both.append(&bolt))
         .expect("one mesh");
-    let mesh = if order == 2 {
-        mesh.raise_order().expect("order 2")
-    } else {
-        mesh
-    };
+    let mesh = if order == 2 { mesh.raise_order().expect("order 2") } else { mesh };
     let rough = |a, b| Contact::between(a, b).with_friction(Friction::coulomb(friction));
     Scene::new(mesh, uniform(YOUNG, 0.3))
         .with_support(Support::fixed(LOWER_END))

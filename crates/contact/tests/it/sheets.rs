@@ -81,9 +81,8 @@ fn a_shim_under_a_corner_is_solved_with_a_formed_f() {
     let steel = || block([60.0, 60.0, 20.0], [12, 12, 4]);
     let shim = lifted(block([60.0, 60.0, 0.2], [17, 17, 1]), 20.0).map_tags(tags(1));
     let (corner, below) = (FacetTag(999), tags(2)(brick::Z_MIN));
-    let upper = lifted(steel(), 20.2).tag_boundary(|[x, y, z], normal| match normal[2] < -0.9 {
-        true => Some(below),
-        false => (z > 40.1 && x + y < 60.0).then_some(corner),
+    let upper = lifted(steel(), 20.2).tag_boundary(|[x, y, z], normal| {
+        if normal[2] < -0.9 { Some(below) } else { (z > 40.1 && x + y < 60.0).then_some(corner) }
     });
     let mesh = steel()
         .append(&shim)

@@ -8,16 +8,13 @@ use crate::common::*;
 fn slid(layers: usize, order: usize, planes_move: bool) -> Scene {
     let slice = Brick::new([12.0, 0.5, 3.0], [24, layers, 6]).perturbed(0.12, 7);
     let slice = slice.build().expect("slice");
-    let slice = if order == 2 {
-        slice.raise_order().expect("order 2")
-    } else {
-        slice
-    };
+    let slice = if order == 2 { slice.raise_order().expect("order 2") } else { slice };
     let plane = |tag| {
         let plane = Support::components(tag, [false, true, false]);
-        match planes_move {
-            true => plane.with_motion([0.0, 1e-200, 0.0], History::constant(1.0)),
-            false => plane,
+        if planes_move {
+            plane.with_motion([0.0, 1e-200, 0.0], History::constant(1.0))
+        } else {
+            plane
         }
     };
     let pressed = Load::traction(brick::Z_MAX, [1e6, 0.0, -5e6]);

@@ -119,11 +119,7 @@ fn reactions_are_those_of_each_foundation() {
             for (c, k) in [1.0, 0.5, 2.0].into_iter().enumerate() {
                 // held sideways along y at x = 0
                 let free = c != 1 || mesh.points()[node as usize][0] > 0.0;
-                let force = if free {
-                    k * GROUND * area / 3.0 * u[node as usize][c]
-                } else {
-                    0.0
-                };
+                let force = if free { k * GROUND * area / 3.0 * u[node as usize][c] } else { 0.0 };
                 expected[0][c] -= force;
             }
         }

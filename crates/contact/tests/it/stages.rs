@@ -33,11 +33,7 @@ fn without_friction_a_support_leaves_nothing_behind() {
         let (_, never) = run(pressed_floor(Friction::None), settings());
         let (_, always) = run(clamped_on(Friction::None, None), settings());
         for k in 0..4 {
-            let (beside, what) = if k < 2 {
-                (&always[k], "held")
-            } else {
-                (&never[k], "released")
-            };
+            let (beside, what) = if k < 2 { (&always[k], "held") } else { (&never[k], "released") };
             let scene = simulation.scene();
             let off = relative_distance(scene, &released[k].displacement, &beside.displacement);
             assert!(off < 1e-6, "{method:?}, step {k}, {what}: {off:e}");
@@ -122,9 +118,10 @@ fn a_scene_that_falls_apart_is_refused_beforehand() {
             .with_support(Support::fixed(brick::X_MIN).with_end(2.0))
             .with_support(Support::components(brick::X_MAX, [true, true, false]))
             .with_analysis(Analysis::quasistatic(4.0, 4));
-        match load {
-            true => scene.with_load(Load::pressure(brick::Z_MAX, 1e6).with_history(ramp())),
-            false => scene,
+        if load {
+            scene.with_load(Load::pressure(brick::Z_MAX, 1e6).with_history(ramp()))
+        } else {
+            scene
         }
     };
     let refused = |scene: Scene| Simulation::new(scene, Settings::default()).map(drop).expect_err("free");

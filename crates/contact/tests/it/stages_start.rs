@@ -145,11 +145,7 @@ fn random_stages_are_scenes_of_their_own() {
         let own = block([2.0, 1.0, 1.0], [4, 2, 2]);
         let other = block([2.0, 1.0, 1.0], [[4, 2, 2], [3, 3, 2]][rng.random_range(0..2)]);
         let both = with_second(&own, &lifted(&other, 1.0));
-        let mesh = if order == 2 {
-            both.raise_order().expect("mid-nodes")
-        } else {
-            both
-        };
+        let mesh = if order == 2 { both.raise_order().expect("mid-nodes") } else { both };
         let mut span = || {
             let [a, b] = [0, 1].map(|_| f64::from(rng.random_range(0..5)));
             [a.min(b), a.max(b) + 1.0]

@@ -309,9 +309,10 @@ fn rigid_motions_take_few_products() {
             Support::fixed(brick::Z_MIN),
             Contact::tied(second(brick::Z_MIN), brick::Z_MAX),
         );
-        match tied {
-            true => tie = tie.with_motion(way, ramp()),
-            false => support = support.with_motion(way, ramp()),
+        if tied {
+            tie = tie.with_motion(way, ramp())
+        } else {
+            support = support.with_motion(way, ramp())
         }
         let mut scene = Scene::new(mesh.clone(), uniform(2e9, 0.3))
             .with_support(support)

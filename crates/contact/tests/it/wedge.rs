@@ -32,11 +32,7 @@ fn on_the_wedge(friction: Friction) -> Scene {
 }
 
 fn law(coefficient: f64) -> Friction {
-    if coefficient == 0.0 {
-        Friction::None
-    } else {
-        Friction::coulomb(coefficient)
-    }
+    if coefficient == 0.0 { Friction::None } else { Friction::coulomb(coefficient) }
 }
 
 /// The back is moved horizontally by so much that all of the block slides; the force that this takes is the threshold.

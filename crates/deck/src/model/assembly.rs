@@ -450,9 +450,10 @@ impl Scope<'_> {
 
     /// The number of what is used. Beyond all numbers of parts begin those of the next instance.
     fn number(&self, n: u32, what: &'static str, location: &Location) -> Result<u32, DeckError> {
-        match n <= self.largest {
-            true => self.sum(n),
-            false => Err(Word::new(location, n.to_string()).fault(Fault::UnknownNumber(what))),
+        if n <= self.largest {
+            self.sum(n)
+        } else {
+            Err(Word::new(location, n.to_string()).fault(Fault::UnknownNumber(what)))
         }
     }
 

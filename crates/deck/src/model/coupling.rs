@@ -94,11 +94,12 @@ pub(super) fn law(model: &mut Model, card: &Card, rigid: bool) -> Result<(), Dec
     }
     let last = model.couplings.last_mut().filter(|last| last.law.is_none());
     let last = last.ok_or_else(|| card.word.cannot("this belongs to a coupling; put *COUPLING before it"))?;
-    last.law = Some(match rigid {
-        true => CouplingLaw::Kinematic,
-        false => CouplingLaw::Distributing {
+    last.law = Some(if rigid {
+        CouplingLaw::Kinematic
+    } else {
+        CouplingLaw::Distributing {
             moments: [on[3], on[4], on[5]],
-        },
+        }
     });
     Ok(())
 }

@@ -100,8 +100,5 @@ pub(super) fn equation(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         }
         model.equations.push(Equation { word, terms });
     }
-    match card.lines.is_empty() {
-        true => Err(card.word.expected(wanted)),
-        false => Ok(()),
-    }
+    if card.lines.is_empty() { Err(card.word.expected(wanted)) } else { Ok(()) }
 }

@@ -244,9 +244,10 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     }
     let mut faces = Vec::new();
     for line in &card.lines {
-        let wanted = match of_nodes {
-            true => "a node or node set",
-            false => "an element or element set, and a face S1 to S6 (SPOS or SNEG of rigid facets), or none",
+        let wanted = if of_nodes {
+            "a node or node set"
+        } else {
+            "an element or element set, and a face S1 to S6 (SPOS or SNEG of rigid facets), or none"
         };
         let fields = line.at_most(2, wanted)?;
         let side = match (of_nodes, fields.get(1).map(|f| name(f)).as_deref()) {

@@ -176,10 +176,7 @@ pub(super) fn behavior(model: &mut Model, card: &Card) -> Result<(), DeckError> 
 /// The inverse of a positive slope.
 fn inverse(line: &Word, fields: &[&str], at: usize, wanted: &'static str) -> Result<f64, DeckError> {
     let slope = line.real(fields, at, wanted)?;
-    match slope > 0.0 {
-        true => Ok(slope.recip()),
-        false => Err(line.part(fields[at]).expected(wanted)),
-    }
+    if slope > 0.0 { Ok(slope.recip()) } else { Err(line.part(fields[at]).expected(wanted)) }
 }
 
 pub(super) fn friction(model: &mut Model, card: &Card) -> Result<(), DeckError> {
@@ -284,9 +281,10 @@ pub(super) fn surfaces(card: &Card) -> Result<Vec<[Named; 2]>, DeckError> {
             _ => Err(line.expected(wanted)),
         }
     };
-    match card.lines.is_empty() {
-        true => Err(card.word.cannot("the pair has no surfaces; name two in a line")),
-        false => card.lines.iter().map(pair).collect(),
+    if card.lines.is_empty() {
+        Err(card.word.cannot("the pair has no surfaces; name two in a line"))
+    } else {
+        card.lines.iter().map(pair).collect()
     }
 }
 

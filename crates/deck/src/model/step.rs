@@ -455,8 +455,9 @@ fn vector(line: &Word, fields: &[&str], at: usize) -> Result<[f64; 3], DeckError
         *d = line.real(fields, at + c, wanted)?;
     }
     let length = direction.iter().map(|d| d * d).sum::<f64>();
-    match length > 0.0 && length.is_finite() {
-        true => Ok(direction),
-        false => Err(line.expected(wanted)),
+    if length > 0.0 && length.is_finite() {
+        Ok(direction)
+    } else {
+        Err(line.expected(wanted))
     }
 }

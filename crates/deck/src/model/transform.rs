@@ -53,10 +53,7 @@ pub(super) fn transform(model: &mut Model, card: &Card) -> Result<(), DeckError>
     let points = two_points(line, wanted)?;
     let [a, b] = points;
     let (long, size) = (norm(sub(b, a)), norm(a) + norm(b));
-    let none = match cylindrical {
-        true => long <= ROUNDING * size || !long.is_finite(),
-        false => in_line(points),
-    };
+    let none = if cylindrical { long <= ROUNDING * size || !long.is_finite() } else { in_line(points) };
     if none {
         return Err(line.cannot(
             "these points give no axes; with TYPE=C they must differ, else they and the origin must not be in line",
@@ -64,10 +61,7 @@ pub(super) fn transform(model: &mut Model, card: &Card) -> Result<(), DeckError>
     }
     model.transforms.push(Transform {
         nset: card.need("NSET")?,
-        axes: match cylindrical {
-            true => Axes::Cylindrical(points),
-            false => Axes::Rectangular(points),
-        },
+        axes: if cylindrical { Axes::Cylindrical(points) } else { Axes::Rectangular(points) },
     });
     Ok(())
 }

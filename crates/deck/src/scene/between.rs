@@ -99,9 +99,10 @@ pub(super) fn followers(known: Known, held: &BTreeMap<Key, Held>) -> Result<Vec<
         };
         let ways = |turned: bool| (0..3).filter_map(|c| follower(c, turned)).collect::<Vec<_>>();
         let straight = ways(false);
-        match known.transforms.of(node).is_some() && straight.len() < 3 {
-            true => out.extend(ways(true)),
-            false => out.extend(straight),
+        if known.transforms.of(node).is_some() && straight.len() < 3 {
+            out.extend(ways(true))
+        } else {
+            out.extend(straight)
         }
     }
     Ok(out)
@@ -271,9 +272,10 @@ fn joined(moves: &[Move]) -> Result<(f64, History), HistoryError> {
         .iter()
         .copied()
         .fold(0.0, |m: f64, v| if v.abs() > m.abs() { v } else { m });
-    let history = match largest == 0.0 {
-        true => History::constant(0.0),
-        false => History::table(times.into_iter().zip(values.iter().map(|v| v / largest)).collect())?,
+    let history = if largest == 0.0 {
+        History::constant(0.0)
+    } else {
+        History::table(times.into_iter().zip(values.iter().map(|v| v / largest)).collect())?
     };
     Ok((largest, history))
 }

@@ -124,12 +124,13 @@ fn sides(known: Known, surfaces: &Names<Vec<FacetTag>>, pair: &Pair) -> Result<[
     if slave.is_empty() {
         return Err(own.cannot("a rigid surface has to be the second (independent) one of a pair; swap them"));
     }
-    match slave.iter().any(|tag| master.contains(tag)) {
-        true => Err(partner.cannot(format!(
+    if slave.iter().any(|tag| master.contains(tag)) {
+        Err(partner.cannot(format!(
             "{} and {} share faces; a face does not touch itself, so give two surfaces",
             own.text, partner.text
-        ))),
-        false => Ok([dependent, other]),
+        )))
+    } else {
+        Ok([dependent, other])
     }
 }
 

@@ -104,9 +104,10 @@ impl FaceTable {
         let mut boundary = None;
         let used = known.model.used_surfaces();
         for (index, (name, lines)) in (0..).zip(known.model.surfaces.iter()) {
-            let mut chosen = match known.sections.is_across(index as usize) {
-                true => Chosen::default(),
-                false => known.chosen(lines, &mut boundary, ignored)?,
+            let mut chosen = if known.sections.is_across(index as usize) {
+                Chosen::default()
+            } else {
+                known.chosen(lines, &mut boundary, ignored)?
             };
             if !used.contains(name) && !chosen.is_outside(known.raw, &mut boundary) {
                 let why = "the surface has faces between two elements, and no card that is read uses it";

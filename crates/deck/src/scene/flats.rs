@@ -30,31 +30,27 @@ pub(super) fn equations(known: Known, given: &Flat, room: &mut Room) -> Result<V
     };
     let [along, aside] = [b, c].map(|k| sub(places[k], places[a]));
     let normal = cross(along, aside);
-    let frame = match given.is_line {
-        true => SurfaceFrame::from_normal(along),
-        false => SurfaceFrame::from_normal(normal).filter(|_| off > TURNED),
+    let frame = if given.is_line {
+        SurfaceFrame::from_normal(along)
+    } else {
+        SurfaceFrame::from_normal(normal).filter(|_| off > TURNED)
     };
     let frame = frame.ok_or_else(|| {
         given
             .word
             .cannot("its nodes are in one place, or on a line, which is in many planes; name others, or take STRAIGHT")
     })?;
-    let (basis, across): (&[usize], &[Vec3]) = match given.is_line {
-        true => (&[a, b], &frame.tangents),
-        false => (&[a, b, c], &[frame.normal]),
-    };
+    let (basis, across): (&[usize], &[Vec3]) =
+        if given.is_line { (&[a, b], &frame.tangents) } else { (&[a, b, c], &[frame.normal]) };
     // the shares of the basis at a place
     let shares = |place: Vec3| {
         let arm = sub(place, places[a]);
-        match given.is_line {
-            true => {
-                let t = dot(arm, along) / dot(along, along);
-                [1.0 - t, t, 0.0]
-            }
-            false => {
-                let [u, v] = [cross(arm, aside), cross(along, arm)].map(|x| dot(normal, x) / dot(normal, normal));
-                [1.0 - u - v, u, v]
-            }
+        if given.is_line {
+            let t = dot(arm, along) / dot(along, along);
+            [1.0 - t, t, 0.0]
+        } else {
+            let [u, v] = [cross(arm, aside), cross(along, arm)].map(|x| dot(normal, x) / dot(normal, normal));
+            [1.0 - u - v, u, v]
         }
     };
     room.take(4 * nodes.len() * across.len(), &given.word)?;
@@ -76,8 +72,9 @@ pub(super) fn equations(known: Known, given: &Flat, room: &mut Room) -> Result<V
             out.push((Equation::new(terms), given.word.clone()));
         }
     }
-    match out.is_empty() {
-        true => Err((given.word).cannot("so few nodes are in one plane, or on one line, wherever they are; name more")),
-        false => Ok(out),
+    if out.is_empty() {
+        Err((given.word).cannot("so few nodes are in one plane, or on one line, wherever they are; name more"))
+    } else {
+        Ok(out)
     }
 }

@@ -249,11 +249,7 @@ enum Law<'a> {
 
 impl Law<'_> {
     fn to(from: f64, to: f64, ramp: bool) -> Self {
-        if ramp && from != to {
-            Self::Line(from, to)
-        } else {
-            Self::Constant(to)
-        }
+        if ramp && from != to { Self::Line(from, to) } else { Self::Constant(to) }
     }
 
     fn at(&self, span: &Span, time: f64) -> f64 {

@@ -253,11 +253,12 @@ impl Raw {
     /// Refuses a node with two displacements.
     pub(super) fn single(&self, node: u32, word: &Word) -> Result<(), DeckError> {
         let label = self.node_labels[node as usize];
-        match self.copies.contains_key(&node) {
-            false => Ok(()),
-            true => Err(word.cannot(format!(
+        if self.copies.contains_key(&node) {
+            Err(word.cannot(format!(
                 "node {label} lies where a *PRE-TENSION SECTION cuts the body, and has two displacements; name another one"
-            ))),
+            )))
+        } else {
+            Ok(())
         }
     }
 

@@ -95,12 +95,10 @@ impl Faces {
                 }
             }
         }
-        match found < self.own.len() {
-            true => {
-                Err(word
-                    .cannot("a face of the section is on the boundary; give faces between elements, across the bolt"))
-            }
-            false => Ok(sides),
+        if found < self.own.len() {
+            Err(word.cannot("a face of the section is on the boundary; give faces between elements, across the bolt"))
+        } else {
+            Ok(sides)
         }
     }
 
@@ -109,12 +107,13 @@ impl Faces {
         let frame = SurfaceFrame::from_normal(normal.unwrap_or(self.area_vector));
         let why = "the section has no normal; give one below *PRE-TENSION SECTION";
         let axis = frame.ok_or_else(|| word.cannot(why))?.normal;
-        match dot(axis, self.area_vector).abs() < ALONG_SECTION * self.area {
-            true => Err(word.cannot(
+        if dot(axis, self.area_vector).abs() < ALONG_SECTION * self.area {
+            Err(word.cannot(
                 "the normal lies in the section, or its faces look to both sides, so that it would not be tightened; \
                 give one across it, and faces of one side",
-            )),
-            false => Ok(axis),
+            ))
+        } else {
+            Ok(axis)
         }
     }
 }
@@ -195,9 +194,10 @@ impl Sections {
 
     /// Refuses one where a surface at the boundary is meant.
     pub(super) fn check_outside(&self, surface: usize, word: &Word) -> Result<(), DeckError> {
-        match self.is_across(surface) {
-            true => Err(word.cannot("this is a *PRE-TENSION SECTION, inside the body; name a surface at the boundary")),
-            false => Ok(()),
+        if self.is_across(surface) {
+            Err(word.cannot("this is a *PRE-TENSION SECTION, inside the body; name a surface at the boundary"))
+        } else {
+            Ok(())
         }
     }
 

@@ -360,11 +360,7 @@ pub(super) fn obstacle(
     }
     let lead = leads[body as usize].as_ref().map_err(FreeLead::refused)?;
     let motion = lead.motion(timeline)?;
-    let plane = if motion.turn.is_none() {
-        plane(faces, over)
-    } else {
-        None
-    };
+    let plane = if motion.turn.is_none() { plane(faces, over) } else { None };
     let mut contact = match plane {
         Some([point, normal]) => Contact::half_space(tag, point, normal),
         None => {

@@ -36,9 +36,10 @@ pub(super) fn coupled_nodes(
             *nodes.entry(node).or_default() += part;
         }
     }
-    match nodes.is_empty() {
-        true => Err((coupling.word).cannot("the surface has no elastic faces; couple one of a body")),
-        false => Ok(nodes),
+    if nodes.is_empty() {
+        Err((coupling.word).cannot("the surface has no elastic faces; couple one of a body"))
+    } else {
+        Ok(nodes)
     }
 }
 
@@ -70,10 +71,7 @@ impl Spread {
     /// Forces at nodes of a component of the load, 0 to 2 of the force and 3 to 5 of the moment.
     pub(super) fn forces(&self, component: usize, value: f64) -> impl Iterator<Item = (u32, Vec3)> {
         let unit = [0, 1, 2].map(|c| if c == component % 3 { value } else { 0.0 });
-        let (force, moment) = match component < 3 {
-            true => (unit, cross(self.arm, unit)),
-            false => ([0.0; 3], unit),
-        };
+        let (force, moment) = if component < 3 { (unit, cross(self.arm, unit)) } else { ([0.0; 3], unit) };
         let spin: Vec3 = (self.inverse * Vector3::from(moment)).into();
         let at = move |&(node, part, arm): &(u32, f64, Vec3)| (node, scale(part, add(force, cross(spin, arm))));
         self.nodes.iter().map(at)

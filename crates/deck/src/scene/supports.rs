@@ -366,9 +366,10 @@ impl Table {
             about: known.model.nodes[leads.0 as usize].point,
             word: word.clone(),
         };
-        let motion = match lead.turns_apart(known.timeline)? {
-            true => return self.coupling(known, nodes, leads, word).map(Some),
-            false => lead.turning(known.timeline)?,
+        let motion = if lead.turns_apart(known.timeline)? {
+            return self.coupling(known, nodes, leads, word).map(Some);
+        } else {
+            lead.turning(known.timeline)?
         };
         for node in nodes {
             let label = known.raw.node_labels[node as usize];

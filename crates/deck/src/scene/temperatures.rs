@@ -63,11 +63,8 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
                 let Some(node) = raw.in_mesh(node) else { continue };
                 let initial = first[node as usize];
                 // an amplitude multiplies the temperature, not its rise
-                let (value, base) = if absolute {
-                    (line.given.value, initial)
-                } else {
-                    (line.given.value - initial, 0.0)
-                };
+                let (value, base) =
+                    if absolute { (line.given.value, initial) } else { (line.given.value - initial, 0.0) };
                 let track = tracks
                     .entry(node)
                     .or_insert_with(|| Track::new(order, &line.word).above(base));

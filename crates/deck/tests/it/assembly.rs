@@ -231,11 +231,7 @@ fn reference_nodes_of_the_assembly_are_named() {
         "*COUPLING, REF NODE=1, SURFACE=S",
     ] {
         let lines = format!("{own}{line}\n*KINEMATIC\n");
-        let word = if line.contains("ROT") {
-            "ROT NODE=1"
-        } else {
-            "REF NODE=1"
-        };
+        let word = if line.contains("ROT") { "ROT NODE=1" } else { "REF NODE=1" };
         refused(&pair("", &lines), line, word, "name it by a set");
     }
     let lines = format!("{own}*COUPLING, REF NODE=R, SURFACE=S\n*KINEMATIC\n");
@@ -283,11 +279,7 @@ fn what_is_refused() {
     wrong("*PART, NAME=D\n", "*PART, NAME=D", "*PART", "has not ended");
     wrong("*END INSTANCE\n", "*END INSTANCE", "*END INSTANCE", "remove it");
     for line in ["*END PART", "*END ASSEMBLY", "*INSTANCE, NAME=B, PART=CUBE"] {
-        let part = if line.starts_with("*I") {
-            "put *ASSEMBLY before it"
-        } else {
-            "remove it"
-        };
+        let part = if line.starts_with("*I") { "put *ASSEMBLY before it" } else { "remove it" };
         refused(
             &format!("{line}\n"),
             line,

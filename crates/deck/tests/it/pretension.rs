@@ -11,11 +11,7 @@ use crate::write::{STEEL, mesh, read};
 /// A bar of 40 mm, held at both ends and cut in the middle.
 fn bar(order: usize) -> TetMesh {
     let brick = Brick::new([40.0, 10.0, 10.0], [8, 2, 2]).build().expect("a brick");
-    if order == 2 {
-        brick.raise_order().expect("quadratic")
-    } else {
-        brick
-    }
+    if order == 2 { brick.raise_order().expect("quadratic") } else { brick }
 }
 
 /// The section of the elements on its left, whose node has no place in the mesh.

@@ -8,11 +8,7 @@ use crate::write::{STEEL, cube, mesh, read};
 
 fn bar(order: usize) -> TetMesh {
     let linear = Brick::new([2.0, 1.0, 1.0], [2, 1, 1]).build().expect("a brick");
-    if order == 2 {
-        linear.raise_order().expect("mid-nodes")
-    } else {
-        linear
-    }
+    if order == 2 { linear.raise_order().expect("mid-nodes") } else { linear }
 }
 
 /// A bar with steps of some increments each.

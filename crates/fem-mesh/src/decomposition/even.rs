@@ -58,10 +58,7 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     let boxes: Vec<bool> = (0..members.count())
         .map(|group| plain.is_box(members.of(group)))
         .collect();
-    let (grading, shares) = match boxes.contains(&true) {
-        true => shares(mesh),
-        false => ([1.0; 3], [const { None }; 3]),
-    };
+    let (grading, shares) = if boxes.contains(&true) { shares(mesh) } else { ([1.0; 3], [const { None }; 3]) };
     let graded = Some(cutter(shares)).filter(|cutter| cutter.shares.iter().any(Option::is_some));
     let bulk = match count {
         PartCount::Exactly(_) => Vec::new(),
@@ -175,11 +172,7 @@ impl Cutter<'_> {
         let bend = if width < ROUND * longest { STRAP_BEND } else { ROD_BEND };
         let is_rod = volume < bend * longest * thickness.powi(2);
         let times = volume / thickness.powi(3);
-        let least = if self.mesh.order() == 2 {
-            ROD_QUADRATIC
-        } else {
-            ROD_TETS
-        };
+        let least = if self.mesh.order() == 2 { ROD_QUADRATIC } else { ROD_TETS };
         if is_rod && times > ROD {
             ((times / 2.0) as usize).min(tets.len() / least).max(1)
         } else {

@@ -161,11 +161,7 @@ pub fn tet_forces(
 }
 
 fn finite(place: [f64; 3], value: [f64; 3]) -> Result<[f64; 3], LoadError> {
-    if is_finite(value) {
-        Ok(value)
-    } else {
-        Err(LoadError::NotFinite { place, value })
-    }
+    if is_finite(value) { Ok(value) } else { Err(LoadError::NotFinite { place, value }) }
 }
 
 pub(super) fn accumulate<const N: usize>(vector: &mut [f64], nodes: &[u32; N], forces: [[f64; 3]; N]) {

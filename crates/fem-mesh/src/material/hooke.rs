@@ -156,11 +156,7 @@ impl Hooke {
         let of = |row: usize, column: usize| {
             let ([i, j], [p, q]) = (PAIRS[row], PAIRS[column]);
             let (a, b) = (axes[i], axes[j]);
-            let part = if p == q {
-                a[p] * b[p]
-            } else {
-                0.5 * (a[p] * b[q] + a[q] * b[p])
-            };
+            let part = if p == q { a[p] * b[p] } else { 0.5 * (a[p] * b[q] + a[q] * b[p]) };
             if i == j { part } else { 2.0 * part }
         };
         let strain: [[f64; 6]; 6] = std::array::from_fn(|row| std::array::from_fn(|column| of(row, column)));

@@ -247,11 +247,8 @@ impl Brick {
                         let square = [corner(0, 0), corner(1, 0), corner(1, 1), corner(0, 1)];
                         let [n0, n1, n2, n3] = square.map(|(node, _)| node);
                         // The diagonal joins the two even corners, as in the tetrahedra.
-                        let halves = if square[0].1 {
-                            [[n0, n1, n2], [n0, n2, n3]]
-                        } else {
-                            [[n0, n1, n3], [n1, n2, n3]]
-                        };
+                        let halves =
+                            if square[0].1 { [[n0, n1, n2], [n0, n2, n3]] } else { [[n0, n1, n3], [n1, n2, n3]] };
                         facets.extend(halves.map(|nodes| Facet { nodes, tag }));
                     }
                 }

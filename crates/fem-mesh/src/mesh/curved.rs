@@ -96,11 +96,7 @@ pub fn facet_normals(points: &[Vec3; 6]) -> Option<[Vec3; 6]> {
     let middle = |a: usize, b: usize| std::array::from_fn(|i| if i == a || i == b { 0.5 } else { 0.0 });
     let corner = |a: usize| std::array::from_fn(|i| f64::from(u8::from(i == a)));
     let normals: [Vec3; 6] = std::array::from_fn(|k| {
-        let l = if k < 3 {
-            corner(k)
-        } else {
-            middle(FACET_EDGES[k - 3][0], FACET_EDGES[k - 3][1])
-        };
+        let l = if k < 3 { corner(k) } else { middle(FACET_EDGES[k - 3][0], FACET_EDGES[k - 3][1]) };
         unit(curved_facet(points, &l).1)
     });
     // not of a facet without a normal at a node

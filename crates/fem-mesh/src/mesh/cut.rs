@@ -138,10 +138,7 @@ impl TetMesh {
                 }
             }
             if found.values().any(|sides| *sides == [true; 2]) {
-                match may_end {
-                    true => continue,
-                    false => return Err(MeshError::CutEnds { node }),
-                }
+                if may_end { continue } else { return Err(MeshError::CutEnds { node }) }
             }
             let is_second = |k: &usize| found.get(&sets.first(*k)) == Some(&[false, true]);
             opened.insert(node, (0..tets.len()).filter(is_second).map(|k| tets[k]).collect());

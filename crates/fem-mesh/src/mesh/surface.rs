@@ -224,11 +224,7 @@ impl Surface {
         }
         let frame = |n: usize| {
             let clear = norm(normals[n]) > NO_NORMAL * 3.0 * areas[n];
-            let frame = if clear {
-                SurfaceFrame::from_normal(normals[n])
-            } else {
-                None
-            };
+            let frame = if clear { SurfaceFrame::from_normal(normals[n]) } else { None };
             frame.ok_or(SurfaceError::NoNormal { node: nodes[n] })
         };
         self.frames = (0..nodes.len()).map(frame).collect::<Result<_, _>>()?;

@@ -30,11 +30,7 @@ impl DiscretisationError {
     /// rest but for rounding it is noise over noise, about one: compare `energy` with a scale of your
     /// own.
     pub fn relative(&self) -> f64 {
-        if self.elastic_energy > 0.0 {
-            (self.energy / self.elastic_energy).sqrt()
-        } else {
-            0.0
-        }
+        if self.elastic_energy > 0.0 { (self.energy / self.elastic_energy).sqrt() } else { 0.0 }
     }
 
     /// The error stress of each tetrahedron in an energy norm, for pictures: the root of the error

@@ -11,11 +11,7 @@ type OwnCell = (CellShape, Vec<u32>);
 /// A box of `n` cells along each side, of hexahedra or each of them as two prisms, whose nodes are numbered as `number`
 /// says; `order` 2 has nodes on edges, 3 also in faces and in the middle.
 fn cells(n: [usize; 3], prisms: bool, order: usize, number: &[u32]) -> (Vec<[f64; 3]>, Vec<OwnCell>) {
-    let shape = if prisms {
-        CellShape::Prism
-    } else {
-        CellShape::Hexahedron
-    };
+    let shape = if prisms { CellShape::Prism } else { CellShape::Hexahedron };
     let places = grid::cells(shape, order, n);
     let mut used: Vec<usize> = places.iter().flatten().copied().collect();
     used.sort_unstable();

@@ -116,9 +116,12 @@ fn rods_fall_into_lengths_of_about_twice_their_thickness() {
 fn graded_bricks_fall_into_boxes_that_are_not_flat() {
     for grading in [1.5, 1.8, 2.2] {
         for cells in [[12, 4, 4], [18, 6, 6], [30, 10, 10]] {
-            let towards = |s: f64| match s < 0.5 {
-                true => 0.5 * (2.0 * s).powf(grading),
-                false => 1.0 - 0.5 * (2.0 - 2.0 * s).powf(grading),
+            let towards = |s: f64| {
+                if s < 0.5 {
+                    0.5 * (2.0 * s).powf(grading)
+                } else {
+                    1.0 - 0.5 * (2.0 - 2.0 * s).powf(grading)
+                }
             };
             let mesh = brick(cells);
             let mesh = mesh

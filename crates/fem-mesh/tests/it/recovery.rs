@@ -16,11 +16,7 @@ fn smooth(p: [f64; 3]) -> [f64; 3] {
 fn gradient(p: [f64; 3]) -> [[f64; 3]; 3] {
     let g: [f64; 3] = std::array::from_fn(|d| {
         let term = |k: usize| {
-            if k == d {
-                2.0 * (2.0 * p[k]).cos()
-            } else {
-                (2.0 * p[k]).sin()
-            }
+            if k == d { 2.0 * (2.0 * p[k]).cos() } else { (2.0 * p[k]).sin() }
         };
         (0..3).map(term).product()
     });
@@ -47,11 +43,7 @@ fn solve(mesh: &TetMesh) -> Vec<f64> {
         let a = [1.0, -1.0, 0.5];
         let (s, c) = (p.map(|x| (2.0 * x).sin()), p.map(|x| (2.0 * x).cos()));
         let second = |i: usize, j: usize| {
-            if i == j {
-                -4.0 * s[0] * s[1] * s[2]
-            } else {
-                4.0 * c[i] * c[j] * s[3 - i - j]
-            }
+            if i == j { -4.0 * s[0] * s[1] * s[2] } else { 4.0 * c[i] * c[j] * s[3 - i - j] }
         };
         std::array::from_fn(|i| {
             let div: f64 = (0..3).map(|j| a[j] * second(i, j)).sum();

@@ -59,10 +59,7 @@ impl<'a> Search<'a> {
                 terms().map(|(a, e)| a * e).sum::<f64>(),
                 (squares[0] * squares[1]).sqrt(),
             );
-            match m.row.is_empty() || work.abs() <= ROUNDED_WORK * size {
-                true => 0.0,
-                false => work,
-            }
+            if m.row.is_empty() || work.abs() <= ROUNDED_WORK * size { 0.0 } else { work }
         };
         let mut a = a.to_vec();
         let mut start: Vec<usize> = (0..a.len()).collect();
@@ -211,11 +208,7 @@ impl<'a> Search<'a> {
             Constrained::Disc { i, radius, .. } => {
                 let s = [s(i, 0), s(i, 1)];
                 let length = s[0].hypot(s[1]);
-                let n = if length > 0.0 {
-                    [s[0] / length, s[1] / length]
-                } else {
-                    [1.0, 0.0]
-                };
+                let n = if length > 0.0 { [s[0] / length, s[1] / length] } else { [1.0, 0.0] };
                 along.clear();
                 across.clear();
                 for (m, c) in &moved[i] {
@@ -255,11 +248,7 @@ impl<'a> Search<'a> {
                 let both = first[r].max(first[s])..s;
                 let known: f64 = both.map(|j| l[r * k + j] * l[s * k + j]).sum();
                 let value = l[r * k + s] - known;
-                l[r * k + s] = if r == s {
-                    value.max(SHIFT * largest).sqrt()
-                } else {
-                    value / l[s * k + s]
-                };
+                l[r * k + s] = if r == s { value.max(SHIFT * largest).sqrt() } else { value / l[s * k + s] };
             }
         }
         let mut step: Vec<f64> = self.gradient.iter().map(|g| -g).collect();

@@ -47,11 +47,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         let first = self.errors();
         let start = first.zip(goal.expected, f64::min);
         // further than that, steps that round move the equality more than the iterate
-        let digits = if self.projector.rounds_steps() {
-            ROUNDED_STEPS
-        } else {
-            0.0
-        };
+        let digits = if self.projector.rounds_steps() { ROUNDED_STEPS } else { 0.0 };
         let fallen = |from: Lengths| {
             from.zip(goal.limits, |from, limit| {
                 (goal.forcing * from).max(ENOUGH * limit).max(digits * first.all)
@@ -214,11 +210,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         }
         let mut ends = false;
         let towards = |p: f64, lower: f64, upper: f64| {
-            if p < 0.0 {
-                lower.is_finite()
-            } else {
-                p > 0.0 && upper.is_finite()
-            }
+            if p < 0.0 { lower.is_finite() } else { p > 0.0 && upper.is_finite() }
         };
         for_constrained(self.set, |block| {
             ends |= match block {

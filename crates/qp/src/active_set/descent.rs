@@ -85,11 +85,7 @@ impl DescentSafeguard {
             self.unblocked = error;
             return false;
         }
-        let enough = if self.exact {
-            error <= (RELEASE * self.unblocked).max(limit)
-        } else {
-            solved
-        };
+        let enough = if self.exact { error <= (RELEASE * self.unblocked).max(limit) } else { solved };
         enough && !self.stuck
     }
 

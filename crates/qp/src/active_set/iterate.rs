@@ -74,9 +74,10 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
 
     /// Notes the point whose product is known in `t`: `x`, or what it has left.
     pub(crate) fn mark(&mut self) {
-        match std::mem::take(&mut self.ahead) {
-            true => vector::axpby(1.0, self.x, -1.0, &mut self.work.t),
-            false => vector::copy(self.x, &mut self.work.t),
+        if std::mem::take(&mut self.ahead) {
+            vector::axpby(1.0, self.x, -1.0, &mut self.work.t)
+        } else {
+            vector::copy(self.x, &mut self.work.t)
         }
     }
 

@@ -140,11 +140,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
             self.moved.drifted = false;
         }
         if self.moved.jump > 0.0 || joint {
-            let length = if self.may_end(place) {
-                NEGLIGIBLE * place.limits.all
-            } else {
-                0.0
-            };
+            let length = if self.may_end(place) { NEGLIGIBLE * place.limits.all } else { 0.0 };
             self.moved.behind = !self.at.correct(length) && length > 0.0;
         }
     }

@@ -170,11 +170,7 @@ impl ActiveSet {
             let moved = if let Disc::Sliding { tau, .. } = self.discs[k] {
                 let slip = (g[1] * tau[0] - g[0] * tau[1]).max(0.0);
                 let length = at[0].hypot(at[1]);
-                let share = if length > 0.0 {
-                    (radius + a * slip) / length
-                } else {
-                    1.0
-                };
+                let share = if length > 0.0 { (radius + a * slip) / length } else { 1.0 };
                 [share * at[0], share * at[1]]
             } else {
                 let s = [at[0] - a * g[0], at[1] - a * g[1]];

@@ -383,11 +383,7 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         if self.progress.waited >= PATIENCE * LONGER {
             return Some(Status::Stagnated);
         }
-        let longer = if self.safeguard.is_some() || self.path.begun > 0 {
-            LONGER
-        } else {
-            1
-        };
+        let longer = if self.safeguard.is_some() || self.path.begun > 0 { LONGER } else { 1 };
         let most = settings.max_active_sets.saturating_mul(longer);
         let limit = report.active_sets >= most || report.products() >= settings.max_products;
         limit.then_some(Status::IterationLimit)
@@ -408,21 +404,20 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         let falls = place.errors.all < self.least_error;
         let expected = |left: f64| MAGNIFIED * (self.moved.jump + left);
         // behind a path a set that is hardly solved may lead away again
-        let forcing = match near_path && at.compliance.c == 0.0 && self.progress.waited > 0 {
-            true => self.settings.forcing.min(BEHIND_PATH),
-            false => self.settings.forcing,
+        let forcing = if near_path && at.compliance.c == 0.0 && self.progress.waited > 0 {
+            self.settings.forcing.min(BEHIND_PATH)
+        } else {
+            self.settings.forcing
         };
         // a set that a start tells is worth solving
-        let forcing = match self.told && self.progress.waited == 0 {
-            true => forcing.min(TOLD),
-            false => forcing,
-        };
+        let forcing = if self.told && self.progress.waited == 0 { forcing.min(TOLD) } else { forcing };
         let goal = Goal {
             forcing: (at.work.coupling).forcing(forcing, self.moved.jump, self.first_error),
             // of an error in other blocks than before the last move tells nothing
-            expected: match settled {
-                true => self.left.zip(self.left, |left, _| expected(left)),
-                false => Lengths::INFINITE,
+            expected: if settled {
+                self.left.zip(self.left, |left, _| expected(left))
+            } else {
+                Lengths::INFINITE
             },
             limits: place.limits,
             max_products: self.settings.max_products,
@@ -433,11 +428,7 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         self.least_error = self.least_error.min(place.errors.all);
         let matters = place.limits.constrained > PASSING_PART * place.limits.all;
         let passes = steady && falls && matters && at.is_on_the_way();
-        let length = if passes {
-            at.pass()
-        } else {
-            at.conjugate_gradients(place.rho, &goal)?
-        };
+        let length = if passes { at.pass() } else { at.conjugate_gradients(place.rho, &goal)? };
         self.moved.drifted = at.projector.rounds_steps();
         self.left = at.errors();
         at.report.active_sets += 1;

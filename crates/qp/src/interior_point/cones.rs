@@ -58,9 +58,10 @@ impl Along {
         }
         // the smallest positive root, without cancellation
         let sum = half.abs() + square.sqrt();
-        let roots = match half <= 0.0 {
-            true => [self.q / sum, sum / self.bend],
-            false => [-sum / self.bend, -self.q / sum],
+        let roots = if half <= 0.0 {
+            [self.q / sum, sum / self.bend]
+        } else {
+            [-sum / self.bend, -self.q / sum]
         };
         roots.into_iter().filter(|s| *s > 0.0).fold(f64::INFINITY, f64::min)
     }

@@ -280,9 +280,10 @@ impl Run<'_> {
             let solved = self.residual_work() <= SOLVED * size;
             small = if solved && tau <= target * size { small + 1 } else { 0 };
             // without inequalities one step is all
-            let enough = match self.cones.all.is_empty() {
-                true => solved && steps > 0,
-                false => self.unchanged >= SETTLED_STEPS && small > 0 || small >= MORE_STEPS,
+            let enough = if self.cones.all.is_empty() {
+                solved && steps > 0
+            } else {
+                self.unchanged >= SETTLED_STEPS && small > 0 || small >= MORE_STEPS
             };
             if enough {
                 break Status::Converged;
@@ -292,11 +293,7 @@ impl Run<'_> {
             stuck = if falls { 0 } else { stuck + 1 };
             if stuck >= STUCK || !tau.is_finite() || !self.cones.holds(self.x) {
                 // rounding ends it, too
-                break if solved && tau <= ROUGH * size {
-                    Status::Converged
-                } else {
-                    Status::Stagnated
-                };
+                break if solved && tau <= ROUGH * size { Status::Converged } else { Status::Stagnated };
             }
             if steps >= INTERIOR_STEPS {
                 break Status::IterationLimit;

@@ -130,10 +130,6 @@ impl<A: SymmetricOperator, C: Equality> Objective for Penalised<'_, A, C> {
     fn tolerance(&self) -> f64 {
         let equality = self.equality();
         let t = (self.precision * equality).min(self.cap);
-        if equality <= self.equality_tolerance {
-            t.max(self.floor)
-        } else {
-            t
-        }
+        if equality <= self.equality_tolerance { t.max(self.floor) } else { t }
     }
 }

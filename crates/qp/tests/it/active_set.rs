@@ -237,9 +237,10 @@ fn a_scale_that_is_not_positive_is_refused() {
         let (set, point) = (MovingSet::fixed(&mut set), ActiveSetPoint { x, ax, known });
         let found = active_set(&problem, &mut projector, set, point, &settings, &mut work);
         let what = "the scale";
-        let expected = match bad.is_finite() {
-            true => QpError::Scale { entry: 1, value: bad },
-            false => QpError::Input { what, entry: 1 },
+        let expected = if bad.is_finite() {
+            QpError::Scale { entry: 1, value: bad }
+        } else {
+            QpError::Input { what, entry: 1 }
         };
         assert_eq!(found.err(), Some(expected));
     }

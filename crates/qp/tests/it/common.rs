@@ -98,13 +98,7 @@ pub(crate) fn set(r: &mut Random) -> ProductSet {
             }
             _ => Segment::discs(
                 (0..n)
-                    .map(|_| {
-                        if r.below(4) == 0 {
-                            0.0
-                        } else {
-                            10f64.powf(2.0 * r.real() - 1.5)
-                        }
-                    })
+                    .map(|_| if r.below(4) == 0 { 0.0 } else { 10f64.powf(2.0 * r.real() - 1.5) })
                     .collect(),
             ),
         });

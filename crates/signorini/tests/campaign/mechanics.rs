@@ -423,11 +423,7 @@ fn sides(recipe: &Recipe, points: &[Vec3]) -> Vec<Side> {
         Side {
             tag: facet.tag,
             nodes: facet.nodes,
-            loaded: if quadratic {
-                recipe.mesh.facet_mids(k)
-            } else {
-                facet.nodes
-            },
+            loaded: if quadratic { recipe.mesh.facet_mids(k) } else { facet.nodes },
             mids: quadratic.then(|| recipe.mesh.facet_mids(k)),
             vector: scale(sign, vector),
         }

@@ -254,11 +254,7 @@ impl fmt::Display for Tally {
             }
             let mut by: BTreeMap<String, usize> = BTreeMap::new();
             for (_, level) in self.levels().filter(|(e, _)| e.default == default) {
-                let after = if level.inherited {
-                    ", after one that is not solved"
-                } else {
-                    ""
-                };
+                let after = if level.inherited { ", after one that is not solved" } else { "" };
                 *by.entry(format!("{}{after}", level.status)).or_default() += 1;
             }
             for (status, count) in by {

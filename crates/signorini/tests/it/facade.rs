@@ -33,11 +33,7 @@ impl Observer for Diary {
     fn step(&mut self, frame: &StepResult) -> Flow {
         assert!(frame.certificate().largest() <= 1e-6);
         self.times.push(frame.time());
-        if self.stop_after == Some(self.times.len()) {
-            Flow::Stop
-        } else {
-            Flow::Continue
-        }
+        if self.stop_after == Some(self.times.len()) { Flow::Stop } else { Flow::Continue }
     }
 
     fn finished(&mut self, levels: usize) {
@@ -84,11 +80,7 @@ fn an_observer_that_fails_ends_the_run_with_its_error() -> Result<(), Error> {
     let mut room = 1;
     let outcome = simulation.run(&mut |_: &StepResult| {
         room -= 1;
-        Flow::from(if room < 0 {
-            Err(std::io::Error::other("the disk is full"))
-        } else {
-            Ok(())
-        })
+        Flow::from(if room < 0 { Err(std::io::Error::other("the disk is full")) } else { Ok(()) })
     });
     let Err(error @ ContactError::Observer { step: 1, .. }) = outcome else {
         panic!("an error is expected, not {outcome:?}");

@@ -22,11 +22,7 @@ impl Shared {
             Self::One(a) => Self::Line([a, p]),
             Self::Line([a, b]) => {
                 let [u, v] = [b, p].map(|q| sub(q, a));
-                if norm(cross(u, v)) > ANGLE * norm(u) * norm(v) {
-                    Self::Rigid
-                } else {
-                    self
-                }
+                if norm(cross(u, v)) > ANGLE * norm(u) * norm(v) { Self::Rigid } else { self }
             }
             Self::Rigid => self,
         }

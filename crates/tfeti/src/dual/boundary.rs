@@ -163,12 +163,15 @@ impl BoundaryMap {
     fn collect(&self, y: &[f64], out: &mut [f64]) {
         let (contact, rest) = out.split_at_mut(self.interface.start);
         let (interface, dirichlet) = rest.split_at_mut(self.interface.len());
-        let blocks = || match self.is_large() {
-            false => self.collect_blocks(y, 0, interface),
-            true => interface
-                .par_chunks_mut(3 * BLOCKS)
-                .enumerate()
-                .for_each(|(k, part)| self.collect_blocks(y, k * BLOCKS, part)),
+        let blocks = || {
+            if self.is_large() {
+                interface
+                    .par_chunks_mut(3 * BLOCKS)
+                    .enumerate()
+                    .for_each(|(k, part)| self.collect_blocks(y, k * BLOCKS, part))
+            } else {
+                self.collect_blocks(y, 0, interface)
+            }
         };
         let others = || {
             self.collect_rows(y, 0, contact);
@@ -217,11 +220,7 @@ impl BoundaryMap {
         if self.interface.contains(&rows.start) {
             self.collect_blocks(y, (rows.start - self.interface.start) / 3, out);
         } else {
-            let before = if rows.start < self.interface.start {
-                0
-            } else {
-                self.interface.len()
-            };
+            let before = if rows.start < self.interface.start { 0 } else { self.interface.len() };
             self.collect_rows(y, rows.start - before, out);
         }
     }

@@ -58,11 +58,7 @@ impl RowGroups {
         let mut key: Vec<u32> = subdomains.collect();
         key.sort_unstable();
         key.dedup();
-        let groups = if is_contact {
-            &mut self.contact
-        } else {
-            &mut self.others
-        };
+        let groups = if is_contact { &mut self.contact } else { &mut self.others };
         *groups.entry(key).or_default() += rows;
     }
 
@@ -102,11 +98,7 @@ impl RowGroups {
             rows.extend(near.iter().map(|k| *k as usize).filter(|k| *k < others));
             pointers.push(rows.len());
         }
-        let order = if others > 0 {
-            minimum_degree(&pointers, &rows).ok()?
-        } else {
-            Vec::new()
-        };
+        let order = if others > 0 { minimum_degree(&pointers, &rows).ok()? } else { Vec::new() };
         let order: Vec<u32> = order
             .into_iter()
             .chain(others..groups.len())

@@ -93,9 +93,10 @@ mod tests {
     fn run<S: Simd, X: Unknown>(simd: S, forward: bool, tiles: &[Tile], t: &mut [X]) {
         const UNIT: usize = 6;
         let (count, work) = (PANEL, (tiles, t));
-        match forward {
-            true => panel!(X::eliminate, simd, count, UNIT, work),
-            false => panel!(X::substitute, simd, count, UNIT, work),
+        if forward {
+            panel!(X::eliminate, simd, count, UNIT, work)
+        } else {
+            panel!(X::substitute, simd, count, UNIT, work)
         }
     }
 

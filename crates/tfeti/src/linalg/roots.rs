@@ -37,11 +37,7 @@ impl Supernodes {
                         let i = if before { count - 1 - k } else { k };
                         let known: f64 = (0..i).map(|j| w[i][j] * own[j * lanes + lane]).sum();
                         let value = &mut own[i * lanes + lane];
-                        *value = if before {
-                            w[i][i] * *value + known
-                        } else {
-                            (*value - known) / w[i][i]
-                        };
+                        *value = if before { w[i][i] * *value + known } else { (*value - known) / w[i][i] };
                     }
                 }
             }

@@ -93,22 +93,14 @@ pub(crate) fn copy<X: Copy, const U: usize>(from: &[X], to: &mut [X]) {
 #[inline(always)]
 pub(crate) fn unit<'a, X, const U: usize>(x: &'a [X], behind: &'a [X], row: u32) -> &'a [X] {
     let (row, first) = (row as usize, x.len() / U);
-    if row < first {
-        &x[U * row..][..U]
-    } else {
-        &behind[U * (row - first)..][..U]
-    }
+    if row < first { &x[U * row..][..U] } else { &behind[U * (row - first)..][..U] }
 }
 
 /// Adds to the unit of rows `row`.
 #[inline(always)]
 pub(crate) fn add_unit<X: Unknown, const U: usize>(x: &mut [X], behind: &mut [X], row: u32, sum: &[X]) {
     let (row, first) = (row as usize, x.len() / U);
-    let target = if row < first {
-        &mut x[U * row..][..U]
-    } else {
-        &mut behind[U * (row - first)..][..U]
-    };
+    let target = if row < first { &mut x[U * row..][..U] } else { &mut behind[U * (row - first)..][..U] };
     for k in 0..U {
         target[k].add(&sum[k]);
     }

@@ -216,11 +216,7 @@ impl Scaling {
         if let (Some(joined), Some(s)) = (&self.joined, &mut s.joined) {
             joined.solve(x, y, s);
         }
-        let inverses = if s.groups.is_empty() {
-            self.groups.inverses.items()
-        } else {
-            &s.groups
-        };
+        let inverses = if s.groups.is_empty() { self.groups.inverses.items() } else { &s.groups };
         self.groups.for_each(inverses, |rows, inverse| {
             for (column, &target) in inverse.chunks_exact(rows.len()).zip(rows) {
                 let products = column.iter().zip(rows);

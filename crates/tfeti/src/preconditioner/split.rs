@@ -99,9 +99,10 @@ impl ClassRows {
         for nodal in 0..gluing.nodal_rows() {
             for e in gluing.nodal(nodal) {
                 let (class, node) = place(e.subdomain, e.local);
-                match nodal < contact {
-                    true => out[class].contact.push((nodal, node, e.vector)),
-                    false => out[class].always[node].touch(e.vector),
+                if nodal < contact {
+                    out[class].contact.push((nodal, node, e.vector))
+                } else {
+                    out[class].always[node].touch(e.vector)
                 }
             }
         }

@@ -283,9 +283,10 @@ impl EqualityProjector for ActiveSetProjector {
         for line in &mut weights.lines {
             line.weight *= metric(line.row);
         }
-        let factor = match fixed {
-            true => self.parts.factor(&self.coarse, weights, self.spare.take()),
-            false => self.coarse.factor_weighted(weights),
+        let factor = if fixed {
+            self.parts.factor(&self.coarse, weights, self.spare.take())
+        } else {
+            self.coarse.factor_weighted(weights)
         };
         let motion = |error: TfetiError| QpError::CoarseDeficient {
             motion: error.to_string(),
@@ -361,9 +362,10 @@ impl EqualityProjector for ActiveSetProjector {
     }
 
     fn repair_step(&mut self, x: &mut [f64], e: &[f64]) {
-        match self.rounds_levels() {
-            true => self.step(|space| space.repair(x, e)),
-            false => self.repair(x, e),
+        if self.rounds_levels() {
+            self.step(|space| space.repair(x, e))
+        } else {
+            self.repair(x, e)
         }
     }
 

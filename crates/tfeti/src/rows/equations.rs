@@ -321,13 +321,14 @@ impl Left {
         let agrees = |(case, value): &(u32, f64)| {
             value.abs() <= (AGREEING * self.value_size).max(self.size * supports.off(*case))
         };
-        match self.values.iter().all(agrees) {
-            true => Ok(()),
-            false => Err(self.refused(
+        if self.values.iter().all(agrees) {
+            Ok(())
+        } else {
+            Err(self.refused(
                 equation,
                 "it contradicts what supports and other equations say of its nodes; correct its value or the history of \
                 that, or leave it out",
-            )),
+            ))
         }
     }
 }

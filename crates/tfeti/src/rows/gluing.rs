@@ -301,11 +301,7 @@ impl Gluing {
     }
 
     fn nodal_of(&self, row: usize) -> usize {
-        if row < self.ranges.interface.start {
-            row
-        } else {
-            row - self.ranges.interface.len()
-        }
+        if row < self.ranges.interface.start { row } else { row - self.ranges.interface.len() }
     }
 }
 

@@ -64,13 +64,14 @@ impl Motion {
         if found != 1 && found != nodes {
             return Err(TfetiError::MotionLength { support, found, nodes });
         }
-        match (case as usize) < supports {
-            true => Ok(()),
-            false => Err(TfetiError::CaseNumber {
+        if (case as usize) < supports {
+            Ok(())
+        } else {
+            Err(TfetiError::CaseNumber {
                 support,
                 case,
                 supports,
-            }),
+            })
         }
     }
 
@@ -232,13 +233,14 @@ pub fn prescribed_directions(supports: &[NodeSupport], nodes: usize) -> Result<V
 }
 
 pub(super) fn check_node(node: u32, nodes: usize, place: impl FnOnce() -> String) -> Result<(), TfetiError> {
-    match (node as usize) < nodes {
-        true => Ok(()),
-        false => Err(TfetiError::UnknownNode {
+    if (node as usize) < nodes {
+        Ok(())
+    } else {
+        Err(TfetiError::UnknownNode {
             place: place(),
             node,
             nodes,
-        }),
+        })
     }
 }
 
@@ -279,11 +281,7 @@ impl MergedSupports {
                     ..FixedNode::default()
                 };
                 let entry = fixed.entry(node).or_insert_with(new);
-                let directions = if of_nodes.len() == 1 {
-                    &of_nodes[0]
-                } else {
-                    &of_nodes[k]
-                };
+                let directions = if of_nodes.len() == 1 { &of_nodes[0] } else { &of_nodes[k] };
                 for direction in directions {
                     add_direction(entry, s, *direction, &motions)?;
                 }

@@ -69,9 +69,10 @@ pub struct ClassReport {
 impl ClassReport {
     /// Operations of a product with one member.
     pub(crate) fn flops(&self) -> f64 {
-        match self.dense {
-            true => 2.0 * (self.boundary * self.boundary) as f64,
-            false => 4.0 * (self.bytes / 8) as f64,
+        if self.dense {
+            2.0 * (self.boundary * self.boundary) as f64
+        } else {
+            4.0 * (self.bytes / 8) as f64
         }
     }
 }
@@ -92,10 +93,7 @@ pub(crate) struct Size {
 impl Size {
     /// From the nodes that `B` touches and the numbers of the factor; a rigid class has no matrices.
     pub(crate) fn new(class: &Class, nodes: usize, factor: usize) -> Self {
-        let [dim, boundary, factor] = match class.is_rigid {
-            true => [0; 3],
-            false => [3 * class.nodes, 3 * nodes, factor],
-        };
+        let [dim, boundary, factor] = if class.is_rigid { [0; 3] } else { [3 * class.nodes, 3 * nodes, factor] };
         Self {
             dim,
             boundary,
@@ -186,10 +184,7 @@ pub(crate) fn choose(sizes: &[Size], settings: &InverseSettings) -> Result<Vec<b
             needed -= boundary(&sizes[k]);
         }
     }
-    match needed > limit {
-        true => Err(TfetiError::Memory { needed, limit }),
-        false => Ok(dense),
-    }
+    if needed > limit { Err(TfetiError::Memory { needed, limit }) } else { Ok(dense) }
 }
 
 #[cfg(test)]

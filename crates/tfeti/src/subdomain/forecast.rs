@@ -67,9 +67,10 @@ impl<'a> Forecast<'a> {
         let analysed = list.par_iter().map(|class| {
             let s = class.members[0] as usize;
             let subdomain = &subdomains[s];
-            let pattern = match subdomain.mids.is_empty() {
-                true => nodal_pattern(class.nodes, &subdomain.tets),
-                false => nodal_pattern(class.nodes, &subdomain.quadratic_tets()),
+            let pattern = if subdomain.mids.is_empty() {
+                nodal_pattern(class.nodes, &subdomain.tets)
+            } else {
+                nodal_pattern(class.nodes, &subdomain.quadratic_tets())
             };
             let symbolic = Symbolic::new(&pattern, 3).map_err(|e| TfetiError::pattern(e, s))?;
             Ok::<_, TfetiError>((pattern, symbolic))
@@ -147,11 +148,7 @@ impl<'a> Forecast<'a> {
     pub fn setup_flops(&self) -> f64 {
         // solves with few columns run at less than half the speed of dense products
         let of = |c: &ClassReport| {
-            let (square, columns) = if c.dense {
-                (c.boundary.pow(2), c.boundary)
-            } else {
-                (0, 0)
-            };
+            let (square, columns) = if c.dense { (c.boundary.pow(2), c.boundary) } else { (0, 0) };
             let factor = c.bytes as f64 / 8.0 - square as f64;
             factor * factor / c.unknowns.max(1) as f64 + 10.0 * factor * columns as f64
         };

@@ -168,11 +168,7 @@ fn anchors(kernel: &Kernel) -> [usize; 3] {
 
 fn unit(v: [f64; 3]) -> [f64; 3] {
     let length = norm(v);
-    if length > 0.0 {
-        v.map(|c| c / length)
-    } else {
-        [1.0, 0.0, 0.0]
-    }
+    if length > 0.0 { v.map(|c| c / length) } else { [1.0, 0.0, 0.0] }
 }
 
 /// `K` plus springs of mean stiffness that stop the six rigid motions and nothing else.

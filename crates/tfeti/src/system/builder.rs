@@ -140,9 +140,12 @@ impl<'a> TfetiBuilder<'a> {
     /// singular beyond the rigid motions, not enough memory, a process lost.
     pub fn build(self) -> Result<Tfeti, TfetiError> {
         let (mesh, decomposition) = (self.mesh, self.decomposition);
-        let check = |what, found, expected| match found == expected {
-            true => Ok(()),
-            false => Err(TfetiError::DecompositionMismatch { what, found, expected }),
+        let check = |what, found, expected| {
+            if found == expected {
+                Ok(())
+            } else {
+                Err(TfetiError::DecompositionMismatch { what, found, expected })
+            }
         };
         check("nodes", decomposition.nodes(), mesh.points().len())?;
         check("elements", decomposition.parts().len(), mesh.tets().len())?;

@@ -193,11 +193,7 @@ impl Tfeti {
         let most = weights.iter().fold(0.0_f64, |m, w| m.max(*w));
         for (row, weight) in weights.iter_mut().enumerate() {
             let own = bodies(row).map(|body| largest[body]).fold(most, f64::min);
-            *weight = if *weight > 0.0 {
-                *weight / most.min(own / SOFT_BODY)
-            } else {
-                1.0
-            };
+            *weight = if *weight > 0.0 { *weight / most.min(own / SOFT_BODY) } else { 1.0 };
         }
     }
 

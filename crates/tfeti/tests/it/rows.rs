@@ -76,11 +76,7 @@ fn pairs_of_nodes_act_on_the_relative_displacement() {
     assert!((info.scale - (1.0 / ka + 1.0 / ko).sqrt().recip()).abs() < 1e-14);
     let displacement = |s: usize, dof: usize| {
         let node = b.decomposition.subdomains()[s].nodes[dof / 3];
-        if node == a {
-            [1.0, 2.0, 3.0][dof % 3]
-        } else {
-            [-4.0, 0.5, 1.0][dof % 3]
-        }
+        if node == a { [1.0, 2.0, 3.0][dof % 3] } else { [-4.0, 0.5, 1.0][dof % 3] }
     };
     let action: f64 = g
         .row(info.row)

@@ -221,9 +221,6 @@ impl Tags {
     }
 
     fn of(&self, entity: i32) -> Option<u32> {
-        match self.are_groups() {
-            true => self.0.get(&entity).copied(),
-            false => Some(entity.unsigned_abs()),
-        }
+        if self.are_groups() { self.0.get(&entity).copied() } else { Some(entity.unsigned_abs()) }
     }
 }

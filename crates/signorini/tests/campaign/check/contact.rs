@@ -166,11 +166,7 @@ impl Judge<'_> {
     }
 
     fn carried_before(&self, touch: &Touch) -> Vec3 {
-        if self.before == 0.0 {
-            [0.0; 3]
-        } else {
-            touch.carried(self.before)
-        }
+        if self.before == 0.0 { [0.0; 3] } else { touch.carried(self.before) }
     }
 }
 

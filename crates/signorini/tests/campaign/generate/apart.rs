@@ -65,11 +65,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
     let mut words = vec![format!("apart={count}")];
     // with numbers of their own, so that scenes stay what they were without them
     let mut more = Dice::new(seed ^ 0xc0de, number);
-    let bumps = if more.chance(0.25) {
-        frame.length * more.decades(1e-3, 0.1)
-    } else {
-        0.0
-    };
+    let bumps = if more.chance(0.25) { frame.length * more.decades(1e-3, 0.1) } else { 0.0 };
     if bumps > 0.0 {
         words.push(format!("bumps {:.1e}", bumps / frame.length));
     }
@@ -77,11 +73,7 @@ pub(crate) fn apart(seed: u64, number: u64) -> Apart {
     let soft = frame.way / frame.stress;
     let mut gives_way = |words: &mut Vec<String>| {
         let mut one = || {
-            if more.chance(0.7) {
-                soft * more.decades(1e-3, 10.0)
-            } else {
-                0.0
-            }
+            if more.chance(0.7) { soft * more.decades(1e-3, 10.0) } else { 0.0 }
         };
         let compliance = [one(), one()];
         if !more.chance(0.25) {

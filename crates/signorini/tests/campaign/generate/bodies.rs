@@ -127,11 +127,7 @@ pub(crate) fn world(dice: &mut Dice) -> World {
             (true, _) => (cells[0] - cells[0] / 2, cells[0] / 2),
             _ => (start, dice.whole(1, width)),
         };
-        let gap = if bent || dice.chance(0.5) {
-            0.0
-        } else {
-            dice.between(0.0, 0.5) * strain * length
-        };
+        let gap = if bent || dice.chance(0.5) { 0.0 } else { dice.between(0.0, 0.5) * strain * length };
         let height = sizes[2] * dice.between(0.4, 1.0);
         let cell = sizes[0] / cells[0] as f64;
         let lengths = [wide as f64 * cell, sizes[1], height];
@@ -181,11 +177,7 @@ fn finish(
     } else {
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
     };
-    let shift = if dice.chance(0.2) {
-        scale(10.0 * length, dice.vector())
-    } else {
-        [0.0; 3]
-    };
+    let shift = if dice.chance(0.2) { scale(10.0 * length, dice.vector()) } else { [0.0; 3] };
     let map = |[x, y, z]: Vec3| {
         let p = [x + a * y + b * z, y + c * z, z];
         let p = if bent {
@@ -235,11 +227,7 @@ fn upside_down(brick: &TetMesh, height: f64) -> TetMesh {
 fn split_floor(mesh: TetMesh, x: f64) -> TetMesh {
     let facets = mesh.facets().iter().map(|f| {
         let centre: f64 = f.nodes.iter().map(|n| mesh.points()[*n as usize][0] / 3.0).sum();
-        let tag = if f.tag == brick::Z_MIN && centre > x {
-            SPLIT
-        } else {
-            f.tag
-        };
+        let tag = if f.tag == brick::Z_MIN && centre > x { SPLIT } else { f.tag };
         Facet { nodes: f.nodes, tag }
     });
     let facets: Vec<Facet> = facets.collect();

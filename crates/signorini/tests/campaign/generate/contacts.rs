@@ -141,14 +141,7 @@ fn obstacle(dice: &mut Dice, world: &World, shaft: &Shaft, tag: FacetTag, name: 
         let mut by = scale(world.way() * dice.between(0.1, 1.0), dice.vector());
         if matches!(touch.distance, Distance::Field(_)) {
             // "moved fields"
-            by = scale(
-                if world.flat {
-                    0.5 * world.way() * dice.either()
-                } else {
-                    0.0
-                },
-                n,
-            );
+            by = scale(if world.flat { 0.5 * world.way() * dice.either() } else { 0.0 }, n);
         }
         touch.motion = Some((by, shaft.course(dice)));
         moved = " moved";
@@ -162,11 +155,7 @@ fn between(dice: &mut Dice, world: &World, shaft: &Shaft, body: usize, recipe: &
     let below = world.below[body];
     let (own, other) = (side(body, brick::Z_MIN), side(below, brick::Z_MAX));
     let same = world.mesh.nodes_on(own).len() == world.mesh.nodes_on(other).len();
-    let (tag, partner) = if same && dice.chance(0.3) {
-        (other, own)
-    } else {
-        (own, other)
-    };
+    let (tag, partner) = if same && dice.chance(0.3) { (other, own) } else { (own, other) };
     let mut law = law(dice, world, shaft, world.centre(tag));
     if matches!(law, Law::None) && dice.chance(0.7) {
         law = Law::Coulomb(dice.between(0.1, 0.5));

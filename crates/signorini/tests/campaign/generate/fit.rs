@@ -52,11 +52,7 @@ impl Ring {
     /// Its mesh, with the tags of a body of this number: sides of a solid shaft are all outside.
     fn mesh(&self, order: usize, body: usize, near: f64, turned: impl Fn(Vec3) -> Vec3) -> TetMesh {
         let own = Brick::new([1.0; 3], self.cells).build().expect("brick");
-        let own = if order == 2 {
-            own.raise_order().expect("order 2")
-        } else {
-            own
-        };
+        let own = if order == 2 { own.raise_order().expect("order 2") } else { own };
         let place = |p| turned(self.place(p));
         let own = if self.solid() {
             let outside = [brick::X_MIN, brick::Y_MIN, brick::Y_MAX];
@@ -163,11 +159,7 @@ fn rings(dice: &mut Dice, frame: &Frame, order: usize, words: &mut Vec<String>) 
         radii: [if solid { 0.0 } else { outer * dice.between(0.4, 0.85) }, outer],
         heights: [0.0, frame.length * dice.between(0.3, 1.2)],
         phase: 0.0,
-        slit: if !solid && dice.chance(0.2) {
-            frame.way * dice.between(0.2, 2.0)
-        } else {
-            0.0
-        },
+        slit: if !solid && dice.chance(0.2) { frame.way * dice.between(0.2, 2.0) } else { 0.0 },
         cells: if solid {
             let n = dice.whole(2, 4 - order / 2);
             [n, n, dice.whole(1, 4 - order)]
@@ -195,11 +187,7 @@ fn rings(dice: &mut Dice, frame: &Frame, order: usize, words: &mut Vec<String>) 
             .into(),
         );
         let mut own = under;
-        own.slit = if dice.chance(0.15) {
-            frame.way * dice.between(0.2, 2.0)
-        } else {
-            0.0
-        };
+        own.slit = if dice.chance(0.15) { frame.way * dice.between(0.2, 2.0) } else { 0.0 };
         own.radii = [under.radii[1] + far, (under.radii[1] + far) * dice.between(1.2, 1.8)];
         let same = dice.chance(0.3);
         let height = under.heights[1] - under.heights[0];
@@ -208,11 +196,7 @@ fn rings(dice: &mut Dice, frame: &Frame, order: usize, words: &mut Vec<String>) 
             let (from, to) = (dice.between(-0.3, 0.6), dice.between(0.3, 1.0));
             own.heights = [from, from + to].map(|h| under.heights[0] + h * height);
         }
-        let below = if under.solid() {
-            4 * under.cells[0]
-        } else {
-            under.cells[1]
-        };
+        let below = if under.solid() { 4 * under.cells[0] } else { under.cells[1] };
         let ratio = if same { 1.0 } else { dice.decades(0.5, 2.0) };
         let about = ((2.0 * (0.5 * below as f64 * ratio).round()) as usize).clamp(8, 18 - 4 * order);
         own.cells = [dice.whole(1, 3 - order), about, dice.whole(1, 4 - order)];
@@ -266,13 +250,11 @@ impl Bench<'_> {
         }
         self.say("gives way");
         let soft = self.frame.way / self.frame.stress;
-        [0, 1].map(|_| {
-            if self.dice.chance(0.7) {
-                soft * self.dice.decades(1e-3, 10.0)
-            } else {
-                0.0
-            }
-        })
+        [0, 1].map(
+            |_| {
+                if self.dice.chance(0.7) { soft * self.dice.decades(1e-3, 10.0) } else { 0.0 }
+            },
+        )
     }
 
     /// Two sides, so far from each other.
@@ -386,14 +368,7 @@ impl Bench<'_> {
         let stress = self.frame.stress;
         for body in 0..=last {
             let ring = self.rings[body];
-            let top = side(
-                body,
-                if self.dice.chance(0.7) {
-                    brick::Z_MAX
-                } else {
-                    brick::Z_MIN
-                },
-            );
+            let top = side(body, if self.dice.chance(0.7) { brick::Z_MAX } else { brick::Z_MIN });
             let [low, high] = ring.radii;
             if self.dice.chance(0.4) {
                 let size = stress * (high.powi(4) - low.powi(4)) / high * self.dice.between(0.05, 0.5);

@@ -37,11 +37,7 @@ pub(crate) fn grip(seed: u64, number: u64) -> Apart {
     let bodies = scene.recipe.mesh.distinct_regions().len();
     while scene.grips.len() < count && tries.next().is_some() {
         // mostly in the place of a support
-        let body = if dice.chance(0.6) {
-            bodies - 1
-        } else {
-            dice.whole(0, bodies - 1)
-        };
+        let body = if dice.chance(0.6) { bodies - 1 } else { dice.whole(0, bodies - 1) };
         let at = if dice.chance(0.4) { 0 } else { dice.whole(0, 5) };
         let mut tags = vec![side(body, SIDES[at])];
         if dice.chance(0.15) && bodies > 1 {

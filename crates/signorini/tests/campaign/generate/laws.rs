@@ -21,11 +21,7 @@ pub(crate) fn field(dice: &mut Dice, world: &World, centre: Vec3, low: f64, high
 }
 
 fn coefficient(dice: &mut Dice) -> f64 {
-    if dice.chance(0.1) {
-        dice.between(0.5, 1.0)
-    } else {
-        dice.between(0.05, 0.5)
-    }
+    if dice.chance(0.1) { dice.between(0.5, 1.0) } else { dice.between(0.05, 0.5) }
 }
 
 pub(crate) fn law(dice: &mut Dice, world: &World, shaft: &Shaft, centre: Vec3) -> Law {

@@ -33,11 +33,7 @@ pub(crate) fn materials(dice: &mut Dice, world: &World) -> (TetMesh, Vec<Elastic
     let mut word = String::from("isotropic");
     let mut elastic = Vec::new();
     for region in 0..count {
-        let factor = if region == 0 {
-            1.0
-        } else {
-            dice.decades(1.0 / contrast, contrast)
-        };
+        let factor = if region == 0 { 1.0 } else { dice.decades(1.0 / contrast, contrast) };
         let (young, poisson) = (factor * world.young, dice.between(-0.1, 0.45));
         elastic.push(if dice.chance(0.25) {
             word = "anisotropic".into();

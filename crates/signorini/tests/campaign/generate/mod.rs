@@ -78,9 +78,10 @@ pub(crate) fn warm(seed: u64, number: u64) -> Recipe {
     let mut recipe = recipe(seed, number);
     let dice = &mut Dice::new(!seed, number);
     let size = dice.decades(1e-5, 3e-3);
-    let strain = match dice.chance(0.6) {
-        true => [size, size, size, 0.0, 0.0, 0.0],
-        false => std::array::from_fn(|_| size * dice.either()),
+    let strain = if dice.chance(0.6) {
+        [size, size, size, 0.0, 0.0, 0.0]
+    } else {
+        std::array::from_fn(|_| size * dice.either())
     };
     let (points, slope) = (recipe.mesh.points(), dice.vector());
     let length = points.iter().flatten().fold(f64::MIN_POSITIVE, |l, x| l.max(x.abs()));
@@ -90,9 +91,10 @@ pub(crate) fn warm(seed: u64, number: u64) -> Recipe {
     let regions = recipe.mesh.distinct_regions();
     let region = dice.chance(0.3).then(|| regions[dice.whole(0, regions.len() - 1)]);
     let end = recipe.clock.times().last().copied().unwrap_or(1.0);
-    let course = match dice.chance(0.3) {
-        true => Course::Constant(dice.either()),
-        false => Course::Table(vec![(0.0, 0.0), (0.7 * end, 1.0), (end, dice.either())]),
+    let course = if dice.chance(0.3) {
+        Course::Constant(dice.either())
+    } else {
+        Course::Table(vec![(0.0, 0.0), (0.7 * end, 1.0), (end, dice.either())])
     };
     recipe.words.push("eigenstrain".into());
     let density = Density::Eigenstrain(strain, region, factors);
@@ -243,11 +245,7 @@ impl Frame {
     /// Presses on a side of a body that nothing holds.
     fn loaded(&self, dice: &mut Dice, side: FacetTag, down: Vec3, recipe: &mut Recipe) {
         recipe.words.push("loose, loaded".into());
-        let course = if dice.chance(0.5) {
-            Course::Constant(1.0)
-        } else {
-            self.shaft.course(dice)
-        };
+        let course = if dice.chance(0.5) { Course::Constant(1.0) } else { self.shaft.course(dice) };
         let density = Density::Traction(side, scale(dice.between(0.2, 1.0) * self.stress, down));
         recipe.pushes.push(Push { density, course });
     }

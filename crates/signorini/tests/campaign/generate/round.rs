@@ -139,11 +139,7 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
     let (mut mesh, mut elastic, mut meshes) = (None::<TetMesh>, Vec::new(), Vec::new());
     for (body, (round, cells)) in bodies.iter().zip(&cells).enumerate() {
         let own = Brick::new([1.0; 3], *cells).build().expect("brick");
-        let own = if order == 2 {
-            own.raise_order().expect("order 2")
-        } else {
-            own
-        };
+        let own = if order == 2 { own.raise_order().expect("order 2") } else { own };
         let place = |p| frame.turn.place(round.place(form, p));
         let own = match form {
             Form::Discs => own.map_points(place).expect("places"),
@@ -160,13 +156,7 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
         if !dice.chance(0.2) {
             return [0.0; 2];
         }
-        let compliance = [0, 1].map(|_| {
-            if dice.chance(0.7) {
-                soft * dice.decades(1e-3, 10.0)
-            } else {
-                0.0
-            }
-        });
+        let compliance = [0, 1].map(|_| if dice.chance(0.7) { soft * dice.decades(1e-3, 10.0) } else { 0.0 });
         words.push(format!("gives way {:.0e} {:.0e}", compliance[0], compliance[1]));
         compliance
     };
@@ -211,11 +201,7 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
         let mut hold = Hold {
             place: tag(
                 0,
-                if form == Form::Washers && dice.chance(0.5) {
-                    brick::X_MIN
-                } else {
-                    brick::Z_MIN
-                },
+                if form == Form::Washers && dice.chance(0.5) { brick::X_MIN } else { brick::Z_MIN },
             ),
             fixed: Fixed::All,
             motion: None,
@@ -240,19 +226,10 @@ pub(crate) fn round(seed: u64, number: u64) -> Apart {
         }
         recipe.holds.push(hold);
     } else {
-        let law = if dice.chance(0.3) {
-            Law::None
-        } else {
-            Law::Coulomb(dice.between(0.2, 0.8))
-        };
-        recipe.words.push(
-            if law.is_some() {
-                "on a plane"
-            } else {
-                "on a smooth plane"
-            }
-            .into(),
-        );
+        let law = if dice.chance(0.3) { Law::None } else { Law::Coulomb(dice.between(0.2, 0.8)) };
+        recipe
+            .words
+            .push(if law.is_some() { "on a plane" } else { "on a smooth plane" }.into());
         rocks.push(Rock {
             side: side(0, brick::Z_MIN),
             shape: Shape::Plane(frame.turn.place([0.0; 3]), frame.turn.way([0.0, 0.0, 1.0])),

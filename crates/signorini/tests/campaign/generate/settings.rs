@@ -5,11 +5,7 @@ use crate::recipe::{Clock, Ending, How, Pieces, Recipe, Solver};
 use signorini::prelude::*;
 
 pub(crate) fn clock(dice: &mut Dice) -> Clock {
-    let end = if dice.chance(0.6) {
-        1.0
-    } else {
-        dice.decades(0.1, 100.0)
-    };
+    let end = if dice.chance(0.6) { 1.0 } else { dice.decades(0.1, 100.0) };
     if dice.chance(0.15) {
         return Clock::Static(end);
     }

@@ -200,9 +200,10 @@ impl Branches {
             message.push(if r == rank && own.is_err() { 1.0 } else { 0.0 });
             for k in self.all.iter().filter(|b| b.rank == r).flat_map(told) {
                 for rows in columns(k) {
-                    match r == rank && own.is_ok() {
-                        true => message.extend_from_slice(&fronts[k].update[rows]),
-                        false => message.resize(message.len() + rows.len(), 0.0),
+                    if r == rank && own.is_ok() {
+                        message.extend_from_slice(&fronts[k].update[rows])
+                    } else {
+                        message.resize(message.len() + rows.len(), 0.0)
                     }
                 }
             }

@@ -73,9 +73,10 @@ impl SplitBase {
         processes: Option<Processes<'_>>,
     ) -> Result<Self, usize> {
         let steady = !tree.changes();
-        let first = match steady {
-            true => share(&mut tree, entries.graph, &bits(entries)),
-            false => (0..tree.regions.len()).collect(),
+        let first = if steady {
+            share(&mut tree, entries.graph, &bits(entries))
+        } else {
+            (0..tree.regions.len()).collect()
         };
         let mut pieces: Vec<Piece> = Vec::with_capacity(tree.regions.len());
         for (r, region) in tree.regions.iter().enumerate() {
@@ -131,10 +132,7 @@ impl SplitBase {
         }
         let diagonal = entries.matrix.diagonal(entries.values).fold(0.0_f64, f64::max);
         out.threshold = SINGULAR * diagonal;
-        let first = match shares {
-            true => share(&mut out.tree, entries.graph, &bits(entries)),
-            false => first,
-        };
+        let first = if shares { share(&mut out.tree, entries.graph, &bits(entries)) } else { first };
         for (r, &equal) in first.iter().enumerate().filter(|(r, equal)| r != *equal) {
             out.pieces[r] = out.pieces[equal].clone();
         }
@@ -316,9 +314,10 @@ impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
         if !self.base.does(r, pass) {
             return Ok(());
         }
-        let nodes = match self.changing {
-            true => region.changing.clone(),
-            false => region.steady.start..region.changing.end,
+        let nodes = if self.changing {
+            region.changing.clone()
+        } else {
+            region.steady.start..region.changing.end
         };
         for k in nodes {
             let node = &tree.nodes[k];
@@ -340,9 +339,10 @@ impl<L: Fn(usize, &mut Front) + Sync> Growth<'_, L> {
                 continue;
             }
             front.eliminate(node, self.base.threshold)?;
-            let (group, first) = match self.changing {
-                true => (&pieces[r].changing, region.changing.start),
-                false => (&*pieces[r].steady, region.steady.start),
+            let (group, first) = if self.changing {
+                (&pieces[r].changing, region.changing.start)
+            } else {
+                (&*pieces[r].steady, region.steady.start)
             };
             let tiles = &mut tiles[r - region.first_region];
             group.pack(k - first, &front.columns, &mut tiles.exact);

@@ -155,9 +155,8 @@ mod tests {
             extend(&update, &into, &mut whole, width, height);
             for j in 0..height {
                 for i in j..height {
-                    let found = |columns: &[f64], rest: &[f64]| match j < width {
-                        true => columns[i + j * height],
-                        false => rest[i - width + (j - width) * behind],
+                    let found = |columns: &[f64], rest: &[f64]| {
+                        if j < width { columns[i + j * height] } else { rest[i - width + (j - width) * behind] }
                     };
                     let expected = expected[i + j * height];
                     assert_eq!(found(&columns, &rest), expected, "{into:?} {i} {j}");

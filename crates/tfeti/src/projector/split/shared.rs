@@ -138,12 +138,11 @@ pub(crate) fn share(tree: &mut CoarseTree, graph: &[Vec<u32>], write: &EntryBits
         at.sort_unstable_by_key(|&p| tree.blocks[p as usize]);
         let all = || (own.start as u32..own.end as u32).chain(at.iter().copied());
         (0..).zip(all()).for_each(|(k, p)| place[p as usize] = k);
-        let equal = match tree.region_changes(r) {
-            true => r,
-            false => {
-                let key = key(tree, region, &first, &place, graph, write);
-                *known.entry(key).or_insert(r)
-            }
+        let equal = if tree.region_changes(r) {
+            r
+        } else {
+            let key = key(tree, region, &first, &place, graph, write);
+            *known.entry(key).or_insert(r)
         };
         let rank = |p: &u32| place[*p as usize];
         ranks.push(region.behind.iter().map(rank).collect());
@@ -157,10 +156,7 @@ pub(crate) fn share(tree: &mut CoarseTree, graph: &[Vec<u32>], write: &EntryBits
         first.push(equal);
     }
     for (r, &equal) in first.iter().enumerate() {
-        match equal == r {
-            true => tree.place_children(r),
-            false => tree.copy_children(r, equal),
-        }
+        if equal == r { tree.place_children(r) } else { tree.copy_children(r, equal) }
     }
     first
 }

@@ -62,9 +62,10 @@ pub(crate) struct TreeRegion {
 
 /// Place of a position among own columns, then among later ones.
 fn place_among(own: &Range<usize>, later: &[u32], position: u32) -> u32 {
-    match own.contains(&(position as usize)) {
-        true => position - own.start as u32,
-        false => (own.len() + later.partition_point(|&b| b < position)) as u32,
+    if own.contains(&(position as usize)) {
+        position - own.start as u32
+    } else {
+        (own.len() + later.partition_point(|&b| b < position)) as u32
     }
 }
 
@@ -175,11 +176,7 @@ impl CoarseTree {
     /// Operations of an elimination; steady columns count in regions of their `own`.
     pub(crate) fn operations(&self, own: impl Iterator<Item = bool>) -> f64 {
         let region = |(region, own): (&TreeRegion, bool)| {
-            let first = if own {
-                region.steady.start
-            } else {
-                region.changing.start
-            };
+            let first = if own { region.steady.start } else { region.changing.start };
             let nodes = &self.nodes[first..region.changing.end];
             nodes.iter().map(Node::operations).sum::<f64>()
         };

@@ -23,11 +23,7 @@ impl Bench<'_> {
                 continue;
             }
             let solid = self.rings[body].solid();
-            let mut tag = if self.dice.chance(0.5) {
-                brick::Z_MAX
-            } else {
-                brick::Z_MIN
-            };
+            let mut tag = if self.dice.chance(0.5) { brick::Z_MAX } else { brick::Z_MIN };
             if self.is_met(body, tag) {
                 tag = brick::Z_MAX;
             }
