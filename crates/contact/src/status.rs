@@ -34,7 +34,7 @@ impl StepStatus {
         self == Self::Converged
     }
 
-    /// Whether nothing of what was reached is of use.
+    /// Whether the iterate is useless as a start.
     pub(crate) fn is_lost(self) -> bool {
         matches!(self, Self::Stagnated | Self::NotHeld)
     }

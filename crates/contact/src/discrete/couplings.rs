@@ -31,7 +31,7 @@ pub(crate) struct Couplings {
     /// The point of each whose displacement is told: its reference point, or of a point alone the mean of its places,
     /// any of which has the displacement.
     pub(crate) about: Vec<Vec3>,
-    /// What its places move per displacement of a point, so that both are of one size; one of other couplings.
+    /// Displacement of the nodes per unit displacement of the point, so that both are of one size; 1 for others.
     pub(crate) unit: Vec<f64>,
 }
 

@@ -170,8 +170,8 @@ fn groups(faceted: &[Faceted]) -> Vec<Vec<&Faceted>> {
     out
 }
 
-/// Whether sides touch in the mean once it is taken from their gaps what facets make of them. Points further apart than
-/// facets can bring them are left out.
+/// Whether sides touch in the mean, after subtracting from their gaps what the facets add to them. Points further apart
+/// than facets can bring them are left out.
 fn touch(group: &[&Faceted], conditions: &[ContactPoint], deepest: f64) -> bool {
     let (mut gap, mut hollow, mut deep) = (0.0, 0.0, 0.0_f64);
     let bends = group

@@ -61,55 +61,50 @@ fn expect(value: f64, unit: &'static str, part: Part, place: impl Fn() -> String
 
 /// Refuses motions of supports and obstacles; `spring` is the largest stiffness of a region, N/m.
 pub(super) fn check_motions(scene: &Scene, spring: f64) -> Result<(), ContactError> {
+    let most = |part, history, what: &str, size: f64, unit| {
+        let (factor, time) = scene.analysis.largest_factor(history);
+        expect(factor * size, unit, part, || format!(" at time {time} s: {what}"))
+    };
+    // what moves a body also strains it
+    let strains = |part, history, what: &str, size: f64, times: &str| {
+        most(part, history, what, size, LENGTH)?;
+        most(
+            part,
+            history,
+            &format!("{what}{times} the stiffness"),
+            size * spring,
+            FORCE,
+        )
+    };
     for (index, support) in scene.supports.iter().enumerate() {
         if let Some((values, history)) = &support.motion {
-            let (factor, time) = scene.analysis.largest_factor(history);
             let size = vector::max_abs(values.as_flattened());
-            let part = Part::Support(index);
-            let place = || format!(" at time {time} s: its displacement");
-            expect(factor * size, LENGTH, part, place)?;
-            let place = || format!(" at time {time} s: its displacement times the stiffness");
-            expect(factor * size * spring, FORCE, part, place)?;
+            strains(Part::Support(index), history, "its displacement", size, " times")?;
         }
     }
     for (index, coupling) in scene.couplings.iter().enumerate() {
         for (motion, history) in &coupling.motions {
-            let (factor, time) = scene.analysis.largest_factor(history);
-            let size = factor * vector::max_abs(motion);
-            let part = Part::Coupling(index);
-            expect(size, LENGTH, part, || format!(" at time {time} s: its motion"))?;
-            let place = || format!(" at time {time} s: its motion times the stiffness");
-            expect(size * spring, FORCE, part, place)?;
+            let size = vector::max_abs(motion);
+            strains(Part::Coupling(index), history, "its motion", size, " times")?;
         }
     }
     for (index, equation) in scene.equations.iter().enumerate() {
-        let all = equation
-            .terms
-            .iter()
-            .map(|t| t.1)
-            .chain(equation.points.iter().map(|p| p.1));
-        let most = all.map(|v| vector::max_abs(&v)).fold(0.0, f64::max);
-        if let Some((value, history)) = equation.value.as_ref().filter(|_| most > 0.0) {
-            let (factor, time) = scene.analysis.largest_factor(history);
-            let size = factor * value.abs() / most;
-            let part = Part::Equation(index);
-            let place = || format!(" at time {time} s: its value over its largest coefficient");
-            expect(size, LENGTH, part, place)?;
-            let place = || format!(" at time {time} s: its value over its largest coefficient, times the stiffness");
-            expect(size * spring, FORCE, part, place)?;
+        let nodes = equation.terms.iter().map(|t| t.1);
+        let all = nodes.chain(equation.points.iter().map(|p| p.1));
+        let largest = all.map(|v| vector::max_abs(&v)).fold(0.0, f64::max);
+        if let Some((value, history)) = equation.value.as_ref().filter(|_| largest > 0.0) {
+            let what = "its value over its largest coefficient";
+            strains(Part::Equation(index), history, what, value.abs() / largest, ", times")?;
         }
     }
     for (index, contact) in scene.contacts.iter().enumerate() {
         let part = Part::Contact(index);
         for (value, history) in &contact.motions {
-            let (factor, time) = scene.analysis.largest_factor(history);
-            let place = || format!(" at time {time} s: the displacement of its obstacle");
-            expect(factor * vector::max_abs(value), LENGTH, part, place)?;
+            let size = vector::max_abs(value);
+            most(part, history, "the displacement of its obstacle", size, LENGTH)?;
         }
         if let Some(rotation) = &contact.rotation {
-            let (angle, time) = scene.analysis.largest_factor(&rotation.angle);
-            let place = || format!(" at time {time} s: the angle of its obstacle");
-            expect(angle, "radians", part, place)?;
+            most(part, &rotation.angle, "the angle of its obstacle", 1.0, "radians")?;
         }
     }
     Ok(())

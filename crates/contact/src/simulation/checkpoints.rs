@@ -73,31 +73,46 @@ impl Simulation {
                 Every::Steps(steps) => step.is_multiple_of(steps),
                 Every::Time(time) => stored_at.elapsed() >= time,
             };
-            if (!last && !due) || simulation.plan().rank > 0 {
-                return Ok(());
-            }
-            simulation.state.save(folder.join(format!("step-{step:08}.state")))?;
-            for (_, path) in stored(folder)?.into_iter().skip(KEPT) {
-                fs::remove_file(&path).map_err(failed("remove", &path))?;
-            }
-            stored_at = Instant::now();
-            Ok(())
+            let mut store = || {
+                if (!last && !due) || simulation.plan().rank > 0 {
+                    return Ok(());
+                }
+                simulation.state.save(folder.join(format!("step-{step:08}.state")))?;
+                for (_, path) in stored(folder)?.into_iter().skip(KEPT) {
+                    fs::remove_file(&path).map_err(failed("remove", &path))?;
+                }
+                stored_at = Instant::now();
+                Ok(())
+            };
+            let own = store();
+            simulation.together(own)
         })
+    }
+
+    /// What a process has done alone, once all have: where one fails all do.
+    fn together<T>(&self, own: Result<T, ContactError>) -> Result<T, ContactError> {
+        if self.plan().ranks == 1 {
+            return own;
+        }
+        let fail = self.model.tfeti.gather(if own.is_ok() { 0.0 } else { 1.0 })?;
+        match fail.iter().position(|fails| *fails > 0.0) {
+            Some(rank) if own.is_ok() => Err(ContactError::Checkpoint {
+                reason: format!("that of rank {rank} failed, see there"),
+            }),
+            _ => own,
+        }
     }
 
     /// [`newest`] on rank 0, which makes the folder and sets damaged files aside, then on the others, which must find
     /// the same; all resume it together.
     fn resume_in_turn(&mut self, folder: &Path) -> Result<Option<Warning>, ContactError> {
         let root = self.plan().rank == 0;
-        if root {
+        let first = || {
             fs::create_dir_all(folder).map_err(failed("write", folder))?;
-        } else {
-            self.model.tfeti.gather(0.0)?;
-        }
-        let found = newest(folder)?;
-        if root {
-            self.model.tfeti.gather(0.0)?;
-        }
+            newest(folder)
+        };
+        let first = self.together(if root { first() } else { Ok(None) })?;
+        let found = self.together(if root { Ok(first) } else { newest(folder) })?;
         let own = found.as_ref().map_or(0.0, |found| found.state.step() as f64);
         let steps = self.model.tfeti.gather(own)?;
         if steps.iter().any(|step| *step != own) {

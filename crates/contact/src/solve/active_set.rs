@@ -256,7 +256,7 @@ impl ActiveSetSolver {
                     if is_open(status)
                         && let Some(inside) = inside
                     {
-                        // where all of a body's friction is spent active sets hardly hold it, and lead away: the
+                        // active sets hardly hold a body whose friction is all spent: of interior points the
                         // certificate judges
                         (iterate.lambda, iterate.alpha) = (inside.lambda, inside.alpha);
                         iterate.known = false;

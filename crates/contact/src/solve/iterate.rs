@@ -24,7 +24,7 @@ pub(crate) struct Iterate {
     pub(crate) f_lambda: Vec<f64>,
     /// Whether `f_lambda` is `F lambda`.
     pub(crate) known: bool,
-    /// Contact rows with which it is that, in place of those of `lambda`; empty for these.
+    /// Contact rows for which `f_lambda` holds where `lambda` has others; empty if they agree.
     pub(crate) known_rows: Vec<f64>,
     /// Multiplier of the orthonormal coarse equality, for SMALSE.
     pub(crate) multiplier: Vec<f64>,

@@ -21,8 +21,8 @@ pub struct State {
     pub(crate) f_lambda: [Vec<f64>; 2],
     /// Multiplier of the coarse equality, for the methods that carry one.
     pub(crate) multiplier: [Vec<f64>; 2],
-    /// Tangential displacements of the last step and the one before, without elastic slip, m, one a tangential row; of
-    /// points that ties reach where these hold exactly.
+    /// Tangential displacements of the last step and the one before, without elastic slip, m, one a tangential row; at
+    /// points that ties reach with the ties fulfilled exactly.
     pub(crate) trace: [Vec<f64>; 2],
     /// Slip rate at each contact point, m/s; only if the coefficient depends on it.
     pub(crate) rate: Vec<f64>,

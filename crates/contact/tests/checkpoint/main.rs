@@ -205,6 +205,23 @@ fn checkpoints_of_several_ranks_are_those_of_one_process() {
         let error = run.expect_err("different ones").to_string();
         assert!(error.contains("a folder that all of them see"), "{error}");
     }
+    // what rank 0 alone cannot do ends the others, too: a folder that is a file, a checkpoint that is a folder
+    std::fs::create_dir_all(&other.0).expect("folder");
+    let file = other.0.join("file");
+    std::fs::write(&file, "").expect("file");
+    let taken = Folder::new("ranks-taken");
+    std::fs::create_dir_all(taken.0.join("step-00000001.state").join("full")).expect("folder");
+    let on_taken = |_: usize| taken.0.clone();
+    let on_file = |_: usize| file.clone();
+    let cases: [(&(dyn Fn(usize) -> PathBuf + Sync), &str); 2] =
+        [(&on_file, "file"), (&on_taken, "step-00000001.state")];
+    for (folder, named) in cases {
+        let mut runs = on_ranks(2, 4, folder).into_iter();
+        let [first, second] =
+            [runs.next(), runs.next()].map(|run| run.expect("a rank").expect_err("refused").to_string());
+        assert!(first.contains(named), "{first}");
+        assert!(second.contains("rank 0 failed") || second.contains(named), "{second}");
+    }
 }
 
 /// Every third step and the last; the last also where the observer stops, and no step that it failed at.

@@ -21,7 +21,7 @@ pub enum PartCount {
     /// A number near by for which the parts of a body that fills its box are nearest to cubes; a sixth of it where
     /// quadratic cells are graded so strongly along all axes that many parts would be flat. Rods, more than eight times
     /// as long as thick, have a part for each two thicknesses if their tetrahedra suffice: in long parts, bending costs
-    /// iterations. Of one part, other bodies stay whole.
+    /// iterations. With a number of 1, bodies that are no rods stay whole.
     About(usize),
 }
 

@@ -18,8 +18,8 @@ pub struct Subdomain {
     pub mids: Vec<[u32; 6]>,
     /// Global number of each tetrahedron, ascending.
     pub elements: Vec<u32>,
-    /// Whether its nodes are places only, which it does not move: its motion is one of two parts relative to each
-    /// other.
+    /// Whether it does not move its nodes, which only say where it is: its motion is that of one part relative to
+    /// another.
     pub is_relative: bool,
 }
 
@@ -55,7 +55,7 @@ impl Subdomain {
 pub enum Rigid {
     /// It moves them.
     Nodes(Vec<u32>),
-    /// It is the motion of one part relative to another, told where they are.
+    /// Moves nothing: its six motions are those of one part relative to another, measured at these nodes.
     Places(Vec<u32>),
 }
 

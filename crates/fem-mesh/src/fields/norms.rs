@@ -6,7 +6,7 @@ use crate::mesh::TetMesh;
 use super::strain::{FieldError, nodal_vectors};
 
 /// Integral over the mesh of `of(point, displacement, gradient)` by quadrature of degree 5, `gradient[i][j]` =
-/// d u_i / d x_j: with the square of an error in it that of its norm.
+/// d u_i / d x_j. If `of` is the square of an error, it is the square of the norm of that error.
 ///
 /// # Errors
 /// [`FieldError`] if the displacement has the wrong length or is not finite.

@@ -21,7 +21,7 @@ pub struct DiscretisationError {
     pub energies: Vec<f64>,
     /// Their sum, J.
     pub energy: f64,
-    /// Elastic energy of the displacement, J; where strain is free that of all strain, if that is larger.
+    /// Elastic energy of the displacement, J; with eigenstrains the energy of the whole strain, if that is larger.
     pub elastic_energy: f64,
 }
 
