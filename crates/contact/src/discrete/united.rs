@@ -87,6 +87,9 @@ fn share_out(scene: &Scene, group: &[usize], whole: Paired) -> Result<Vec<Paired
 
 /// Those of these contacts that go on in one another on both sides and have gaps of one kind; each in a group.
 fn groups(scene: &Scene, of: &[usize]) -> Result<Vec<Vec<usize>>, ContactError> {
+    if of.len() < 2 {
+        return Ok(of.iter().map(|k| vec![*k]).collect());
+    }
     let contacts = || of.iter().map(|k| &scene.contacts[*k]);
     let surfaces = contacts().flat_map(|c| [&c.tags, &c.partner]);
     let surfaces = surfaces.map(|tags| Surface::new(&scene.mesh, tags));
