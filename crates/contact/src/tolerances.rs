@@ -313,6 +313,9 @@ pub(crate) const EXPLICIT_PRODUCTS: usize = 1000;
 /// this multiple of the latter. In well shaped, compressible bodies it is 1 to 4; a natural map that is much too stiff
 /// predicts active sets from gradients alone.
 pub(crate) const STIFF_ROWS: f64 = 5.0;
+/// The same in a linear mesh that is strongly graded along all axes: above 3 active sets ran in circles there, from 1
+/// to 3 products are much the same.
+pub(crate) const STIFF_GRADED: f64 = 2.5;
 /// The same in a mesh of order 2, where points are means that share nodes and move one another. From 1 to 2.5 products
 /// are much the same on equal cells; on graded ones they grow with it.
 pub(crate) const STIFF_MEANS: f64 = 1.0;

@@ -18,8 +18,9 @@ use crate::settings::{Preconditioner, Settings};
 use crate::status::StepStatus;
 use crate::tolerances::{
     AT_ONCE, BEFORE_INSIDE, CIRCLES, CONTRADICTION, EASY, EXPLICIT_PRODUCTS, INSIDE, LINEAR_AT_MOST, LINEAR_SLACK,
-    LITTLE, SHARED_ROWS, STIFF_MEANS, STIFF_ROWS,
+    LITTLE, SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS,
 };
+use signorini_fem_mesh::decomposition::is_strongly_graded;
 use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::internal::enter_active_set;
 use signorini_qp::{
@@ -73,8 +74,10 @@ impl ActiveSetSolver {
         model.tfeti.row_stiffness(0..contact, &mut scale[..contact]);
         let mut compliance = vec![0.0; contact];
         model.tfeti.row_compliance(0..contact, &mut compliance);
+        let flat = || scale.iter().zip(&compliance).any(|(k, c)| k * c > STIFF_ROWS);
         let stiff = match model.scene.mesh.order() {
             2 => STIFF_MEANS,
+            _ if flat() && is_strongly_graded(&model.scene.mesh) => STIFF_GRADED,
             _ => STIFF_ROWS,
         };
         for (scale, compliance) in scale.iter_mut().zip(compliance) {

@@ -103,6 +103,12 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     Ok(split_at_cracks(mesh, &parts))
 }
 
+/// Whether cells are graded so strongly along all axes that many are flat.
+#[doc(hidden)]
+pub fn is_strongly_graded(mesh: &TetMesh) -> bool {
+    shares(mesh).0.iter().all(|ratio| *ratio > STRONGLY)
+}
+
 /// How strongly cells are graded along each axis, and what each tetrahedron counts in a cut across it; none where all
 /// count alike.
 fn shares(mesh: &TetMesh) -> ([f64; 3], [Option<Vec<f64>>; 3]) {

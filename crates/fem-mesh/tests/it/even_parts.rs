@@ -227,3 +227,16 @@ fn bad_input_is_refused() {
     let short = even_parts(&mesh, &labels[1..], PartCount::Exactly(2));
     assert!(matches!(short, Err(DecompositionError::PartCount { .. })));
 }
+
+/// Cells graded along all axes are told from those that are so along one, and from equal ones.
+#[test]
+fn strong_grading_is_along_all_axes() {
+    let graded = |powers: [f64; 3]| {
+        let mesh = Brick::new([1.0; 3], [8; 3]).build().expect("brick");
+        let mesh = mesh
+            .map_points(|p| [0, 1, 2].map(|d| p[d].powf(powers[d])))
+            .expect("graded");
+        signorini_fem_mesh::decomposition::is_strongly_graded(&mesh)
+    };
+    assert!(!graded([1.0; 3]) && !graded([3.0, 1.0, 1.0]) && graded([3.0; 3]));
+}
