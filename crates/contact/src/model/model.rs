@@ -34,9 +34,9 @@ pub(crate) struct Model {
     no_load: Vec<f64>,
     /// Of each load that is an eigenstrain the squares of its nodal forces on each body, N²; empty of others.
     pub(crate) strained: Vec<Vec<f64>>,
-    /// Without contact, multipliers that [hand each load on](Self::hand_on) to the supports; solvers find what is left.
-    /// Empty with contact.
-    pub(crate) handed_on: Vec<Vec<f64>>,
+    /// Without contact, multipliers of supports and gluing that [balance each load](Self::balance_loads); solvers find
+    /// what is left. Empty with contact.
+    pub(crate) balancing: Vec<Vec<f64>>,
     pub(crate) points: Vec<ConstrainedPoint>,
     /// The point with rows that stands for each condition of a contact; none where supports hold the node, which was
     /// judged before anything is solved.
@@ -257,7 +257,7 @@ impl Model {
             loads,
             no_load,
             strained,
-            handed_on: Vec::new(),
+            balancing: Vec::new(),
             points,
             set,
             moved_stiffness: OnceLock::new(),
@@ -266,13 +266,13 @@ impl Model {
         })
     }
 
-    /// Without contact: `balance` gives multipliers that hand each load on to the supports, and its response is that of
-    /// both. One pass over the inverses does what the load and a first product would take one each for.
-    pub(crate) fn hand_on(&mut self, mut balance: impl FnMut(&[f64]) -> Vec<f64>) {
+    /// Without contact: `balance` gives multipliers that balance each load on every subdomain, and its response is that
+    /// of both. One pass over the inverses does what the load and a first product would take one each for.
+    pub(crate) fn balance_loads(&mut self, mut balance: impl FnMut(&[f64]) -> Vec<f64>) {
         for load in &mut self.loads {
             let lambda = balance(&load.coarse);
-            self.tfeti.hand_on(load, &lambda);
-            self.handed_on.push(lambda);
+            self.tfeti.balance_loads(load, &lambda);
+            self.balancing.push(lambda);
         }
     }
 

@@ -107,7 +107,7 @@ impl Simulation {
         };
         let (solver, (origin, operator)) = rayon::join(|| Solver::new(&model, &settings), origin);
         let mut solver = solver?;
-        solver.hand_on(&mut model);
+        solver.balance_loads(&mut model);
         model.tfeti.check_processes()?;
         let state = State {
             origin: Some(origin),

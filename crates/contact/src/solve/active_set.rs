@@ -118,11 +118,11 @@ impl ActiveSetSolver {
         })
     }
 
-    /// Has the loads [handed on](Model::hand_on).
-    pub(crate) fn hand_on(&mut self, model: &mut Model) {
+    /// Has the loads [balanced](Model::balance_loads).
+    pub(crate) fn balance_loads(&mut self, model: &mut Model) {
         let (rows, part) = (model.tfeti.dual_dim(), &self.part);
         let space = &mut self.space;
-        model.hand_on(|coarse| {
+        model.balance_loads(|coarse| {
             let mut whole = vec![0.0; rows];
             match part {
                 Some(part) => {
@@ -373,7 +373,7 @@ impl ActiveSetSolver {
             rhs: &problem.rhs,
         };
         let [least, least_contact] = problem.least(task.settings.tolerance);
-        let least = least.max(vector::norm(&problem.handed_on));
+        let least = least.max(vector::norm(&problem.balancing));
         let contact = !model.points.is_empty();
         let tolerance = if contact {
             task.settings.tolerance

@@ -35,7 +35,7 @@ pub(super) fn scaled(model: &Model, problem: &StepProblem, iterate: &mut Iterate
     let mut scaled = problem.clone();
     divide(&mut scaled.linear, &units.rows);
     divide(&mut scaled.rhs, &units.coarse);
-    divide(&mut scaled.handed_on, &units.rows);
+    divide(&mut scaled.balancing, &units.rows);
     for (peak, unit) in scaled.peaks.iter_mut().zip(&own) {
         peak.multipliers /= unit;
         peak.force /= unit;

@@ -40,12 +40,12 @@ impl Solver {
         })
     }
 
-    /// Without contact, has the loads [handed on](Model::hand_on) by the rows that hold the bodies.
-    pub(crate) fn hand_on(&mut self, model: &mut Model) {
+    /// Without contact, has the loads [balanced](Model::balance_loads) by the rows that hold the bodies.
+    pub(crate) fn balance_loads(&mut self, model: &mut Model) {
         if let Self::ActiveSet(solver) = self
             && model.points.is_empty()
         {
-            solver.hand_on(model);
+            solver.balance_loads(model);
         }
     }
 

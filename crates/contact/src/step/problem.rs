@@ -34,9 +34,9 @@ pub(crate) struct StepProblem {
     pub(crate) linear: Vec<f64>,
     /// `e = -R^T f`.
     pub(crate) rhs: Vec<f64>,
-    /// Multipliers that hand the loads on to the supports, and are not what a solver finds; empty with contact. `load`
-    /// and `rhs` are those of the loads with them.
-    pub(crate) handed_on: Vec<f64>,
+    /// Multipliers that balance the loads, and are not what a solver finds; empty with contact. `load` and `rhs` are
+    /// those of the loads with them.
+    pub(crate) balancing: Vec<f64>,
     /// The obstacle of each contact surface, now and an increment before; empty where none moves and no gap changes.
     pub(crate) obstacles: [Vec<Pose>; 2],
     /// The part of `c` that comes from supports, in tangential rows of points of several nodes: what supports move
@@ -100,10 +100,10 @@ impl StepProblem {
             vector::axpy(*factor, &load.dual, &mut self.load);
             vector::axpy(*factor, &load.coarse, &mut self.rhs);
         }
-        let handed_on = if model.handed_on.is_empty() { 0 } else { rows };
-        self.handed_on = zeros(take(&mut self.handed_on), handed_on);
-        for (factor, lambda) in self.factors.iter().zip(&model.handed_on) {
-            vector::axpy(*factor, lambda, &mut self.handed_on);
+        let balancing = if model.balancing.is_empty() { 0 } else { rows };
+        self.balancing = zeros(take(&mut self.balancing), balancing);
+        for (factor, lambda) in self.factors.iter().zip(&model.balancing) {
+            vector::axpy(*factor, lambda, &mut self.balancing);
         }
         let histories = model.discrete.supports.motions.iter();
         let cases: Vec<(usize, f64)> = histories
@@ -309,11 +309,11 @@ impl StepProblem {
 
     /// All multipliers, from those of a solver.
     pub(crate) fn multipliers<'a>(&self, found: &'a [f64]) -> Cow<'a, [f64]> {
-        if self.handed_on.is_empty() {
+        if self.balancing.is_empty() {
             return Cow::Borrowed(found);
         }
         let mut all = found.to_vec();
-        vector::axpy(1.0, &self.handed_on, &mut all);
+        vector::axpy(1.0, &self.balancing, &mut all);
         Cow::Owned(all)
     }
 

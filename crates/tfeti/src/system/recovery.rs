@@ -45,7 +45,7 @@ impl Tfeti {
         Ok(load)
     }
 
-    /// The same without `B K+ f`: for a load that is [handed on](Self::hand_on) first.
+    /// The same without `B K+ f`: for a load that is [balanced](Self::balance_loads) first.
     ///
     /// # Errors
     /// As [`load_response`](Self::load_response).
@@ -66,7 +66,7 @@ impl Tfeti {
     /// Response to a load together with multipliers that balance it on every subdomain, `G lambda = e`: what is left to
     /// be found are multipliers with `G lambda = 0`.
     #[doc(hidden)]
-    pub fn hand_on(&self, load: &mut LoadResponse, lambda: &[f64]) {
+    pub fn balance_loads(&self, load: &mut LoadResponse, lambda: &[f64]) {
         let mut force = load.force.clone();
         self.add_rows_transposed(lambda, &mut force);
         load.dual = self.row_response(&force);
