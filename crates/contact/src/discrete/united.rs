@@ -116,14 +116,14 @@ fn are_alike(a: &Contact, b: &Contact) -> bool {
         (Gap::Constant(one), Gap::Constant(other)) => one == other,
         _ => false,
     };
-    let is_plain = |c: &Contact| !c.tied && !c.moves() && c.gap_history.is_none();
+    let is_plain = |c: &Contact| !c.tied && !c.moves();
     let turns = |one: &Contact, other: &Contact| one.tags.iter().any(|tag| other.partner.contains(tag));
     same_gap
         && !turns(a, b)
         && !turns(b, a)
         && [a, b].into_iter().all(is_plain)
         && (a.normal, a.crease, a.closing) == (b.normal, b.crease, b.closing)
-        && (a.compliance, a.span) == (b.compliance, b.span)
+        && (a.compliance, a.span, &a.gap_history) == (b.compliance, b.span, &b.gap_history)
 }
 
 /// For each surface the number of its set: surfaces that go on smoothly in one another are one.

@@ -152,6 +152,24 @@ impl Piece {
         })
     }
 
+    /// Its point nearest to a point, with the square of the distance.
+    pub(super) fn closest(&self, p: Point) -> (f64, Point) {
+        let sides = || (0..self.polygon.len()).map(|k| [self.polygon[k], self.polygon[(k + 1) % self.polygon.len()]]);
+        if sides().all(|[a, b]| cross(sub(b, a), sub(p, a)) >= 0.0) {
+            return (0.0, p);
+        }
+        let on = |[a, b]: [Point; 2]| {
+            let (along, way) = (sub(b, a), sub(p, a));
+            let length = along[0] * along[0] + along[1] * along[1];
+            let t = if length > 0.0 { (along[0] * way[0] + along[1] * way[1]) / length } else { 0.0 };
+            let q = [0, 1].map(|c| a[c] + t.clamp(0.0, 1.0) * along[c]);
+            let [x, y] = sub(p, q);
+            (x * x + y * y, q)
+        };
+        let found = sides().map(on).min_by(|a, b| a.0.total_cmp(&b.0));
+        found.unwrap_or((f64::INFINITY, p))
+    }
+
     /// Mean of the points.
     pub(super) fn middle(&self) -> Point {
         let count = self.polygon.len() as f64;

@@ -4,19 +4,19 @@ use super::cover::{Flat, Laid, Piece, Point, area, barycentric, mean};
 use crate::tolerances::OVERLAP;
 
 /// The distances of the corners of a facet from the curve that pieces stand for, m, if they or the facet itself are
-/// bent, as the arcs over its `own` edges tell.
+/// bent, as the arcs over its `own` edges tell. Of a corner beyond all pieces that of both curves where these end.
 pub(super) fn curve(corners: &[Point; 3], own: [f64; 3], pieces: &[Piece]) -> Option<[f64; 3]> {
     let arcs = pieces.iter().map(|piece| piece.laid.arcs).chain([own]);
-    let is_bent = arcs.flatten().any(|arc| arc != 0.0);
-    if !is_bent || !are_covered(corners, pieces) {
+    if arcs.flatten().all(|arc| arc == 0.0) {
         return None;
     }
+    let height = |arcs: &[f64; 3], l: &[f64; 3]| -> f64 { (0..3).map(|k| 4.0 * arcs[k] * l[k] * l[(k + 1) % 3]).sum() };
     let mut out = [0.0; 3];
     for (out, p) in out.iter_mut().zip(corners) {
-        let laid = nearest(pieces, *p)?;
-        let (l, shape) = laid.shape(*p);
-        let arc: f64 = (0..3).map(|k| 4.0 * laid.arcs[k] * l[k] * l[(k + 1) % 3]).sum();
-        *out = laid.height(&shape) - arc;
+        let (laid, q) = nearest(pieces, *p)?;
+        let (l, shape) = laid.shape(q);
+        let own = height(&own, &barycentric(corners, q));
+        *out = laid.height(&shape) - height(&laid.arcs, &l) - own;
     }
     Some(out)
 }
@@ -26,14 +26,11 @@ fn are_covered(corners: &[Point; 3], pieces: &[Piece]) -> bool {
     covered >= (1.0 - OVERLAP) * area(corners)
 }
 
-/// The triangle in which a point of the plane is, or outside of which least.
-fn nearest(pieces: &[Piece], p: Point) -> Option<&Laid> {
-    let inside = |piece: &Piece| {
-        let coordinates = barycentric(&piece.laid.corners, p);
-        coordinates.into_iter().fold(f64::INFINITY, f64::min)
-    };
-    let nearest = pieces.iter().max_by(|a, b| inside(a).total_cmp(&inside(b)));
-    nearest.map(|piece| &piece.laid)
+/// The triangle in which a point of the plane is, with that point, or where pieces end nearest to it.
+fn nearest(pieces: &[Piece], p: Point) -> Option<(&Laid, Point)> {
+    let to = pieces.iter().map(|piece| (piece, piece.closest(p)));
+    let found = to.min_by(|a, b| a.1.0.total_cmp(&b.1.0));
+    found.map(|(piece, (_, q))| (&piece.laid, q))
 }
 
 /// The gaps at the nodes of a quadratic facet, m, where pieces cover it: each from the piece that is nearest in the
@@ -44,7 +41,7 @@ pub(super) fn gaps(own: &Flat, pieces: &[Piece]) -> Option<[f64; 6]> {
         return None;
     }
     let height = |p: Point| {
-        let laid = nearest(pieces, p)?;
+        let (laid, _) = nearest(pieces, p)?;
         Some(laid.height(&laid.shape(p).1))
     };
     let mut gaps = [0.0; 6];

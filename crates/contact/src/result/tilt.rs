@@ -5,6 +5,7 @@
 //! that the mesh alone decides. Such motions are those across which normals differ from those of the facets around
 //! them more than they block.
 
+use super::points::ContactState;
 use super::recovered::Recovered;
 use crate::model::{Model, loose_motions_of, slide};
 use crate::report::Warning;
@@ -73,6 +74,7 @@ pub(super) fn held_by_tilt(
             continue;
         }
         let count = motions.len();
+        let spent = blurred.iter().all(|(_, state, _)| state.state == ContactState::Slip);
         // what normals block of the motions, less what facets blur, and what normal forces do along them
         let (mut blocked, mut work) = (DMatrix::zeros(count, count), DVector::zeros(count));
         for (point, state, blur) in blurred {
@@ -102,8 +104,9 @@ pub(super) fn held_by_tilt(
         let share = pushed.dot(&work) / pushed.dot(&load);
         // normal forces that do much more than the loads are held by friction
         let matters = pushed.norm() >= TILT_MATTERS * load.norm();
-        if matters && (HELD_BY_TILT..1.0 + HELD_BY_TILT).contains(&share) && worst.as_ref().is_none_or(|w| share > w.0)
-        {
+        // where all friction is spent the rest alone decides
+        let least = if spent { TILT_MATTERS } else { HELD_BY_TILT };
+        if matters && (least..1.0 + HELD_BY_TILT).contains(&share) && worst.as_ref().is_none_or(|w| share > w.0) {
             // `G lambda = e = -Rᵀ f`
             pushed.neg_mut();
             let slide = slide(model, &motions, pushed.as_slice());

@@ -411,3 +411,39 @@ fn normal_forces_of_linear_sides_have_no_moment_either() {
         }
     }
 }
+
+/// A shaft that is longer than the linear bore around it: beyond the rim it is as far from it as within, and presses
+/// nothing.
+#[test]
+fn a_shaft_beyond_the_rim_of_its_bore_is_as_far_from_it() {
+    let quarter = |radii: [f64; 2], cells: [usize; 3], ends: [f64; 2]| {
+        let place = |[x, y, z]: [f64; 3]| {
+            let (radius, angle) = (radii[0] + x * (radii[1] - radii[0]), 0.5 * std::f64::consts::PI * y);
+            [
+                radius * angle.cos(),
+                radius * angle.sin(),
+                ends[0] + z * (ends[1] - ends[0]),
+            ]
+        };
+        block([1.0; 3], cells).map_points(place).expect("quarter")
+    };
+    for cells in [[12, 17], [17, 12], [12, 13]] {
+        let shaft = quarter([4.0, 9.98], [1, cells[0], 5], [-1.3, 2.9]);
+        let bore = quarter([10.0, 14.0], [1, cells[1], 2], [0.0, 1.7]);
+        let mesh = with_second(&shaft, &bore);
+        let scene = Scene::new(mesh.clone(), uniform(1e3, 0.3))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_support(Support::fixed(second(brick::X_MAX)))
+            .with_contact(Contact::between(brick::X_MAX, second(brick::X_MIN)));
+        let mut beyond = 0;
+        for point in &solve(scene, at(1e-8)).points {
+            // at the planes of the cut normals are those of one facet
+            if point.normal[..2].iter().all(|c| c.abs() > 0.2) {
+                assert!((point.gap / 0.02 - 1.0).abs() < 0.01, "{cells:?} {point:?}");
+                beyond += usize::from(!(-1e-9..1.7 + 1e-9).contains(&mesh.points()[point.node as usize][2]));
+            }
+        }
+        // the coarser side has the points
+        assert!(beyond > 0 || cells != [12, 17]);
+    }
+}

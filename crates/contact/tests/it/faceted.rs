@@ -246,7 +246,7 @@ fn a_curve_in_patches_presses_as_one() {
         };
         straight.map_points(place).expect("half a ring")
     };
-    let press = |cells: [usize; 2], order, patches: [usize; 2], rough: bool| {
+    let press = |cells: [usize; 2], order, patches: [usize; 2], rough: bool, fit: bool| {
         let pin = mesh([2.0, 10.0], (cells[0], order), 1.0, patches[0]);
         let bore = mesh([10.02, 30.0], (cells[1], order), -1.0, patches[1]);
         let law = |k: usize| if rough && 2 * k < patches[0] { Friction::coulomb(0.3) } else { Friction::None };
@@ -256,7 +256,10 @@ fn a_curve_in_patches_presses_as_one() {
         let tag = |k: usize| FacetTag(10 + k as u32);
         let pairs = (0..patches[0]).flat_map(|k| (0..patches[1]).map(move |j| [k, j]));
         let met = pairs.filter(|[k, j]| patches[0] != patches[1] || k == j);
-        let contact = |[k, j]: [usize; 2]| Contact::between(tag(k), second(tag(j))).with_friction(law(k));
+        let contact = |[k, j]: [usize; 2]| {
+            let contact = Contact::between(tag(k), second(tag(j))).with_friction(law(k));
+            if fit { contact.with_gap(-0.02).with_gap_history(ramp()) } else { contact }
+        };
         let scene = met.fold(scene, |scene, pair| scene.with_contact(contact(pair)));
         let places = scene.mesh().points().to_vec();
         let result = solve(scene, at(1e-9));
@@ -267,11 +270,17 @@ fn a_curve_in_patches_presses_as_one() {
         forces.sort_by_key(|force| force.0);
         (forces, sheared)
     };
-    for (cells, order) in [([20, 24], 1), ([24, 20], 1), ([23, 36], 1), ([12, 16], 2)] {
-        let (expected, _) = press(cells, order, [1, 1], false);
+    for (cells, order, fit) in [
+        ([20, 24], 1, false),
+        ([24, 20], 1, false),
+        ([24, 20], 1, true),
+        ([23, 36], 1, false),
+        ([12, 16], 2, false),
+    ] {
+        let (expected, _) = press(cells, order, [1, 1], false, fit);
         let most = expected.iter().map(|force| force.1.abs()).fold(0.0, f64::max);
         for patches in [[2, 2], [4, 4], [1, 2], [3, 2]] {
-            let (forces, _) = press(cells, order, patches, false);
+            let (forces, _) = press(cells, order, patches, false, fit);
             assert_eq!(forces.len(), expected.len());
             for (own, one) in forces.iter().zip(&expected) {
                 let off = (own.1 - one.1).abs() / most;
@@ -279,7 +288,7 @@ fn a_curve_in_patches_presses_as_one() {
             }
         }
     }
-    let (_, sheared) = press([20, 24], 1, [2, 2], true);
+    let (_, sheared) = press([20, 24], 1, [2, 2], true, false);
     assert!(!sheared.is_empty() && sheared.iter().all(|x| *x < 1e-9), "{sheared:?}");
 }
 
@@ -461,5 +470,10 @@ fn what_tilted_facets_hold_is_told() {
         );
         let rough = solve(0.02, order, 0.3).expect("held");
         assert_eq!(told(&rough), None, "{rough:?}");
+    }
+    // where all friction is spent the rest alone decides
+    for (coefficient, expected) in [(0.014, true), (0.02, false)] {
+        let share = told(&solve(0.02, 1, coefficient).expect("held"));
+        assert_eq!(share.is_some_and(|share| share < 0.15), expected, "{share:?}");
     }
 }
