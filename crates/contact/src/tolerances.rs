@@ -403,7 +403,8 @@ pub(crate) const LARGE_STRAIN: f64 = 0.05;
 pub(crate) const LONG_SLIP: f64 = 1.0;
 
 /// Part of what loads do along a motion, over what they do along all of the body, below which it does not matter; and of
-/// the former from which on it is told that normal forces hold it by the tilt of facets.
+/// the former from which on it is told that normal forces hold it by the tilt of facets, or from the first one on where
+/// all pressed points slide.
 pub(crate) const TILT_MATTERS: f64 = 0.01;
 pub(crate) const HELD_BY_TILT: f64 = 0.2;
 
