@@ -46,6 +46,13 @@ pub(super) struct Paired {
     pub(super) swapped: bool,
 }
 
+/// What is known of a contact once matching meshes are found.
+pub(super) enum Found {
+    Paired(Paired),
+    /// Its sides, whose meshes do not match.
+    Apart([Surface; 2]),
+}
+
 /// What the nodes of a contact surface may touch.
 #[derive(Debug)]
 pub(super) enum Partners {
@@ -63,13 +70,12 @@ impl Paired {
         matches!(self.partners, Partners::Mortar(_))
     }
 
-    /// The sides of a contact with an obstacle, or of two whose meshes match: the first one has the points. `None` where
-    /// they do not.
+    /// The sides of a contact with an obstacle, or of two whose meshes match: the first one has the points.
     pub(super) fn matching(
         mesh: &TetMesh,
         (index, contact): (usize, &Contact),
         rounding: f64,
-    ) -> Result<Option<Self>, ContactError> {
+    ) -> Result<Found, ContactError> {
         let surface = Surface::new(mesh, &contact.tags)?;
         let fixed = fixed_frame(index, contact, &surface)?;
         let paired = |surface, partners| Self {
@@ -79,7 +85,7 @@ impl Paired {
             swapped: false,
         };
         if contact.partner.is_empty() {
-            return Ok(Some(paired(surface, Partners::Obstacle)));
+            return Ok(Found::Paired(paired(surface, Partners::Obstacle)));
         }
         if let Some(tag) = contact.tags.iter().find(|t| contact.partner.contains(t)) {
             return Err(ContactError::SameSide {
@@ -89,7 +95,10 @@ impl Paired {
         }
         let other = OtherSide::new(mesh, Surface::new(mesh, &contact.partner)?);
         let nodes = nodes(mesh, index, contact, &surface, fixed.as_ref(), &other, rounding)?;
-        Ok(nodes.map(|nodes| paired(surface, Partners::Nodes(nodes))))
+        Ok(match nodes {
+            Some(nodes) => Found::Paired(paired(surface, Partners::Nodes(nodes))),
+            None => Found::Apart([surface, other.surface]),
+        })
     }
 
     /// The sides of a contact whose meshes do not match. The coarser one has the points, of sides with facets of one
@@ -101,10 +110,9 @@ impl Paired {
     pub(super) fn apart(
         (mesh, materials): (&TetMesh, &Materials),
         (index, contact): (usize, &Contact),
+        [surface, other]: [Surface; 2],
         crossing: &HashSet<u32>,
     ) -> Result<Self, ContactError> {
-        let surface = Surface::new(mesh, &contact.tags)?;
-        let other = Surface::new(mesh, &contact.partner)?;
         let fixed = fixed_frame(index, contact, &surface)?;
         let facet = |s: &Surface| s.total_area() / s.triangles().len() as f64;
         let [own, others] = [facet(&surface), facet(&other)];
@@ -419,7 +427,7 @@ mod tests {
             let mesh = bent(gap);
             let contact = Contact::between(brick::Z_MIN, lower(brick::Z_MAX));
             let paired = Paired::matching(&mesh, (0, &contact), 1e-12).expect("partners");
-            let Some(Paired {
+            let Found::Paired(Paired {
                 partners: Partners::Nodes(found),
                 surface,
                 ..
@@ -467,7 +475,7 @@ mod tests {
         for (inner, apart) in [(None, false), (Some([0.3, 0.3, 0.0]), true)] {
             let mesh = cone(None, 1.0, above).append(&cone(inner, -1.0, below)).expect("two");
             let paired = Paired::matching(&mesh, (0, &contact), 1e-12).expect("partners");
-            assert_eq!(paired.is_none(), apart);
+            assert_eq!(matches!(paired, Found::Apart(_)), apart);
         }
     }
 }

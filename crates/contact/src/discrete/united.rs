@@ -2,7 +2,7 @@
 
 use super::crossing::crossing;
 use super::means::opened;
-use super::partners::{Paired, Partners};
+use super::partners::{Found, Paired, Partners};
 use crate::error::ContactError;
 use crate::scene::{Contact, Gap, Scene};
 use crate::tolerances::SHARP;
@@ -14,49 +14,55 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 /// Finds the sides of all contacts. Of a group whose meshes do not match each node has one point, in that contact whose
 /// other side it sees most of, and of these in the first.
 pub(super) fn pair(scene: &Scene, rounding: f64) -> Result<Vec<Paired>, ContactError> {
-    let contacts = scene.contacts.iter().enumerate();
-    let matching = contacts.map(|(index, contact)| {
-        let paired = Paired::matching(&scene.mesh, (index, contact), rounding)?;
-        paired.map(|p| opened(&scene.mesh, (index, contact), p)).transpose()
-    });
-    let mut out = matching.collect::<Result<Vec<_>, _>>()?;
-    let apart: Vec<usize> = (0..out.len()).filter(|k| out[*k].is_none()).collect();
-    for group in groups(scene, &apart)? {
-        let crossing = crossing(scene, &group);
-        let found = |contact: &Contact| Paired::apart((&scene.mesh, &scene.materials), (group[0], contact), &crossing);
-        let first = &scene.contacts[group[0]];
-        if let [index] = group[..] {
-            out[index] = Some(found(first)?);
+    let mesh = &scene.mesh;
+    let mut out: Vec<Option<Paired>> = Vec::with_capacity(scene.contacts.len());
+    let mut apart: Vec<Apart> = Vec::new();
+    for one in scene.contacts.iter().enumerate() {
+        out.push(match Paired::matching(mesh, one, rounding)? {
+            Found::Paired(paired) => Some(opened(mesh, one, paired)?),
+            Found::Apart(sides) => {
+                apart.push((one.0, sides));
+                None
+            }
+        });
+    }
+    for mut group in groups(scene, apart) {
+        let members: Vec<usize> = group.iter().map(|(index, _)| *index).collect();
+        let (index, first) = (members[0], &scene.contacts[members[0]]);
+        let crossing = crossing(scene, &members);
+        let found =
+            |contact: &Contact, sides| Paired::apart((mesh, &scene.materials), (index, contact), sides, &crossing);
+        if group.len() == 1 {
+            out[index] = group.pop().map(|(_, sides)| found(first, sides)).transpose()?;
             continue;
         }
         let mut whole = first.clone();
         let all = |side: fn(&Contact) -> &[FacetTag]| {
-            distinct(group.iter().flat_map(|k| side(&scene.contacts[*k]).iter().copied()))
+            distinct(members.iter().flat_map(|k| side(&scene.contacts[*k]).iter().copied()))
         };
         (whole.tags, whole.partner) = (all(|c| &c.tags), all(|c| &c.partner));
-        let parts = share_out(scene, &group, found(&whole)?)?;
-        group
-            .into_iter()
-            .zip(parts)
-            .for_each(|(index, part)| out[index] = Some(part));
+        let sides = [Surface::new(mesh, &whole.tags)?, Surface::new(mesh, &whole.partner)?];
+        let whole = found(&whole, sides)?;
+        for (index, part) in share_out(scene, group, whole) {
+            out[index] = Some(part);
+        }
     }
     Ok(out.into_iter().flatten().collect())
 }
 
-/// What each contact of a group has of their sides.
-fn share_out(scene: &Scene, group: &[usize], whole: Paired) -> Result<Vec<Paired>, ContactError> {
-    let sides = group.iter().map(|k| {
-        let contact = &scene.contacts[*k];
-        let [own, other] = if whole.swapped {
-            [&contact.partner, &contact.tags]
-        } else {
-            [&contact.tags, &contact.partner]
-        };
+/// A contact whose meshes do not match, with its sides.
+type Apart = (usize, [Surface; 2]);
+
+/// What each contact of a group has of the sides of all.
+fn share_out(scene: &Scene, group: Vec<Apart>, whole: Paired) -> Vec<(usize, Paired)> {
+    let sides = group.into_iter().map(|(index, [first, second])| {
+        let contact = &scene.contacts[index];
+        let (own, other) = if whole.swapped { (second, &contact.tags) } else { (first, &contact.partner) };
         let other = other.iter().flat_map(|tag| scene.mesh.nodes_on(*tag));
-        Ok((Surface::new(&scene.mesh, own)?, other.collect::<HashSet<u32>>()))
+        (index, own, other.collect())
     });
-    let sides = sides.collect::<Result<Vec<_>, ContactError>>()?;
-    let mut parts: Vec<Vec<_>> = sides.iter().map(|(own, _)| vec![None; own.nodes().len()]).collect();
+    let sides: Vec<(usize, Surface, HashSet<u32>)> = sides.collect();
+    let mut parts: Vec<Vec<_>> = sides.iter().map(|(_, own, _)| vec![None; own.nodes().len()]).collect();
     let seen = match whole.partners {
         Partners::Mortar(seen) => seen,
         Partners::Nodes(_) | Partners::Obstacle => Vec::new(),
@@ -64,7 +70,7 @@ fn share_out(scene: &Scene, group: &[usize], whole: Paired) -> Result<Vec<Paired
     for (node, seen) in whole.surface.nodes().iter().zip(seen) {
         let Some(seen) = seen else { continue };
         let mut most = None::<(f64, usize, usize)>;
-        for (k, (own, other)) in sides.iter().enumerate() {
+        for (k, (_, own, other)) in sides.iter().enumerate() {
             let Some(local) = own.local(*node) else { continue };
             let of_it = seen.partner.iter().filter(|(node, _)| other.contains(node));
             let share: f64 = of_it.map(|(_, weight)| weight.abs()).sum();
@@ -76,36 +82,34 @@ fn share_out(scene: &Scene, group: &[usize], whole: Paired) -> Result<Vec<Paired
             parts[k][local] = Some(seen);
         }
     }
-    let parts = sides.into_iter().zip(parts).map(|((surface, _), nodes)| Paired {
-        surface,
-        fixed: whole.fixed,
-        partners: Partners::Mortar(nodes),
-        swapped: whole.swapped,
-    });
-    Ok(parts.collect())
+    let part = |((index, surface, _), nodes): ((usize, Surface, HashSet<u32>), _)| {
+        let part = Paired {
+            surface,
+            fixed: whole.fixed,
+            partners: Partners::Mortar(nodes),
+            swapped: whole.swapped,
+        };
+        (index, part)
+    };
+    sides.into_iter().zip(parts).map(part).collect()
 }
 
 /// Those of these contacts that go on in one another on both sides and have gaps of one kind; each in a group.
-fn groups(scene: &Scene, of: &[usize]) -> Result<Vec<Vec<usize>>, ContactError> {
+fn groups(scene: &Scene, of: Vec<Apart>) -> Vec<Vec<Apart>> {
     if of.len() < 2 {
-        return Ok(of.iter().map(|k| vec![*k]).collect());
+        return of.into_iter().map(|one| vec![one]).collect();
     }
-    let contacts = || of.iter().map(|k| &scene.contacts[*k]);
-    let surfaces = contacts().flat_map(|c| [&c.tags, &c.partner]);
-    let surfaces = surfaces.map(|tags| Surface::new(&scene.mesh, tags));
-    let surfaces: Vec<Surface> = surfaces.collect::<Result<_, _>>()?;
-    let sets = smooth_sets(&surfaces.iter().collect::<Vec<_>>());
-    let mut out: Vec<(&[u32], Vec<usize>)> = Vec::new();
-    for ((k, contact), own) in of.iter().zip(contacts()).zip(sets.chunks(2)) {
-        let joins = |(sets, group): &&mut (&[u32], Vec<usize>)| {
-            *sets == own && group.iter().all(|k| are_alike(&scene.contacts[*k], contact))
-        };
+    let sets = smooth_sets(&of.iter().flat_map(|(_, sides)| sides).collect::<Vec<_>>());
+    let mut out: Vec<(&[u32], Vec<Apart>)> = Vec::new();
+    for (one, own) in of.into_iter().zip(sets.chunks(2)) {
+        let alike = |other: &Apart| are_alike(&scene.contacts[other.0], &scene.contacts[one.0]);
+        let joins = |(sets, group): &&mut (&[u32], Vec<Apart>)| *sets == own && group.iter().all(alike);
         match out.iter_mut().find(joins) {
-            Some((_, group)) => group.push(*k),
-            None => out.push((own, vec![*k])),
+            Some((_, group)) => group.push(one),
+            None => out.push((own, vec![one])),
         }
     }
-    Ok(out.into_iter().map(|(_, group)| group).collect())
+    out.into_iter().map(|(_, group)| group).collect()
 }
 
 /// Whether gaps of two contacts are measured alike, and neither has as its second side what the other has as its first.
