@@ -366,11 +366,10 @@ impl Table {
             about: known.model.nodes[leads.0 as usize].point,
             word: word.clone(),
         };
-        let motion = if lead.turns_apart(known.timeline)? {
+        if lead.turns_apart(known.timeline)? {
             return self.coupling(known, nodes, leads, word).map(Some);
-        } else {
-            lead.turning(known.timeline)?
-        };
+        }
+        let motion = lead.turning(known.timeline)?;
         for node in nodes {
             let label = known.raw.node_labels[node as usize];
             if known.transforms.of(node).is_some() {
