@@ -4,7 +4,7 @@ use super::never;
 use super::unmerged::unmerged;
 use crate::discrete::{ContactPoint, DiscreteScene, Extents, FacetedOverlaps};
 use crate::report::Warning;
-use crate::scene::{Contact, Coupling, Equation, Friction, Load, Scene, Support};
+use crate::scene::{Coupling, Equation, Friction, Load, Scene, Support};
 use crate::tolerances::{LARGE_COEFFICIENT, LARGE_GAP, LOCKING};
 use signorini_fem_mesh::History;
 
@@ -48,12 +48,17 @@ fn idle(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
         let value = equation.value.as_ref();
         value.is_some_and(|(value, history)| *value != 0.0 && ever(history))
     };
-    let presses = |p: &ContactPoint| p.gap < -discrete.rounding || scene.contacts[p.surface].changes_gap();
+    // bodies that nothing else loads stay as they are, so that an obstacle acts once it overlaps with one
+    let overlaps = |p: &ContactPoint, pose| p.gap_after(scene, pose).is_ok_and(|gap| gap < -discrete.rounding);
+    let presses = |p: &ContactPoint| {
+        let poses = &discrete.poses[p.surface];
+        p.gap < -discrete.rounding || poses.iter().any(|pose| overlaps(p, pose))
+    };
     let acts = scene.loads.iter().zip(&discrete.loads).any(pushes)
         || scene.supports.iter().any(pulled)
         || scene.couplings.iter().any(guided)
         || scene.equations.iter().any(parts)
-        || scene.contacts.iter().any(Contact::moves)
+        || scene.contacts.iter().any(|contact| contact.tied && contact.moves())
         || discrete.points.iter().any(presses);
     let held = !scene.supports.is_empty() || !scene.springs.is_empty() || !scene.couplings.is_empty();
     let held = held || !scene.equations.is_empty();

@@ -84,8 +84,8 @@ signorini_fem_mesh::errors! {
             materials has so much: {1} in per cent is {2}",
             told(place), number(*coefficient), number(coefficient / 100.0);
         NothingActs { held: bool } =
-            "no load acts, no support or obstacle moves and no sides overlap, so that all results are zero{}: look for \
-            loads, or supports that move, that are missing",
+            "no load acts, no support moves and nothing overlaps at any step, so that all results are zero{}: look for \
+            loads, or supports that move, that are missing, and at ways and tags of obstacles",
             if *held { "" } else { "; no support or spring holds a body either" };
         BetweenSteps { part: Part, start: f64, end: Option<f64>, last: f64 } =
             "{part} is to act from {start} s {}, but no step ends then, so that it never does (the last one ends at \

@@ -471,6 +471,13 @@ fn a_scene_in_which_nothing_acts_is_told() {
     };
     assert_eq!(idle(body().with_contact(floor().with_gap(0.1))), Some(false));
     assert_eq!(idle(held().with_contact(floor())), Some(true));
+    let rises = |way| floor().with_gap(0.1).with_motion([0.0, 0.0, way], ramp());
+    assert_eq!(
+        idle(held().with_contact(rises(0.09))),
+        Some(true),
+        "it stays below the body"
+    );
+    assert_eq!(idle(held().with_contact(rises(-0.2))), Some(true), "it moves away");
     let over = held().with_load(push.clone().with_history(never)).with_analysis(last);
     assert_eq!(idle(over), Some(true));
     let up = |way| Support::fixed(brick::Z_MIN).with_motion([0.0, 0.0, way], ramp());
@@ -479,7 +486,7 @@ fn a_scene_in_which_nothing_acts_is_told() {
         held().with_load(push),
         held().with_support(up(1e-3)),
         held().with_contact(floor().with_gap(-1e-3)),
-        held().with_contact(floor().with_gap(0.1).with_motion([0.0, 0.0, 0.2], ramp())),
+        held().with_contact(rises(0.2)),
         held().with_contact(floor().with_gap(1e-3).with_gap_history(History::constant(-1.0))),
         held().with_load(Load::eigenstrain(Eigenstrain::expansion(1e-3))),
     ];

@@ -252,6 +252,18 @@ impl Run<'_> {
         all.filter(|(_, fixed)| !**fixed).map(|((r, x), _)| (r * x).abs()).sum()
     }
 
+    /// What rounding leaves of the work of the residual: an equality that the matrix holds with a large weight works
+    /// much more in parts than in all.
+    fn rounding(&self) -> f64 {
+        let columns = self.matrix.entries().chunks_exact(self.x.len());
+        let column = |column: &[f64]| column.iter().zip(&*self.x).map(|(a, x)| (a * x).abs()).sum::<f64>();
+        let parts: f64 = columns
+            .zip(&*self.x)
+            .map(|(entries, x)| x.abs() * column(entries))
+            .sum();
+        f64::EPSILON * parts
+    }
+
     /// What values of inequalities times multipliers are compared with: twice the work of the load, that of the
     /// residual, and of what bounds hold.
     fn energy(&self) -> f64 {
@@ -277,7 +289,8 @@ impl Run<'_> {
         let status = loop {
             self.update_residual();
             let (tau, size) = (self.complementarity(), self.energy());
-            let solved = self.residual_work() <= SOLVED * size;
+            let work = self.residual_work();
+            let solved = work <= SOLVED * size || work <= self.rounding();
             small = if solved && tau <= target * size { small + 1 } else { 0 };
             // without inequalities one step is all
             let enough = if self.cones.all.is_empty() {

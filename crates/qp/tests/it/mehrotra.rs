@@ -128,6 +128,33 @@ fn what_rests_at_the_start_is_let_go() {
     }
 }
 
+/// What forces balance anyway, with a large weight: its parts cancel, and their rounding works more than a solution may
+/// lack otherwise.
+#[test]
+fn an_equality_with_a_large_weight_leaves_rounding() {
+    let n = 40;
+    let (a, b, set, slopes) = beam(n, 2);
+    let mut x = vec![0.0; a.dim()];
+    let _ = interior_point(&a, &b, &set, &slopes, TARGET, &mut x).expect("valid");
+    let size = a.dim();
+    let [even, odd] = [0, 1].map(|first| x[first..n].iter().step_by(2).sum::<f64>());
+    let balance = |i: usize| if i % 2 == 0 { 1.0 } else { -even / odd };
+    for weight in [1e2, 1e6] {
+        let mut entries = a.entries().to_vec();
+        for i in 0..n {
+            for j in 0..n {
+                entries[i * size + j] += weight * balance(i) * balance(j);
+            }
+        }
+        let a = DenseOperator::new(size, entries).expect("symmetric");
+        let mut other = vec![0.0; size];
+        let report = interior_point(&a, &b, &set, &slopes, 1e-18, &mut other).expect("valid");
+        let off = vector::distance(&x, &other) / vector::norm(&x);
+        assert_eq!(report.status, Status::Converged, "{weight:e}");
+        assert!(off < 1e-4, "{weight:e}: {off:e}");
+    }
+}
+
 #[test]
 fn sets_without_inequalities_take_one_step() {
     let mut r = Random::new(3);
