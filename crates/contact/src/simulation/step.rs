@@ -10,7 +10,7 @@ use crate::result::{ContactState, PointState, Recovered, Sizes, summarise};
 use crate::scene::{Friction, Increment};
 use crate::settings::Accuracy;
 use crate::solve::{Attempt, Iterate, Task};
-use crate::state::{Kept, Peak, State};
+use crate::state::{Peak, State};
 use crate::status::StepStatus;
 use crate::step::{Acting, StepProblem};
 use crate::tolerances::CERTIFIED;
@@ -181,38 +181,35 @@ impl Simulation {
     fn remember(&mut self, state: &mut State, result: &mut StepResult, way: &Way) {
         let (model, problem, recovered) = (&self.model, &self.problem, &result.recovered);
         let history = model.plan.effects.history;
-        let mut kept = Kept {
-            time: problem.time,
-            halved: way.halved(),
-            between: way.goes_on(),
-            effort: self.iterate.effort,
-            shortest_step: self.iterate.shortest_step,
-            ..Kept::default()
-        };
+        let goes_on = way.goes_on() || problem.index + 1 < model.plan.steps;
+        let mut trace = Vec::new();
+        state.sliding.clear();
         if history {
             let rows = self.caches.agreed(model, &problem.offset, recovered);
-            kept.trace = traces(model, problem, &rows);
+            trace = traces(model, problem, &rows);
             let slides = |p: &PointState| p.state == ContactState::Slip;
-            kept.sliding = recovered.points.iter().map(slides).collect();
+            state.sliding.extend(recovered.points.iter().map(slides));
         }
+        state.push_trace(trace);
         let motions = model.coupling_motions(&recovered.torn).into_iter().enumerate();
         let along = |(k, motion)| model.discrete.couplings.along(k, motion);
-        kept.motions = motions.map(along).collect();
+        state.motions = motions.map(along).collect();
         let spans = model.scene.has_spans() && model.scene.stage_steps().end < model.plan.steps;
-        let goes_on = kept.between || problem.index + 1 < model.plan.steps;
         let is_held = || model.loose_motions().is_ok_and(|motions| motions.is_empty());
-        if spans || history && goes_on && !is_held() {
-            kept.displacement = model.tfeti.nodal_mean(&recovered.torn);
-        }
+        state.displacement = match spans || history && goes_on && !is_held() {
+            true => model.tfeti.nodal_mean(&recovered.torn),
+            false => Vec::new(),
+        };
+        state.rate.clear();
         if history && model.any_law(Friction::depends_on_rate) {
-            kept.rate = recovered.points.iter().map(|p| p.slip_rate).collect();
+            state.rate.extend(recovered.points.iter().map(|p| p.slip_rate));
             result.report.counters.rate_updates += 1;
         }
-        if model.plan.steps > 1 || kept.between {
+        let mut vectors = <[Vec<f64>; 3]>::default();
+        if model.plan.steps > 1 || way.goes_on() {
             product(model, problem, &recovered.rows, &mut self.iterate);
-            kept.f_lambda = std::mem::take(&mut self.iterate.f_lambda);
-            kept.lambda = std::mem::take(&mut self.iterate.lambda);
-            kept.multiplier = std::mem::take(&mut self.iterate.multiplier);
+            let iterate = &mut self.iterate;
+            vectors = [&mut iterate.lambda, &mut iterate.f_lambda, &mut iterate.multiplier].map(std::mem::take);
         }
         if result.report.status.converged() {
             // what did not converge is no scale for later steps
@@ -221,8 +218,13 @@ impl Simulation {
         } else if history || model.scene.leaves() || model.scene.couplings.iter().any(|c| c.pending().is_some()) {
             state.note_unconverged();
         }
-        let old = state.advance(self.settings.extrapolate, self.operator, kept);
+        let old = state.push(self.settings.extrapolate, self.operator, vectors);
         [self.iterate.lambda, self.iterate.f_lambda] = old;
+        (state.halved, state.effort) = (way.halved(), self.iterate.effort);
+        state.shortest_step = self.iterate.shortest_step;
+        if !way.goes_on() {
+            state.pass(problem.time);
+        }
         if let Some(accuracy) = &result.report.accuracy {
             self.controller.errors = accuracy.accumulated;
             state.controller = self.controller;

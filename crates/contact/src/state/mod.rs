@@ -18,5 +18,5 @@ mod tolerance;
 pub(crate) use bytes::{explained, failed};
 pub(crate) use fingerprint::{Fingerprint, operator_hash};
 pub use state::State;
-pub(crate) use state::{Kept, NOT_FINITE, Peak};
+pub(crate) use state::{NOT_FINITE, Peak};
 pub(crate) use tolerance::{Controller, Discretisation, certificate_limit};

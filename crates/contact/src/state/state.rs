@@ -76,35 +76,6 @@ impl Peak {
     }
 }
 
-/// What a step leaves; vectors that the scene does not need are empty.
-#[derive(Debug, Default)]
-pub(crate) struct Kept {
-    /// Time of the step, s.
-    pub(crate) time: f64,
-    pub(crate) lambda: Vec<f64>,
-    /// `F lambda`.
-    pub(crate) f_lambda: Vec<f64>,
-    /// Multiplier of the coarse equality.
-    pub(crate) multiplier: Vec<f64>,
-    /// Tangential displacements, m.
-    pub(crate) trace: Vec<f64>,
-    /// Slip rates, m/s.
-    pub(crate) rate: Vec<f64>,
-    /// Points that slide.
-    pub(crate) sliding: Vec<bool>,
-    /// How often the step was halved to get the increment, and whether the step goes on after it.
-    pub(crate) halved: u32,
-    pub(crate) between: bool,
-    /// Products beyond those of easy solves, over all steps.
-    pub(crate) effort: usize,
-    /// The shortest step of conjugate gradients.
-    pub(crate) shortest_step: f64,
-    /// Motions of couplings.
-    pub(crate) motions: Vec<[f64; 6]>,
-    /// Displacements of all nodes, m.
-    pub(crate) displacement: Vec<f64>,
-}
-
 /// Why a state is refused that is damaged so.
 pub(crate) const NOT_FINITE: &str = "it contains NaN or infinity; use an earlier checkpoint or start anew";
 
@@ -161,37 +132,37 @@ impl State {
         &self.trace[0]
     }
 
-    /// Takes over what a step leaves, whose products are those with this F. Returns the multipliers and products that
-    /// are not needed any more, for their memory.
-    pub(crate) fn advance(&mut self, keep_before: bool, operator: u64, new: Kept) -> [Vec<f64>; 2] {
+    /// Takes over the multipliers of a step, their products with this F, and the multiplier of the coarse equality.
+    /// Returns the multipliers and products that are not needed any more, for their memory.
+    pub(crate) fn push(
+        &mut self,
+        keep_before: bool,
+        operator: u64,
+        [lambda, f_lambda, multiplier]: [Vec<f64>; 3],
+    ) -> [Vec<f64>; 2] {
         let push = |pair: &mut [Vec<f64>; 2], new: Vec<f64>| {
             pair.swap(0, 1);
             let old = std::mem::replace(&mut pair[0], new);
             if keep_before { old } else { std::mem::take(&mut pair[1]) }
         };
-        let old = [
-            push(&mut self.lambda, new.lambda),
-            push(&mut self.f_lambda, new.f_lambda),
-        ];
-        push(&mut self.multiplier, new.multiplier);
+        let old = [push(&mut self.lambda, lambda), push(&mut self.f_lambda, f_lambda)];
+        push(&mut self.multiplier, multiplier);
         self.seals = [seal(operator, &self.lambda[0], &self.f_lambda[0]), self.seals[0]];
-        // old tangential displacements are part of the model, not of the extrapolation
-        self.trace.swap(0, 1);
-        self.trace[0] = new.trace;
-        self.rate = new.rate;
-        self.sliding = new.sliding;
-        self.halved = new.halved;
-        self.effort = new.effort;
-        self.shortest_step = new.shortest_step;
-        self.motions = new.motions;
-        self.displacement = new.displacement;
-        if !new.between {
-            self.step += 1;
-            if let Some(origin) = &mut self.origin {
-                origin.pass(new.time);
-            }
-        }
         old
+    }
+
+    /// Takes over tangential displacements. The old ones are part of the model, not of the extrapolation.
+    pub(crate) fn push_trace(&mut self, new: Vec<f64>) {
+        self.trace.swap(0, 1);
+        self.trace[0] = new;
+    }
+
+    /// Counts the step that ends at this time.
+    pub(crate) fn pass(&mut self, time: f64) {
+        self.step += 1;
+        if let Some(origin) = &mut self.origin {
+            origin.pass(time);
+        }
     }
 
     /// Takes the sizes of a step into account, one a body.
@@ -288,14 +259,10 @@ pub(crate) mod tests {
 
     pub(crate) fn state() -> State {
         let mut state = State::default();
-        let kept = Kept {
-            lambda: vec![1.0 / 3.0, -2.0],
-            f_lambda: vec![0.1, 0.2],
-            trace: vec![1e-300],
-            sliding: vec![true],
-            ..Kept::default()
-        };
-        state.advance(true, 0, kept);
+        state.push(true, 0, [vec![1.0 / 3.0, -2.0], vec![0.1, 0.2], Vec::new()]);
+        state.push_trace(vec![1e-300]);
+        state.sliding = vec![true];
+        state.pass(0.0);
         state
     }
 
@@ -305,7 +272,7 @@ pub(crate) mod tests {
         assert_eq!(state.unconverged_history(), None);
         state.note_unconverged();
         for _ in 0..2 {
-            state.advance(true, 0, Kept::default());
+            state.pass(0.0);
             state.note_unconverged();
         }
         assert_eq!((state.step(), state.unconverged_history()), (3, Some(1)));
@@ -345,14 +312,7 @@ pub(crate) mod tests {
         let mut other = state.clone();
         other.note_unconverged();
         assert!(other.fits(2, 6, 1, 1).is_err(), "a level to come");
-        let kept = Kept {
-            lambda: vec![f64::NAN, 0.0],
-            f_lambda: vec![0.0; 2],
-            trace: vec![0.0],
-            sliding: vec![false],
-            ..Kept::default()
-        };
-        state.advance(true, 0, kept);
+        state.push(true, 0, [vec![f64::NAN, 0.0], vec![0.0; 2], Vec::new()]);
         assert!(state.fits(2, 6, 1, 1).is_err());
     }
 }
