@@ -16,7 +16,7 @@ use signorini_tfeti::{ContactConstraint, Directions, NodeSupport, RigidSupport, 
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The couplings of a scene.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct Couplings {
     /// Subdomain of the first one: the number of those with elements.
     pub(crate) first: usize,
@@ -44,122 +44,101 @@ impl Couplings {
     ) -> Result<(Decomposition, Self), ContactError> {
         let mut out = Self {
             first: decomposition.subdomains().len(),
-            supports: Vec::new(),
-            of_node: BTreeMap::new(),
-            relative: BTreeMap::new(),
-            axes: Vec::with_capacity(scene.couplings.len()),
-            about: Vec::with_capacity(scene.couplings.len()),
-            unit: Vec::with_capacity(scene.couplings.len()),
+            ..Self::default()
         };
         if scene.couplings.is_empty() {
             return Ok((decomposition, out));
         }
-        let units = sizes(scene);
         let mut rigid = Vec::with_capacity(scene.couplings.len());
-        for (index, coupling) in scene.couplings.iter().enumerate() {
+        for (index, unit) in sizes(scene).into_iter().enumerate() {
             let nodes = out.nodes_of(scene, index)?;
-            let places: Vec<_> = nodes.iter().map(|&n| scene.mesh.points()[n as usize]).collect();
-            let point = match coupling.is_point() {
-                false => coupling.reference,
-                // not far from them, wherever it is said to be
-                true => scale(1.0 / places.len() as f64, places.iter().copied().fold([0.0; 3], add)),
-            };
-            let refuse = |node, reason| Err(ContactError::coupling(index, node, reason));
-            let motions = || coupling.motions.iter().flat_map(|m| m.0.iter().zip(&coupling.held));
-            let Some(axes) = axes(coupling) else {
-                return refuse(
-                    None,
-                    "its axis has no direction; give it one of finite length, not zero",
-                );
-            };
-            if !is_finite(coupling.reference) || motions().any(|(way, _)| !way.is_finite()) {
-                return refuse(None, "its reference point and its motions must be finite");
-            }
-            if coupling.is_point() {
-                check_point(scene, index)?;
-            }
-            if motions().any(|(way, held)| *way != 0.0 && !held) {
-                return refuse(
-                    None,
-                    "a motion that it does not hold is prescribed; hold it (with_held), or make it zero",
-                );
-            }
-            if coupling
-                .lock
-                .is_some_and(|(_, time)| !(time.is_finite() && time >= 0.0))
-            {
-                return refuse(None, "the time from which it is locked must be finite and not negative");
-            }
-            if forces_at_three(&places, point, [0.0; 3], [0.0; 3]).is_none() {
-                return refuse(
-                    None,
-                    "its nodes lie on one line, or are less than three; give it nodes that do not",
-                );
-            }
-            let far = |from| places.iter().map(|x| norm(sub(*x, from))).fold(0.0, f64::max);
-            let extent = far(places[0]);
-            if far(point) > FAR * extent {
-                let why = "its reference point is a million times as far away as its nodes are from one another, where \
-                    rounding is all that its motions tell; give it a nearer one";
-                return refuse(None, why);
-            }
-            let relative = !matches!(coupling.coupled, Coupled::Nodes(_));
-            for &node in nodes.iter().filter(|_| !relative) {
-                if out.of_node.insert(node, index).is_some() {
-                    let why = "it is in another coupling, too; give it to one of them, or make one coupling of both";
-                    return refuse(Some(node), why);
-                }
-                let held = supports.directions.get(&node).into_iter().flatten();
-                if !held
-                    .clone()
-                    .all(|d| says_the_same(scene, (coupling, &axes), (node, extent), d))
-                {
-                    let why = "a support holds it in a direction that the coupling leaves free, or moves it; hold the \
-                        coupling so (with_held), or leave the node out of one of them";
-                    return refuse(Some(node), why);
-                }
-            }
+            let placed = Placed::new(scene, index, &nodes)?;
+            let relative = !matches!(placed.coupling.coupled, Coupled::Nodes(_));
             if !relative {
-                supports.release(&nodes);
+                out.take(scene, &placed, &nodes, supports)?;
             }
-            let holds = |s: &NodeSupport| s.directions != Directions::Nothing;
-            if supports.nodes.iter().any(|s| s.nodes.is_empty() && holds(s)) {
-                let why = "a support holds nothing but some of its nodes, and says the same; leave the support out";
-                return refuse(nodes.first().copied(), why);
-            }
-            let subdomain = (out.first + index) as u32;
-            let unit = units[index];
-            let cases: Vec<u32> = coupling.motions.iter().map(|(_, h)| supports.case(h)).collect();
-            let holds = coupling.holds();
-            let locked = coupling.locked.iter().any(Option::is_some);
-            let still = locked.then(|| supports.case(&History::constant(1.0)));
-            for component in (0..6).filter(|&c| holds[c]) {
-                let mut direction = [[0.0; 3]; 2];
-                direction[component / 3] = axes[component % 3];
-                let values = cases.iter().zip(&coupling.motions);
-                let values = values.map(|(&case, (motion, _))| (case, motion[component]));
-                let values = values.chain(still.zip(coupling.locked[component]));
-                let values = values.map(|(case, value)| (case, unit * value));
-                out.supports.push(RigidSupport {
-                    subdomain,
-                    point,
-                    direction,
-                    values: values.filter(|v| v.1 != 0.0).collect(),
-                });
-            }
-            let idle = if coupling.is_point() { idle(scene, index, &axes)? } else { Vec::new() };
-            out.supports.extend(idle.into_iter().map(|along| RigidSupport {
-                subdomain,
-                point,
-                direction: [along, [0.0; 3]],
-                values: Vec::new(),
-            }));
+            out.hold(scene, &placed, unit, supports)?;
             rigid.push(if relative { Rigid::Places(nodes) } else { Rigid::Nodes(nodes) });
-            out.axes.push(axes);
-            out.about.push(point);
+            out.axes.push(placed.axes);
+            out.about.push(placed.point);
             out.unit.push(unit);
         }
         Ok((decomposition.with_rigid(rigid)?, out))
+    }
+
+    /// Takes the nodes that a coupling moves out of the supports, which must say the same of them.
+    fn take(
+        &mut self,
+        scene: &Scene,
+        placed: &Placed<'_>,
+        nodes: &[u32],
+        supports: &mut Supports,
+    ) -> Result<(), ContactError> {
+        let &Placed { index, coupling, .. } = placed;
+        let refuse = |node, reason| Err(ContactError::coupling(index, node, reason));
+        for &node in nodes {
+            if self.of_node.insert(node, index).is_some() {
+                let why = "it is in another coupling, too; give it to one of them, or make one coupling of both";
+                return refuse(Some(node), why);
+            }
+            let arm = sub(scene.mesh.points()[node as usize], coupling.reference);
+            let mut held = supports.directions.get(&node).into_iter().flatten();
+            let is_said = |held: &PrescribedDirection| {
+                let rests = scene.supports[held.support].motion.is_none() && !scene.has_started(held.support);
+                rests && stays(coupling, &placed.axes, arm, placed.extent, held.direction)
+            };
+            if !held.all(is_said) {
+                let why = "a support holds it in a direction that the coupling leaves free, or moves it; hold the \
+                    coupling so (with_held), or leave the node out of one of them";
+                return refuse(Some(node), why);
+            }
+        }
+        supports.release(nodes);
+        let holds = |s: &NodeSupport| s.directions != Directions::Nothing;
+        if supports.nodes.iter().any(|s| s.nodes.is_empty() && holds(s)) {
+            let why = "a support holds nothing but some of its nodes, and says the same; leave the support out";
+            return refuse(nodes.first().copied(), why);
+        }
+        Ok(())
+    }
+
+    /// Holds what a coupling says is held, and what of a point nothing says anything of.
+    fn hold(
+        &mut self,
+        scene: &Scene,
+        placed: &Placed<'_>,
+        unit: f64,
+        supports: &mut Supports,
+    ) -> Result<(), ContactError> {
+        let &Placed {
+            index, coupling, axes, ..
+        } = placed;
+        let support = |direction, values| RigidSupport {
+            subdomain: (self.first + index) as u32,
+            point: placed.point,
+            direction,
+            values,
+        };
+        let cases: Vec<u32> = coupling.motions.iter().map(|(_, h)| supports.case(h)).collect();
+        let locked = coupling.locked.iter().any(Option::is_some);
+        let still = locked.then(|| supports.case(&History::constant(1.0)));
+        let holds = coupling.holds();
+        let held = (0..6).filter(|&c| holds[c]).map(|component| {
+            let mut direction = [[0.0; 3]; 2];
+            direction[component / 3] = axes[component % 3];
+            let values = cases.iter().zip(&coupling.motions);
+            let values = values.map(|(&case, (motion, _))| (case, motion[component]));
+            let values = values.chain(still.zip(coupling.locked[component]));
+            let values = values.map(|(case, value)| (case, unit * value));
+            support(direction, values.filter(|v| v.1 != 0.0).collect())
+        });
+        self.supports.extend(held);
+        if coupling.is_point() {
+            let idle = idle(scene, index, &axes)?.into_iter();
+            self.supports
+                .extend(idle.map(|along| support([along, [0.0; 3]], Vec::new())));
+        }
+        Ok(())
     }
 
     /// The subdomain of the motion that the sides of a tied contact have relative to each other, if they have.
@@ -303,8 +282,8 @@ impl Couplings {
                 continue;
             };
             let coupling = &scene.couplings[index];
-            let extent = norm(sub(scene.mesh.points()[node as usize], coupling.reference));
-            if !stays(scene, (coupling, &self.axes[index]), (node, extent), direction) {
+            let arm = sub(scene.mesh.points()[node as usize], coupling.reference);
+            if !stays(coupling, &self.axes[index], arm, norm(arm), direction) {
                 let reason = "supports hold both sides in a direction in which they may move relative to each other; \
                     leave the nodes of one side out of the supports, or let the coupling hold this motion at zero";
                 return Err(ContactError::coupling(index, Some(node), reason));
@@ -351,6 +330,65 @@ impl Couplings {
     }
 }
 
+/// A coupling that makes sense by itself.
+struct Placed<'a> {
+    index: usize,
+    coupling: &'a Coupling,
+    axes: [Vec3; 3],
+    /// The point whose displacement is told, see [`Couplings::about`].
+    point: Vec3,
+    /// How far its nodes are from one another, m.
+    extent: f64,
+}
+
+impl<'a> Placed<'a> {
+    fn new(scene: &'a Scene, index: usize, nodes: &[u32]) -> Result<Self, ContactError> {
+        let coupling = &scene.couplings[index];
+        let refuse = |reason| Err(ContactError::coupling(index, None, reason));
+        let Some(axes) = axes(coupling) else {
+            return refuse("its axis has no direction; give it one of finite length, not zero");
+        };
+        let motions = || coupling.motions.iter().flat_map(|m| m.0.iter().zip(&coupling.held));
+        if !is_finite(coupling.reference) || motions().any(|(way, _)| !way.is_finite()) {
+            return refuse("its reference point and its motions must be finite");
+        }
+        if coupling.is_point() {
+            check_point(scene, index)?;
+        }
+        if motions().any(|(way, held)| *way != 0.0 && !held) {
+            return refuse("a motion that it does not hold is prescribed; hold it (with_held), or make it zero");
+        }
+        let is_time = |time: f64| time.is_finite() && time >= 0.0;
+        if coupling.lock.is_some_and(|(_, time)| !is_time(time)) {
+            return refuse("the time from which it is locked must be finite and not negative");
+        }
+        let places: Vec<_> = nodes.iter().map(|&n| scene.mesh.points()[n as usize]).collect();
+        let point = match coupling.is_point() {
+            false => coupling.reference,
+            // not far from them, wherever it is said to be
+            true => scale(1.0 / places.len() as f64, places.iter().copied().fold([0.0; 3], add)),
+        };
+        if forces_at_three(&places, point, [0.0; 3], [0.0; 3]).is_none() {
+            return refuse("its nodes lie on one line, or are less than three; give it nodes that do not");
+        }
+        let far = |from| places.iter().map(|x| norm(sub(*x, from))).fold(0.0, f64::max);
+        let extent = far(places[0]);
+        if far(point) > FAR * extent {
+            return refuse(
+                "its reference point is a million times as far away as its nodes are from one another, where \
+                    rounding is all that its motions tell; give it a nearer one",
+            );
+        }
+        Ok(Self {
+            index,
+            coupling,
+            axes,
+            point,
+            extent,
+        })
+    }
+}
+
 /// Along and about which it is told what is held; `None` if its axis has no direction.
 fn axes(coupling: &Coupling) -> Option<[Vec3; 3]> {
     let Some(axis) = coupling.axis else {
@@ -363,26 +401,9 @@ fn axes(coupling: &Coupling) -> Option<[Vec3; 3]> {
     Some([normal, t1, t2])
 }
 
-/// Whether what is held of a coupling, whose nodes are so far from one another, holds a node, too, where a support
-/// does, and neither moves it there.
-fn says_the_same(
-    scene: &Scene,
-    coupling: (&Coupling, &[Vec3; 3]),
-    node: (u32, f64),
-    held: &PrescribedDirection,
-) -> bool {
-    let rests = scene.supports[held.support].motion.is_none() && !scene.has_started(held.support);
-    rests && stays(scene, coupling, node, held.direction)
-}
-
-/// Whether what is held of a coupling keeps a node where it is along a direction.
-fn stays(
-    scene: &Scene,
-    (coupling, axes): (&Coupling, &[Vec3; 3]),
-    (node, extent): (u32, f64),
-    direction: Vec3,
-) -> bool {
-    let arm = sub(scene.mesh.points()[node as usize], coupling.reference);
+/// Whether what is held of a coupling, whose nodes are so far from one another, keeps a node at an arm from its
+/// reference point where it is along a direction.
+fn stays(coupling: &Coupling, axes: &[Vec3; 3], arm: Vec3, extent: f64, direction: Vec3) -> bool {
     // what each motion of the coupling does to the node along the direction
     let parts = [direction, cross(arm, direction)].map(|part| axes.map(|axis| dot(axis, part)));
     let parts = parts.as_flattened();
