@@ -103,7 +103,7 @@ pub mod internal {
     pub use crate::rows::dependencies::Dependency;
     pub use crate::rows::equations::independent_equations;
     pub use crate::rows::rigid::forces_at_three;
-    pub use crate::rows::supports::{PrescribedDirection, prescribed_directions};
+    pub use crate::rows::supports::{FixedDirection, MergedSupports};
     pub use crate::subdomain::class::{Class, Classes};
     pub use crate::subdomain::copy_stiffness::CopyStiffness;
     pub use crate::subdomain::cost::{ClassReport, InverseKind};

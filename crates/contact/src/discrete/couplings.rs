@@ -11,7 +11,7 @@ use signorini_fem_mesh::decomposition::Rigid;
 use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, is_finite, norm, scale, sub};
 use signorini_fem_mesh::{Decomposition, History, LoadError, SurfaceFrame};
-use signorini_tfeti::internal::{PrescribedDirection, forces_at_three, unsaid_directions};
+use signorini_tfeti::internal::{FixedDirection, forces_at_three, unsaid_directions};
 use signorini_tfeti::{ContactConstraint, Directions, NodeSupport, RigidSupport, Side};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -82,12 +82,11 @@ impl Couplings {
                 return refuse(Some(node), why);
             }
             let arm = sub(scene.mesh.points()[node as usize], coupling.reference);
-            let mut held = supports.directions.get(&node).into_iter().flatten();
-            let is_said = |held: &PrescribedDirection| {
+            let is_said = |held: &FixedDirection| {
                 let rests = scene.supports[held.support].motion.is_none() && !scene.has_started(held.support);
                 rests && stays(coupling, &placed.axes, arm, placed.extent, held.direction)
             };
-            if !held.all(is_said) {
+            if !supports.merged.directions(node).iter().all(is_said) {
                 let why = "a support holds it in a direction that the coupling leaves free, or moves it; hold the \
                     coupling so (with_held), or leave the node out of one of them";
                 return refuse(Some(node), why);
@@ -218,7 +217,7 @@ impl Couplings {
             return Ok(());
         }
         let is_held = |node: u32, normal: Vec3| {
-            let held = supports.directions.get(&node).into_iter().flatten();
+            let held = supports.merged.directions(node).iter();
             held.map(|d| dot(d.direction, normal).powi(2)).sum::<f64>() >= 1.0 - ALONG
         };
         for point in points {
@@ -275,8 +274,7 @@ impl Couplings {
                 return Err(ContactError::coupling(coupling, Some(node), reason));
             }
         }
-        let nodes = scene.mesh.points().len();
-        for (k, direction) in unsaid_directions(constraints, &supports.nodes, nodes)? {
+        for (k, direction) in unsaid_directions(constraints, &supports.merged) {
             let (tied, node) = (&constraints[k], constraints[k].side.nodes()[0].0);
             let Some(index) = coupling(tied) else {
                 continue;

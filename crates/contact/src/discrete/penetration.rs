@@ -73,7 +73,7 @@ fn slack(
 ) -> Result<Option<f64>, ContactError> {
     let point = &points[fixed.point];
     let nodes = point.sides.nodes();
-    let held = nodes.flat_map(|(node, _)| supports.directions.get(&node).into_iter().flatten());
+    let held = nodes.flat_map(|(node, _)| supports.merged.directions(node));
     let started = held.map(|h| h.support).filter(|&support| scene.has_started(support));
     let mut most = 0.0_f64;
     for support in started {

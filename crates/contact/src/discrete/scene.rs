@@ -103,10 +103,9 @@ impl DiscreteScene {
         check_compliance(&points)?;
         let constraints = constraints(scene, &points, &ties, &couplings);
         couplings.check_ties(scene, (&points, rounding), &constraints, &supports)?;
-        let held = (&supports.nodes[..], &couplings.supports[..]);
+        let held = (&supports.merged, &couplings.supports[..]);
         let equation_rows = independent_equations(&equations, &decomposition, held, &constraints)?.len();
-        let nodes = scene.mesh.points().len();
-        let prescribed = prescribed_points(&constraints, &supports.nodes, nodes)?;
+        let prescribed = prescribed_points(&constraints, &supports.merged)?;
         check_penetration(scene, &points, &prescribed, (&supports, &poses), rounding)?;
         let loads = nodal_loads(scene, (&decomposition, &couplings), softest)?;
         // both in the order of the points

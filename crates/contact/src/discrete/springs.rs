@@ -81,7 +81,7 @@ fn at_nodes(mesh: &TetMesh, spring: &Spring) -> Result<BTreeMap<u32, Matrix3<f64
 
 /// The projection of a node on the directions that no support fixes.
 fn free_part(supports: &Supports, node: u32) -> Matrix3<f64> {
-    let fixed = supports.directions.get(&node).into_iter().flatten();
+    let fixed = supports.merged.directions(node).iter();
     fixed.fold(Matrix3::identity(), |free, fixed| {
         let direction = Vector3::from(fixed.direction);
         free - direction * direction.transpose()

@@ -6,9 +6,8 @@ use crate::tolerances::{HELD_ALREADY, LEFT_OFF, NOT_MOVED, ROUNDING};
 use signorini_fem_mesh::History;
 use signorini_fem_mesh::internal::cylindrical;
 use signorini_fem_mesh::vec3::{Vec3, combine, dot, is_finite, norm, scale, sub, unit};
-use signorini_tfeti::internal::{PrescribedDirection, prescribed_directions};
+use signorini_tfeti::internal::MergedSupports;
 use signorini_tfeti::{Directions, Motion, NodeSupport};
-use std::collections::BTreeMap;
 use std::ops::Range;
 
 /// The supports of a scene, node by node.
@@ -21,8 +20,8 @@ pub(crate) struct Supports {
     pub(crate) motions: Vec<History>,
     /// Cases of nodes that are held where earlier steps have left them.
     pub(super) left: Range<usize>,
-    /// The directions that supports fix at each node, each by the first support that does.
-    pub(crate) directions: BTreeMap<u32, Vec<PrescribedDirection>>,
+    /// What all of them fix at each node.
+    pub(crate) merged: MergedSupports,
 }
 
 impl Supports {
@@ -53,24 +52,18 @@ impl Supports {
         }
         let given = motions.len();
         hold_where_they_are(scene, started, &mut nodes, &mut motions)?;
-        let left = given..motions.len();
-        let mut directions: BTreeMap<u32, Vec<_>> = BTreeMap::new();
-        for direction in prescribed_directions(&nodes, scene.mesh.points().len())? {
-            directions.entry(direction.node).or_default().push(direction);
-        }
         Ok(Self {
+            left: given..motions.len(),
+            merged: MergedSupports::new(&nodes, scene.mesh.points().len())?,
             nodes,
             motions,
-            left,
-            directions,
         })
     }
 
     /// Takes nodes, ascending, out of all supports.
     pub(super) fn release(&mut self, nodes: &[u32]) {
-        let held = self.directions.len();
-        self.directions.retain(|node, _| nodes.binary_search(node).is_err());
-        if self.directions.len() < held {
+        if nodes.iter().any(|node| !self.merged.directions(*node).is_empty()) {
+            self.merged.release(nodes);
             self.nodes.iter_mut().for_each(|support| support.release(nodes));
         }
     }
@@ -125,11 +118,8 @@ fn hold_where_they_are(
         .for_each(|&index| before[index].directions = Directions::Nothing);
     for index in started {
         let (support, own) = (&scene.supports[index], &mut nodes[index]);
-        let mut held: BTreeMap<u32, Vec<Vec3>> = BTreeMap::new();
-        for PrescribedDirection { node, direction, .. } in prescribed_directions(&before, scene.mesh.points().len())? {
-            held.entry(node).or_default().push(direction);
-        }
-        if own.nodes.iter().any(|node| held.contains_key(node)) {
+        let held = MergedSupports::new(&before, scene.mesh.points().len())?;
+        if own.nodes.iter().any(|node| !held.directions(*node).is_empty()) {
             own.directions = left_free(own, &held);
         }
         if !support.left.is_empty() {
@@ -153,7 +143,7 @@ fn hold_where_they_are(
 }
 
 /// The directions of a support that others do not hold, node by node.
-fn left_free(support: &NodeSupport, held: &BTreeMap<u32, Vec<Vec3>>) -> Directions {
+fn left_free(support: &NodeSupport, held: &MergedSupports) -> Directions {
     let given = match &support.directions {
         Directions::EachNode(lists) if lists.len() == support.nodes.len() => lists.clone(),
         // another number than that of the nodes is refused with the others
@@ -161,8 +151,8 @@ fn left_free(support: &NodeSupport, held: &BTreeMap<u32, Vec<Vec3>>) -> Directio
         others => vec![others.vectors(); support.nodes.len()],
     };
     let rest = |node: &u32, direction: &Vec3| {
-        let others = held.get(node).into_iter().flatten();
-        let rest = others.fold(*direction, |rest, other| sub(rest, scale(dot(rest, *other), *other)));
+        let others = held.directions(*node).iter().map(|other| other.direction);
+        let rest = others.fold(*direction, |rest, other| sub(rest, scale(dot(rest, other), other)));
         // what is no direction is told with the others
         let gone = norm(rest) <= HELD_ALREADY * norm(*direction) && norm(*direction) > 0.0;
         (!gone).then_some(rest)

@@ -19,13 +19,9 @@ pub(super) fn expected(scene: &Scene, discrete: &DiscreteScene, warnings: &[Warn
     if warnings.iter().any(|w| matches!(w, Warning::Locking { .. })) {
         return None;
     }
-    let directions = &discrete.supports.directions;
     let held = |node: u32, normal: [f64; 3]| {
-        let along = directions
-            .get(&node)
-            .into_iter()
-            .flatten()
-            .map(|d| dot(d.direction, normal).powi(2));
+        let directions = discrete.supports.merged.directions(node).iter();
+        let along = directions.map(|d| dot(d.direction, normal).powi(2));
         along.sum::<f64>() >= 1.0 - HELD_FACET
     };
     let mut surface = 0.0;

@@ -155,7 +155,7 @@ impl Plan {
         let decomposition = &discrete.decomposition;
         let (elements, nodes) = (scene.mesh.tets().len(), scene.mesh.points().len());
         let (subdomains, primal) = (decomposition.subdomains().len(), decomposition.torn_dofs());
-        let fixed = &discrete.supports.directions;
+        let fixed = &discrete.supports.merged;
         let free = |point: &ContactPoint| free_directions(point, &discrete.supports);
         let points = discrete.points.iter().filter(|point| free(point) > 0);
         let points: Vec<&ContactPoint> = points.collect();
@@ -169,7 +169,6 @@ impl Plan {
         let mut touching: BTreeSet<u32> = touching.flat_map(|p| nodes_of(&p)).collect();
         touching.extend(discrete.springs.nodal.iter().map(|s| s.node));
         touching.extend(discrete.equations.iter().flat_map(|e| &e.terms).map(|t| t.0));
-        let at_zero: Vec<_> = fixed.values().flatten().filter_map(|held| held.at_zero()).collect();
         let find = || {
             Forecast::new(
                 &scene.mesh,
@@ -177,8 +176,8 @@ impl Plan {
                 &scene.materials,
                 settings.share_translates,
                 &settings.inverse,
-                &at_zero,
-                |node| fixed.contains_key(&node) || touching.contains(&node),
+                &fixed.at_zero(),
+                |node| !fixed.directions(node).is_empty() || touching.contains(&node),
             )
         };
         let judge = || {
@@ -200,7 +199,7 @@ impl Plan {
             tangential_rows: points.iter().filter(rough).map(|p| free(p) - 1).sum(),
             // each copy of a node but one is glued
             interface_rows: 3 * (decomposition.torn_nodes().flatten().count() - nodes),
-            dirichlet_rows: fixed.values().map(Vec::len).sum::<usize>()
+            dirichlet_rows: fixed.fixed().map(|held| held.directions.len()).sum::<usize>()
                 + discrete.springs.nodal.len()
                 + discrete.couplings.supports.len(),
             equation_rows: discrete.equation_rows,
@@ -218,7 +217,7 @@ impl Plan {
             warnings,
         };
         let nodes: BTreeSet<u32> = points.iter().flat_map(nodes_of).collect();
-        let (supported, rows) = (fixed.keys().copied(), plan.dual());
+        let (supported, rows) = (fixed.fixed().map(|held| held.node), plan.dual());
         let active_sets = plan.method == MethodKind::ActiveSet;
         forecast.coarse = forecast_levels(&forecast, nodes.into_iter(), supported, rows, active_sets);
         let coarse = forecast.coarse.map_or_else(|| forecast.count_coarse(), Ok)?;
@@ -253,8 +252,8 @@ fn row_groups(scene: &Scene, discrete: &DiscreteScene, points: &[&ContactPoint])
         let nodes = tie.sides.nodes();
         groups.add(false, free_directions(tie, supports), nodes.flat_map(|n| near(n.0)));
     }
-    for (node, held) in &supports.directions {
-        groups.add(false, held.len(), near(*node));
+    for held in supports.merged.fixed() {
+        groups.add(false, held.directions.len(), near(held.node));
     }
     discrete
         .springs
@@ -272,7 +271,7 @@ fn row_groups(scene: &Scene, discrete: &DiscreteScene, points: &[&ContactPoint])
 /// Number of directions of a point that supports leave free: an estimate at nodes with one or two fixed directions; the
 /// set-up counts exactly.
 fn free_directions(point: &ContactPoint, supports: &Supports) -> usize {
-    let held = |(node, _): (u32, f64)| supports.directions.get(&node).map_or(0, Vec::len);
+    let held = |(node, _): (u32, f64)| supports.merged.directions(node).len();
     let sides = &point.sides;
     // a side of several nodes is held where a good part of it is
     let enough = sides.own.held_from();

@@ -14,7 +14,7 @@ use crate::vec3::dot;
 use nalgebra::{Matrix3, Vector3};
 use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, cross, scale, sub};
-use signorini_tfeti::internal::PrescribedDirection;
+use signorini_tfeti::internal::FixedDirection;
 use signorini_tfeti::{NodeSupport, TiedRows};
 use std::collections::BTreeMap;
 
@@ -185,8 +185,7 @@ pub(crate) fn nodal_reactions(
     }
     let mut take = |node: u32, factor: f64, whole: &[f64; 3]| {
         if let Some(force) = forces.get_mut(&node) {
-            let held = model.discrete.supports.directions.get(&node);
-            for PrescribedDirection { direction, .. } in held.into_iter().flatten() {
+            for FixedDirection { direction, .. } in model.discrete.supports.merged.directions(node) {
                 let along = factor * dot(whole, direction);
                 (0..3).for_each(|c| force[c] -= along * direction[c]);
             }
@@ -379,15 +378,16 @@ fn by_support(
         let mut reaction = SupportReaction::default();
         // a node may be named more than once
         for node in &distinct(support.nodes.iter().copied()) {
-            let (Some(whole), Some(held)) = (forces.get(node), supports.directions.get(node)) else {
+            let Some(whole) = forces.get(node) else {
                 continue;
             };
-            let mut own = held.iter().filter(|h| h.support == index).peekable();
+            let held = supports.merged.directions(*node).iter();
+            let mut own = held.filter(|h| h.support == index).peekable();
             if own.peek().is_none() {
                 continue;
             }
             let mut force = [0.0; 3];
-            for PrescribedDirection { direction, .. } in own {
+            for FixedDirection { direction, .. } in own {
                 let along = dot(whole, direction);
                 (0..3).for_each(|c| force[c] += along * direction[c]);
             }

@@ -9,7 +9,7 @@ use crate::rows::dependencies::{are_independent, not_alone};
 use crate::rows::equations::{FreeEquation, NodalEquation};
 use crate::rows::rigid::RigidRow;
 use crate::rows::side::ContactConstraint;
-use crate::rows::supports::{MergedSupports, NodalSpring, NodeSupport, check_node};
+use crate::rows::supports::{MergedSupports, NodalSpring, check_node};
 use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::tolerances::{SAME, SOFTEST};
 use signorini_fem_mesh::Decomposition;
@@ -23,26 +23,25 @@ impl Gluing {
     /// compared: the row of a soft one is as much smaller as it is softer.
     ///
     /// # Errors
-    /// [`TfetiError`] for bad supports, contact points or springs.
+    /// [`TfetiError`] for bad contact points or springs.
     pub(crate) fn new(
         decomposition: &Decomposition,
-        (supports, rigid): (&[NodeSupport], &[RigidRow]),
+        (supports, rigid): (&MergedSupports, &[RigidRow]),
         (contact, equations): (&[ContactConstraint], &[(usize, &NodalEquation)]),
         stiffness: &CopyStiffness,
         springs: (&[NodalSpring], &CopyStiffness),
     ) -> Result<Self, TfetiError> {
         let nodes = decomposition.nodes();
-        let merged = MergedSupports::new(supports, nodes)?;
         let squares = |node: u32| stiffness.squares(decomposition.copies(node as usize));
-        let found = contact_rows(contact, &merged, nodes, squares)?;
-        let equations = equations.iter().map(|e| FreeEquation::new(*e, decomposition, &merged));
+        let found = contact_rows(contact, supports, squares)?;
+        let equations = equations.iter().map(|e| FreeEquation::new(*e, decomposition, supports));
         let equations: Vec<FreeEquation> = equations.collect::<Result<_, _>>()?;
         let values = rigid.iter().flat_map(|row| &row.values);
         let cases = values
             .chain(equations.iter().flat_map(|e| &e.values))
             .map(|v| v.0 as usize + 1);
         let mut gluing = Self {
-            prescribed: vec![Vec::new(); cases.fold(merged.cases, usize::max)],
+            prescribed: vec![Vec::new(); cases.fold(supports.cases, usize::max)],
             is_aligned: stiffness.is_plain() && rigid.is_empty() && equations.is_empty(),
             ..Self::default()
         };
@@ -54,16 +53,16 @@ impl Gluing {
             gluing: &mut gluing,
         };
         builder.contact(contact, &found.rows);
-        builder.dependent(contact, &found, (&merged, &equations));
+        builder.dependent(contact, &found, (supports, &equations));
         builder.interface(nodes);
         builder.tied(contact, &found.tied)?;
         builder.equations(&equations);
         builder.rigid(rigid);
-        builder.dirichlet(&merged);
+        builder.dirichlet(supports);
         builder.springs(springs)?;
         let torn = decomposition.torn_dofs();
         let of_contact = contact.iter().map(|p| if p.friction || p.tied { 3 } else { 1 });
-        gluing.paper_rows = torn.saturating_sub(3 * nodes) + 3 * merged.nodes.len() + of_contact.sum::<usize>();
+        gluing.paper_rows = torn.saturating_sub(3 * nodes) + 3 * supports.nodes.len() + of_contact.sum::<usize>();
         let count = gluing.blocks.items().len().max(gluing.nodal.items().len());
         if count.max(gluing.ranges.total()).max(torn) >= u32::MAX as usize {
             let what = "entries of B";
@@ -383,8 +382,8 @@ impl Builder<'_> {
         self.gluing.ranges.rigid = self.gluing.ranges.equations.end..self.next();
     }
 
-    fn dirichlet(&mut self, merged: &MergedSupports) {
-        for fixed in &merged.nodes {
+    fn dirichlet(&mut self, supports: &MergedSupports) {
+        for fixed in &supports.nodes {
             let copies = self.decomposition.copies(fixed.node as usize);
             let scale = self.stiffness.squares(copies).sqrt().recip();
             for direction in &fixed.directions {

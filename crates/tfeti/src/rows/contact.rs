@@ -3,7 +3,7 @@
 use crate::error::TfetiError;
 use crate::linalg::entry;
 use crate::rows::side::{ContactConstraint, check_constraints};
-use crate::rows::supports::{FixedNode, MergedSupports, NodeSupport};
+use crate::rows::supports::{FixedNode, MergedSupports};
 use crate::tolerances::{ANGLE, FIXED};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use signorini_fem_mesh::vec3::dot;
@@ -26,34 +26,24 @@ pub struct PrescribedPoint {
 /// normal displacement at a time is the sum over cases of `factor(case, t) * value`.
 ///
 /// # Errors
-/// [`TfetiError`] as of a set-up: wrong supports, unknown nodes, wrong frames.
+/// [`TfetiError`] as of a set-up: unknown nodes, wrong frames.
 pub fn prescribed_points(
     contact: &[ContactConstraint],
-    supports: &[NodeSupport],
-    nodes: usize,
+    supports: &MergedSupports,
 ) -> Result<Vec<PrescribedPoint>, TfetiError> {
-    let merged = MergedSupports::new(supports, nodes)?;
-    Ok(contact_rows(contact, &merged, nodes, |_| 1.0)?.prescribed)
+    Ok(contact_rows(contact, supports, |_| 1.0)?.prescribed)
 }
 
 /// Directions in which supports hold both sides of tied constraints whose sides move
 /// [relative](ContactConstraint::relative) to each other, with the position of the constraint: no row says there how
 /// they do.
-///
-/// # Errors
-/// As [`prescribed_points`].
-pub fn unsaid_directions(
-    contact: &[ContactConstraint],
-    supports: &[NodeSupport],
-    nodes: usize,
-) -> Result<Vec<(usize, [f64; 3])>, TfetiError> {
-    let merged = MergedSupports::new(supports, nodes)?;
+pub fn unsaid_directions(contact: &[ContactConstraint], supports: &MergedSupports) -> Vec<(usize, [f64; 3])> {
     let moving = contact.iter().enumerate().filter(|(_, point)| point.relative.is_some());
     let of = |(k, point): (usize, &ContactConstraint)| {
-        let fixed = Space::new(point, &merged, &|_| 1.0).fixed(point, Vector3::zeros());
+        let fixed = Space::new(point, supports, &|_| 1.0).fixed(point, Vector3::zeros());
         fixed.into_iter().map(move |d| (k, d.into()))
     };
-    Ok(moving.flat_map(of).collect())
+    moving.flat_map(of).collect()
 }
 
 /// One contact row: what it does to the mean displacements of the nodes of both sides.
@@ -93,10 +83,9 @@ pub(super) struct AllRows {
 pub(super) fn contact_rows(
     contact: &[ContactConstraint],
     supports: &MergedSupports,
-    nodes: usize,
     squares: impl Fn(u32) -> f64,
 ) -> Result<AllRows, TfetiError> {
-    check_constraints(contact, nodes)?;
+    check_constraints(contact, supports.mesh_nodes)?;
     let mut out = AllRows::default();
     for (index, point) in contact.iter().enumerate() {
         out.add(index, point, Space::new(point, supports, &squares));

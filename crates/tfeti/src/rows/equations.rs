@@ -8,7 +8,7 @@
 use super::contact::{AllRows, PointRows};
 use super::rigid::RigidSupport;
 use super::side::ContactConstraint;
-use super::supports::{MergedSupports, NodeSupport, check_node};
+use super::supports::{MergedSupports, check_node};
 use crate::error::TfetiError;
 use crate::linalg::entry;
 use crate::rows::contact::contact_rows;
@@ -100,7 +100,7 @@ impl FreeEquation {
             check_node(node, decomposition.nodes(), || format!("equation {equation}"))?;
             said |= vector != [0.0; 3];
             let mut left = vector;
-            for fixed in supports.at(node).iter().flat_map(|node| &node.directions) {
+            for fixed in supports.directions(node) {
                 let along = dot(vector, fixed.direction);
                 left = sub(left, scale(along, fixed.direction));
                 for &(case, value) in &fixed.values {
@@ -145,17 +145,15 @@ fn refused(equation: usize, node: Option<u32>, reason: &'static str) -> TfetiErr
 pub fn independent_equations(
     equations: &[NodalEquation],
     decomposition: &Decomposition,
-    (supports, rigid): (&[NodeSupport], &[RigidSupport]),
+    (supports, rigid): (&MergedSupports, &[RigidSupport]),
     contact: &[ContactConstraint],
 ) -> Result<Vec<usize>, TfetiError> {
     if equations.is_empty() {
         return Ok(Vec::new());
     }
-    let nodes = decomposition.nodes();
-    let merged = MergedSupports::new(supports, nodes)?;
-    let rows = contact_rows(contact, &merged, nodes, |_| 1.0)?;
+    let rows = contact_rows(contact, supports, |_| 1.0)?;
     let all = equations.iter().enumerate();
-    let all = all.map(|given| FreeEquation::new(given, decomposition, &merged));
+    let all = all.map(|given| FreeEquation::new(given, decomposition, supports));
     let all: Vec<FreeEquation> = all.collect::<Result<_, _>>()?;
     let lines = lines(&all, decomposition, rigid, (contact, &rows));
     let mut elimination = Elimination::new(&lines);
@@ -164,7 +162,7 @@ pub fn independent_equations(
         let left = elimination.reduce(line);
         let most = left.largest();
         match line.kind {
-            Kind::Equation(k) if most <= FIXED * left.size => left.check(&all[k], &merged)?,
+            Kind::Equation(k) if most <= FIXED * left.size => left.check(&all[k], supports)?,
             Kind::Equation(k) if most <= ALMOST * left.size => {
                 let reason = "it depends on others but for a millionth of its coefficients; give these more digits, or \
                     leave it out";

@@ -153,20 +153,24 @@ pub struct NodalSpring {
     pub stiffness: f64,
 }
 
-/// One orthonormal fixed direction of a node.
+/// A direction that supports fix at a node.
 #[derive(Debug, Clone)]
-pub(super) struct FixedDirection {
-    pub(super) direction: [f64; 3],
+pub struct FixedDirection {
+    /// Of length one, at right angles to the other ones of the node.
+    pub direction: [f64; 3],
     /// `(case, value in metres)` along the direction, cases ascending, no zeros.
     pub(super) values: Vec<(u32, f64)>,
-    support: usize,
+    /// Position in the list of the first support that fixes it.
+    pub support: usize,
 }
 
 /// What all supports together fix at one node.
 #[derive(Debug, Clone, Default)]
-pub(super) struct FixedNode {
-    pub(super) node: u32,
-    pub(super) directions: Vec<FixedDirection>,
+pub struct FixedNode {
+    /// Mesh node.
+    pub node: u32,
+    /// The directions.
+    pub directions: Vec<FixedDirection>,
 }
 
 impl FixedNode {
@@ -185,51 +189,14 @@ impl FixedNode {
 
 /// All supports merged by node.
 #[derive(Debug, Clone, Default)]
-pub(super) struct MergedSupports {
-    /// Nodes with at least one fixed direction, ascending (each counts three rows in the paper).
+pub struct MergedSupports {
+    /// Nodes that supports name, ascending (each counts three rows in the paper).
     pub(super) nodes: Vec<FixedNode>,
+    /// Number of nodes of the mesh.
+    pub(super) mesh_nodes: usize,
     pub(super) cases: usize,
     /// How far displacements of each case may be off, m.
     off: Vec<f64>,
-}
-
-/// A direction that supports fix at a node, and the first of them that does.
-#[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
-pub struct PrescribedDirection {
-    /// Mesh node.
-    pub node: u32,
-    /// Unit direction, at right angles to the other ones of the node.
-    pub direction: [f64; 3],
-    /// Position of the support in the list.
-    pub support: usize,
-    /// Whether it may be displaced: some case prescribes more than zero.
-    pub moves: bool,
-}
-
-impl PrescribedDirection {
-    /// Node and direction where it is held at zero.
-    pub fn at_zero(&self) -> Option<(u32, [f64; 3])> {
-        (!self.moves).then_some((self.node, self.direction))
-    }
-}
-
-/// The directions that supports fix, nodes ascending, each once.
-///
-/// # Errors
-/// [`TfetiError`] as of a set-up: wrong or contradictory supports, unknown nodes.
-pub fn prescribed_directions(supports: &[NodeSupport], nodes: usize) -> Result<Vec<PrescribedDirection>, TfetiError> {
-    let merged = MergedSupports::new(supports, nodes)?;
-    let of = |fixed: &FixedNode| {
-        let prescribed = |d: &FixedDirection| PrescribedDirection {
-            node: fixed.node,
-            direction: d.direction,
-            support: d.support,
-            moves: !d.values.is_empty(),
-        };
-        fixed.directions.iter().map(prescribed).collect::<Vec<_>>()
-    };
-    Ok(merged.nodes.iter().flat_map(of).collect())
 }
 
 pub(super) fn check_node(node: u32, nodes: usize, place: impl FnOnce() -> String) -> Result<(), TfetiError> {
@@ -255,9 +222,41 @@ impl MergedSupports {
         at.ok().map(|k| &self.nodes[k])
     }
 
-    pub(super) fn new(supports: &[NodeSupport], nodes: usize) -> Result<Self, TfetiError> {
+    /// The directions that supports fix at a node.
+    pub fn directions(&self, node: u32) -> &[FixedDirection] {
+        self.at(node).map_or(&[], |fixed| &fixed.directions)
+    }
+
+    /// Nodes with at least one fixed direction, ascending.
+    pub fn fixed(&self) -> impl Iterator<Item = &FixedNode> {
+        self.nodes.iter().filter(|fixed| !fixed.directions.is_empty())
+    }
+
+    /// Nodes and directions that are held at zero, since no case prescribes more; nodes ascending.
+    pub fn at_zero(&self) -> Vec<(u32, [f64; 3])> {
+        let of = |fixed: &'_ FixedNode| {
+            let node = fixed.node;
+            let rest = fixed.directions.iter().filter(|d| d.values.is_empty());
+            rest.map(move |d| (node, d.direction)).collect::<Vec<_>>()
+        };
+        self.nodes.iter().flat_map(of).collect()
+    }
+
+    /// Leaves out nodes, ascending.
+    pub fn release(&mut self, nodes: &[u32]) {
+        self.nodes.retain(|fixed| nodes.binary_search(&fixed.node).is_err());
+    }
+
+    /// Merges the supports of a mesh with so many nodes.
+    ///
+    /// # Errors
+    /// [`TfetiError`] as of a set-up: wrong or contradictory supports, unknown nodes.
+    pub fn new(supports: &[NodeSupport], nodes: usize) -> Result<Self, TfetiError> {
         let mut fixed: BTreeMap<u32, FixedNode> = BTreeMap::new();
-        let mut merged = Self::default();
+        let mut merged = Self {
+            mesh_nodes: nodes,
+            ..Self::default()
+        };
         let holding = |support: &NodeSupport| support.directions != Directions::Nothing;
         let motions: usize = supports.iter().map(|s| s.motions.len()).sum();
         let cases = supports.len().max(motions);

@@ -12,7 +12,7 @@ use crate::rows::equations::{NodalEquation, independent_equations};
 use crate::rows::gluing::Gluing;
 use crate::rows::rigid::{RigidRow, RigidSupport};
 use crate::rows::side::ContactConstraint;
-use crate::rows::supports::{NodalSpring, NodeSupport, prescribed_directions};
+use crate::rows::supports::{MergedSupports, NodalSpring, NodeSupport};
 use crate::subdomain::class::Classes;
 use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::subdomain::cost::InverseSettings;
@@ -149,14 +149,11 @@ impl<'a> TfetiBuilder<'a> {
         };
         check("nodes", decomposition.nodes(), mesh.points().len())?;
         check("elements", decomposition.parts().len(), mesh.tets().len())?;
+        let supports = MergedSupports::new(self.supports, mesh.points().len())?;
         let classes = match self.forecast {
             Some(forecast) => forecast.found.clone(),
-            None => {
-                let held = prescribed_directions(self.supports, mesh.points().len())?;
-                let at_zero: Vec<_> = held.iter().filter_map(|held| held.at_zero()).collect();
-                Classes::find(mesh, decomposition, self.materials, self.share_translates)?
-                    .with_held(decomposition, &at_zero)
-            }
+            None => Classes::find(mesh, decomposition, self.materials, self.share_translates)?
+                .with_held(decomposition, &supports.at_zero()),
         };
         let exchange = Arc::new(self.communicator.cloned().map_or_else(Exchange::default, Exchange::new));
         let ownership = Ownership::new(&classes, exchange.clone());
@@ -164,7 +161,7 @@ impl<'a> TfetiBuilder<'a> {
         let subdomains = Subdomains::assemble(mesh, decomposition, self.materials, classes, ownership)?;
         let subdomains = Arc::new(subdomains);
         let assembly_seconds = started.elapsed().as_secs_f64();
-        let (gluing, stiffness) = self.glue(&subdomains)?;
+        let (gluing, stiffness) = self.glue(&subdomains, &supports)?;
         let map = Arc::new(BoundaryMap::new(&subdomains.classes, &gluing, &subdomains.ownership));
         let points = mesh.points();
         let centre = |nodes: &[u32]| mean(nodes.iter().map(|&n| points[n as usize]));
@@ -200,7 +197,11 @@ impl<'a> TfetiBuilder<'a> {
     }
 
     /// The rows, and the stiffness of copies, with whether rows weigh copies by it.
-    fn glue(&self, subdomains: &Subdomains) -> Result<(Arc<Gluing>, (CopyStiffness, bool)), TfetiError> {
+    fn glue(
+        &self,
+        subdomains: &Subdomains,
+        supports: &MergedSupports,
+    ) -> Result<(Arc<Gluing>, (CopyStiffness, bool)), TfetiError> {
         let all = CopyStiffness::new(subdomains, self.decomposition.torn_nodes());
         let counts = has_several_laws(self.mesh, self.materials) || all.differs(self.decomposition);
         let alike = CopyStiffness::default();
@@ -210,10 +211,10 @@ impl<'a> TfetiBuilder<'a> {
             .iter()
             .map(|support| support.row(self.mesh, self.decomposition));
         let rigid: Vec<RigidRow> = rigid.collect::<Result<_, _>>()?;
-        let held = (self.supports, self.rigid);
+        let held = (supports, self.rigid);
         let needed = independent_equations(self.equations, self.decomposition, held, self.contact)?;
         let needed: Vec<_> = needed.into_iter().map(|k| (k, &self.equations[k])).collect();
-        let (supports, contact) = ((self.supports, &rigid[..]), (self.contact, &needed[..]));
+        let (supports, contact) = ((supports, &rigid[..]), (self.contact, &needed[..]));
         let gluing = Gluing::new(self.decomposition, supports, contact, stiffness, springs)?;
         Ok((Arc::new(gluing), (all, counts)))
     }

@@ -3,7 +3,7 @@
 use crate::common::{Brick, column, distance, dot, gluing, is_orthonormal, noise, norm, product};
 use signorini_fem_mesh::{SurfaceFrame, brick};
 use signorini_qp::EqualityProjector;
-use signorini_tfeti::internal::{ActiveSetFactor, prescribed_points};
+use signorini_tfeti::internal::{ActiveSetFactor, MergedSupports, prescribed_points};
 use signorini_tfeti::{
     ActiveSetProjector, ContactConstraint, Directions, Motion, NodeSupport, Side, TangentialRows, Tfeti, TfetiError,
 };
@@ -166,7 +166,8 @@ fn supports_at_some_nodes_leave_the_row() {
     // both sides held in all directions: the weighted mean of what supports prescribe
     let all = [(&own[..], 0, 2e-3), (&partner[..], 1, -1e-3)]
         .map(|(nodes, case, z)| NodeSupport::fixed(nodes.to_vec()).with_motion(motion(case, z)));
-    let points = prescribed_points(&contact, &all, b.mesh.points().len()).unwrap();
+    let all = MergedSupports::new(&all, b.mesh.points().len()).unwrap();
+    let points = prescribed_points(&contact, &all).unwrap();
     assert_eq!(
         points.iter().map(|p| (p.point, p.node)).collect::<Vec<_>>(),
         [(0, own[0]), (1, own[0])]

@@ -2,7 +2,7 @@
 
 use crate::common::{Brick, dot, gluing, gram, is_orthonormal, smallest_eigenvalue};
 use signorini_fem_mesh::{SurfaceFrame, brick};
-use signorini_tfeti::internal::prescribed_points;
+use signorini_tfeti::internal::{MergedSupports, prescribed_points};
 use signorini_tfeti::{ContactConstraint, Directions, Gluing, Motion, NodeSupport, TangentialRows, TfetiError};
 
 #[test]
@@ -211,8 +211,8 @@ fn the_motion_of_a_partner_counts_against_that_of_the_node() {
         NodeSupport::fixed(vec![node]).with_motion(Motion::new(case, values))
     };
     for (second, expected) in [(0, vec![(0, own - other)]), (1, vec![(0, own), (1, -other)])] {
-        let supports = [moved(0, 0, own), moved(5, second, other)];
-        let held = prescribed_points(&contact, &supports, 8).unwrap();
+        let supports = MergedSupports::new(&[moved(0, 0, own), moved(5, second, other)], 8).unwrap();
+        let held = prescribed_points(&contact, &supports).unwrap();
         let [point] = &held[..] else {
             panic!("one point, not {held:?}");
         };
