@@ -12,7 +12,7 @@ use super::creases::{SurfaceSide, creases};
 use super::means::{MatchingMid, Means, mean, mean_gap};
 use super::normals::{along_axis, differ, shape_frames};
 use super::partners::{Paired, Partners, check_overlap};
-use super::side::{Sides, mean_place, rounded, turned};
+use super::side::{Sides, mean_place, rounded};
 use crate::error::ContactError;
 use crate::mortar::MortarNode;
 use crate::scene::{Contact, Pose, Scene};
@@ -128,59 +128,19 @@ pub(super) fn conditions(
                 continue;
             }
             let position = scene.mesh.points()[node as usize];
-            let mut one = [SurfaceSide {
-                frame: surface.frames()[local],
-                area: surface.areas()[local],
-                triangles: Vec::new(),
-            }];
-            let (mut measured, mut to_curve) = (0.0, false);
-            let mut mean = vec![(node, 1.0)];
-            let partner = match partners {
-                Partners::Obstacle => None,
-                // what is on both sides does not move against itself
-                Partners::Nodes(partners) if partners[local].node == node => continue,
-                Partners::Nodes(partners) => {
-                    measured = partners[local].gap;
-                    Some(Side::node(partners[local].node))
-                }
-                Partners::Mortar(nodes) => {
-                    let Some(seen) = nodes[local].as_ref().filter(|seen| !seen.is_handed_on) else {
-                        continue;
-                    };
-                    (one[0].frame, one[0].area) = (seen.frame, seen.area);
-                    let gap = mortar_gap(scene, index, surface, local, seen)?;
-                    // weights are in part negative: over a curved side, or beside an edge, a mean may be inside where
-                    // no facet is
-                    let deepest = seen.nearest.min(0.0);
-                    let inside = !contact.tied && gap < deepest - rounding;
-                    let gap = match seen.curve {
-                        // facets of the other side are beside the curve that is meant
-                        Some(curve) => curve,
-                        None if inside => deepest,
-                        None => gap,
-                    };
-                    to_curve = seen.curve.is_some();
-                    let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
-                    // along an inclined direction it is farther
-                    let along = fixed.map_or(1.0, |frame| frame.normal_part(seen.frame.normal).max(FACING));
-                    measured = rounded(gap / along, weights * rounding);
-                    mean.clone_from(&seen.own);
-                    Some(Side::new(seen.partner.clone()))
-                }
+            let Some(facing) = Facing::new(scene, index, paired, local, rounding)? else {
+                continue;
             };
             let own = sides.get(&(local as u32));
-            for side in own.map_or(&one[..], Vec::as_slice) {
+            for side in own.map_or(std::slice::from_ref(&facing.surface), Vec::as_slice) {
                 let frame = fixed.or(shape.flatten()).unwrap_or(side.frame);
                 let (sides, gap) = match &means {
                     None => {
-                        let mut sides = Sides {
-                            own: Side::new(mean.clone()),
-                            partner: partner.clone(),
-                            swapped: paired.swapped,
-                        };
-                        let gap = mean_gap(&scene.mesh, (index, contact), &sides.own, &frame.normal, |_| measured)?;
+                        let mut sides = facing.sides.clone();
+                        let measured = |_| facing.measured;
+                        let gap = mean_gap(&scene.mesh, (index, contact), &sides.own, &frame.normal, measured)?;
                         if curved && !contact.tied {
-                            turn(&scene.mesh, &mut sides, rounding);
+                            sides.turn_partner(place_of(&scene.mesh), rounding);
                         }
                         (sides, gap)
                     }
@@ -196,7 +156,7 @@ pub(super) fn conditions(
                     frame,
                     area: side.area,
                     gap,
-                    to_curve,
+                    to_curve: facing.to_curve,
                     closed: 0.0,
                     stretch: contact.friction_axis.map_or(1.0, |(_, ratio)| ratio),
                     compliance: contact.compliance,
@@ -210,6 +170,77 @@ pub(super) fn conditions(
         out.extend(mids.map(|mid| tied_mid(scene, (index, surface), fixed, &mid)));
     }
     Ok(out)
+}
+
+/// A node of a contact and what it faces.
+struct Facing {
+    surface: SurfaceSide,
+    sides: Sides,
+    /// The gap as coordinates have it, m, and whether that is to the curve that facets of the other side stand for.
+    measured: f64,
+    to_curve: bool,
+}
+
+impl Facing {
+    /// `None` where a node has no condition: it is on both sides, sees nothing, or has handed it on.
+    fn new(
+        scene: &Scene,
+        index: usize,
+        paired: &Paired,
+        local: usize,
+        rounding: f64,
+    ) -> Result<Option<Self>, ContactError> {
+        let surface = &paired.surface;
+        let node = surface.nodes()[local];
+        let mut out = Self {
+            surface: SurfaceSide {
+                frame: surface.frames()[local],
+                area: surface.areas()[local],
+                triangles: Vec::new(),
+            },
+            sides: Sides {
+                own: Side::node(node),
+                partner: None,
+                swapped: paired.swapped,
+            },
+            measured: 0.0,
+            to_curve: false,
+        };
+        match &paired.partners {
+            Partners::Obstacle => {}
+            // what is on both sides does not move against itself
+            Partners::Nodes(partners) if partners[local].node == node => return Ok(None),
+            Partners::Nodes(partners) => {
+                out.measured = partners[local].gap;
+                out.sides.partner = Some(Side::node(partners[local].node));
+            }
+            Partners::Mortar(nodes) => {
+                let Some(seen) = nodes[local].as_ref().filter(|seen| !seen.is_handed_on) else {
+                    return Ok(None);
+                };
+                (out.surface.frame, out.surface.area) = (seen.frame, seen.area);
+                let gap = mortar_gap(scene, index, surface, local, seen)?;
+                // weights are in part negative: over a curved side, or beside an edge, a mean may be inside where no
+                // facet is
+                let deepest = seen.nearest.min(0.0);
+                let inside = !scene.contacts[index].tied && gap < deepest - rounding;
+                let gap = match seen.curve {
+                    // facets of the other side are beside the curve that is meant
+                    Some(curve) => curve,
+                    None if inside => deepest,
+                    None => gap,
+                };
+                out.to_curve = seen.curve.is_some();
+                let weights: f64 = seen.partner.iter().map(|(_, weight)| weight.abs()).sum();
+                // along an inclined direction it is farther
+                let along = (paired.fixed).map_or(1.0, |frame| frame.normal_part(seen.frame.normal).max(FACING));
+                out.measured = rounded(gap / along, weights * rounding);
+                out.sides.own = Side::new(seen.own.clone());
+                out.sides.partner = Some(Side::new(seen.partner.clone()));
+            }
+        }
+        Ok(Some(out))
+    }
 }
 
 /// A node without a condition because another contact has one, and what it faces.
@@ -283,23 +314,6 @@ fn is_curved(partners: &Partners) -> bool {
         return false;
     };
     differ(nodes.iter().flatten().map(|n| n.frame.normal))
-}
-
-/// Facets of curved sides are apart where the sides touch, and forces of both act at two places: the partner turns over
-/// the way between them.
-fn turn(mesh: &TetMesh, sides: &mut Sides, rounding: f64) {
-    sides.partner = sides.partner.take().map(|partner| {
-        let way = vec3::sub(
-            mean_place(&partner, place_of(mesh)),
-            mean_place(&sides.own, place_of(mesh)),
-        );
-        let weights: f64 = partner.nodes().iter().map(|(_, weight)| weight.abs()).sum();
-        if vec3::norm(way) > weights * rounding {
-            turned(partner, way, |node| mesh.points()[node as usize])
-        } else {
-            partner
-        }
-    });
 }
 
 /// The weighted gap of a node of a surface along its normal, m: from the node to the weighted mean of what it sees.

@@ -51,6 +51,17 @@ impl Sides {
         mean - turned.sum::<f64>()
     }
 
+    /// Facets of curved sides are apart where the sides touch, and forces of both act at two places: the partner turns
+    /// over the way between them.
+    pub(super) fn turn_partner(&mut self, place: impl Fn(u32) -> [f64; 3], rounding: f64) {
+        let Some(partner) = &mut self.partner else { return };
+        let way = vec3::sub(mean_place(partner, &place), mean_place(&self.own, &place));
+        let weights: f64 = partner.nodes().iter().map(|(_, weight)| weight.abs()).sum();
+        if vec3::norm(way) > weights * rounding {
+            *partner = turning(partner, way, place);
+        }
+    }
+
     /// Sign of forces on the body that the scene names first.
     pub(crate) fn sign(&self) -> f64 {
         if self.swapped { -1.0 } else { 1.0 }
@@ -96,7 +107,7 @@ pub(crate) fn mean_place(side: &Side, place: impl Fn(u32) -> [f64; 3]) -> [f64; 
 /// The rotation is that which fits displacements best, weighted as the mean is: rigid ones are met exactly, and forces
 /// of the couple are spread as those on a group of bolts. None about an axis from which the nodes are nearer than the
 /// way is long.
-pub(super) fn turned(side: Side, lever: [f64; 3], place: impl Fn(u32) -> [f64; 3]) -> Side {
+fn turning(side: &Side, lever: [f64; 3], place: impl Fn(u32) -> [f64; 3]) -> Side {
     let shares = || {
         side.nodes()
             .iter()
@@ -115,8 +126,7 @@ pub(super) fn turned(side: Side, lever: [f64; 3], place: impl Fn(u32) -> [f64; 3
         }
     }
     let turn = shares().map(|(w, x)| lever.cross_matrix() * inverse * across(x) * (w / whole));
-    let turn = turn.map(|m| m.transpose().into()).collect();
-    side.with_turn(turn)
+    side.clone().with_turn(turn.map(|m| m.transpose().into()).collect())
 }
 
 /// A gap that is not rounding of places.
