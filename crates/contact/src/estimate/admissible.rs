@@ -5,7 +5,7 @@
 //! other points have too, they stay, but for one where a support holds the node along the normal. Where the own side
 //! is, or where the own node is in a coupling, which stays, all points move together ([`shared`](super::shared)).
 
-use crate::model::{ConstrainedPoint, Model};
+use crate::model::{ConstrainedPoint, Model, PointRow};
 use crate::result::PointState;
 use crate::tolerances::{FREEDOM_TAKEN, NEAR_BOUND, ROUNDING};
 use crate::vec3::dot;
@@ -29,9 +29,8 @@ type Shifts = [[[f64; 3]; 2]; 3];
 pub(crate) struct AdmissibleNode {
     /// Mesh node.
     pub(crate) node: u32,
-    /// Directions of the rows in space, with row and scale: the normal one, then the tangential ones, in lengths in
-    /// which friction is the same in all directions.
-    rows: Vec<([f64; 3], usize, f64)>,
+    /// The normal one, then the tangential ones, in lengths in which friction is the same in all directions.
+    rows: Vec<PointRow>,
     /// Factors of the tangential ones.
     stretch: [f64; 2],
     own: RowPart,
@@ -45,27 +44,27 @@ pub(crate) struct AdmissibleNode {
 
 impl AdmissibleNode {
     pub(crate) fn new(model: &Model, point: &ConstrainedPoint) -> Self {
-        let rows: Vec<_> = point.directions().take(1).chain(point.isotropic()).collect();
+        let rows: Vec<_> = point.isotropic().collect();
         let mut parts: Vec<(u32, RowPart)> = Vec::with_capacity(2);
         parts.push((point.node(), RowPart::default()));
         let others = point.contact.sides.nodes().skip(1);
         parts.extend(others.map(|other| (other.0, RowPart::default())));
         let last = parts.len() - 1;
-        for (k, &(_, row, scale)) in rows.iter().enumerate() {
+        for (k, &PointRow { row, scale, .. }) in rows.iter().enumerate() {
             for (node, c, coefficient) in model.row(row) {
                 let place = parts[..last].iter().position(|p| p.0 == node).unwrap_or(last);
                 parts[place].1[k][c] += coefficient / scale;
             }
         }
         // where supports fix nothing, without rounding
-        let normal = rows[0].0;
+        let normal = rows[0].direction;
         for ((_, part), sign) in parts.iter_mut().zip([1.0, -1.0]) {
             if (0..3).all(|c| (sign * part[0][c] - normal[c]).abs() <= ROUNDING) {
                 part[0] = normal.map(|c| sign * c);
             }
         }
         if last == 0 {
-            for (part, (direction, ..)) in parts[0].1.iter_mut().zip(&rows).skip(1) {
+            for (part, PointRow { direction, .. }) in parts[0].1.iter_mut().zip(&rows).skip(1) {
                 *part = *direction;
             }
         }
@@ -134,7 +133,7 @@ impl AdmissibleNode {
 
     /// The same where it touches and sticks.
     pub(crate) fn touching(&self, offset: &[f64]) -> impl Iterator<Item = f64> {
-        self.rows.iter().map(|&(_, row, scale)| offset[row] / scale)
+        self.rows.iter().map(|own| offset[own.row] / own.scale)
     }
 
     /// Moves the node out of the obstacle, if it is inside.
@@ -162,7 +161,7 @@ impl AdmissibleNode {
     /// The conditions on the node that moves, with the others at their displacements `v`.
     pub(crate) fn conditions(&self, offset: &[f64], v: &[f64]) -> Conditions {
         let mut planes = [([0.0; 3], 0.0); 3];
-        for (k, &(_, row, scale)) in self.rows.iter().enumerate() {
+        for (k, &PointRow { row, scale, .. }) in self.rows.iter().enumerate() {
             // the offset of a row has the motion that supports prescribe along it already
             let mut plane = offset[row] / scale;
             for (node, part) in &self.still {
@@ -227,7 +226,7 @@ impl Correction {
         stiffness: &[f64],
         v: &mut [f64],
     ) -> Self {
-        let of_row = |k: usize| node.rows[k].2.powi(2) * stiffness[node.rows[k].1];
+        let of_row = |k: usize| node.rows[k].scale.powi(2) * stiffness[node.rows[k].row];
         let open = node.conditions(offset, v).depth(node.value(v));
         let target = (open - state.normal_force / of_row(0)).min(0.0);
         node.shift(v, 0, target - open);
@@ -248,7 +247,7 @@ impl Correction {
         for (j, (own, offset)) in conditions.along().iter().enumerate() {
             start[j] = dot(own, value) - offset;
             let factor = node.stretch[j] * node.stretch[j];
-            moved.force[j] = dot(&node.rows[1 + j].0, &state.friction_force) / factor;
+            moved.force[j] = dot(&node.rows[1 + j].direction, &state.friction_force) / factor;
         }
         // with the bound of the step, or with the friction force as the bound: whichever costs less
         let size = length(moved.force);

@@ -20,7 +20,7 @@ impl Caches {
     /// From what all rows measure, and their offsets.
     pub(crate) fn agreed<'a>(&self, model: &Model, offset: &[f64], recovered: &'a Recovered) -> Cow<'a, [f64]> {
         let mut rows = self.with_ties(model, offset, &recovered.rows);
-        let along = model.tangential_start()..model.tangential_start() + model.tangential_rows();
+        let along = model.tangential_rows();
         let agreements = self.agreements.get_or_init(|| {
             let dependencies = model.dependencies().iter();
             dependencies.filter_map(|d| Agreement::new(&along, d)).collect()
@@ -30,7 +30,7 @@ impl Caches {
         }
         // rows that hold in the next step whatever friction does
         let mut holds = vec![true; rows.len()];
-        holds[model.tfeti.gluing().ranges().contact()].fill(false);
+        holds[model.contact_rows()].fill(false);
         for (point, state) in model.points.iter().zip(&recovered.points) {
             holds[point.row] = state.state != ContactState::Open;
         }
@@ -63,7 +63,7 @@ impl Caches {
         let missing = tied.map(|row| offset[row] - rows[row]).collect();
         let change = shared.change_of_ties(missing);
         let mut out = rows.to_vec();
-        for row in model.tangential_start()..model.tangential_start() + model.tangential_rows() {
+        for row in model.tangential_rows() {
             out[row] += model
                 .row(row)
                 .map(|(node, c, coefficient)| coefficient * change[3 * node as usize + c])

@@ -50,7 +50,7 @@ pub(crate) struct Weights {
 
 impl Weights {
     pub(super) fn new(model: &Model) -> Self {
-        let contact = model.tfeti.gluing().ranges().contact().end;
+        let contact = model.contact_rows().end;
         let mut rows = vec![0.0; contact];
         model.tfeti.row_stiffness(0..contact, &mut rows);
         let nodes: Vec<_> = model.points.iter().map(|p| AdmissibleNode::new(model, p)).collect();
@@ -449,8 +449,8 @@ mod tests {
             }
             let more = 4e-3 * point.slip_bound;
             point.slip_bound += more;
-            let (_, row, scale) = touch.along().next().expect("friction");
-            change += 0.5 * more.powi(2) / (scale.powi(2) * weights.rows[row]);
+            let own = touch.along().next().expect("friction");
+            change += 0.5 * more.powi(2) / (own.scale.powi(2) * weights.rows[own.row]);
         }
         assert!(change > 1e4 * gap, "{change:e} {gap:e}");
         let found = estimate(&recovered).energy;

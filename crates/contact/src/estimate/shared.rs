@@ -91,10 +91,9 @@ impl SharedNodes {
             }
             sums.into_iter().collect()
         };
-        let of_point = |p: &ConstrainedPoint| p.directions().take(1).chain(p.isotropic()).collect::<Vec<_>>();
-        let counts = model.points.iter().map(|p| of_point(p).len()).collect();
-        let of_points = model.points.iter().flat_map(of_point);
-        let mut rows: Vec<_> = of_points.map(|(_, number, scale)| row(number, scale)).collect();
+        let counts = model.points.iter().map(|p| p.isotropic().count()).collect();
+        let of_points = model.points.iter().flat_map(ConstrainedPoint::isotropic);
+        let mut rows: Vec<_> = of_points.map(|own| row(own.row, own.scale)).collect();
         let mut fixed: Vec<usize> = (gluing.ranges().tied.start..equations.end).collect();
         let dragging = dragging(model, &rows);
         is_scarce |= !dragging.is_empty();

@@ -4,6 +4,15 @@ use crate::discrete::ContactPoint;
 use signorini_fem_mesh::SurfaceFrame;
 use signorini_tfeti::{ContactRows, Gluing, TangentialRows};
 
+/// What one of its rows measures of a contact point.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct PointRow {
+    pub(crate) direction: [f64; 3],
+    pub(crate) row: usize,
+    /// Row value over displacement along the direction, and force over multiplier.
+    pub(crate) scale: f64,
+}
+
 /// A node that can touch an obstacle or a node of another body. A node in an edge or a corner is several, with other
 /// normals.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,30 +81,44 @@ impl ConstrainedPoint {
         self.contact.gap
     }
 
-    /// Directions of all rows of the point, with row and scale: the normal, then the tangential ones.
-    pub(crate) fn directions(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
-        std::iter::once((self.contact.frame.normal, self.row, self.scale)).chain(self.along())
+    /// All rows of the point: the normal one, then the tangential ones.
+    pub(crate) fn rows(&self) -> impl Iterator<Item = PointRow> + use<> {
+        std::iter::once(self.normal()).chain(self.along())
     }
 
-    /// Directions of the tangential rows, with row and scale.
-    pub(crate) fn along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
-        let rows = self.rows_along();
-        rows.map(|(direction, row, scale, factor)| (direction, row, scale * factor))
+    fn normal(&self) -> PointRow {
+        PointRow {
+            direction: self.contact.frame.normal,
+            row: self.row,
+            scale: self.scale,
+        }
     }
 
-    /// The same with lengths in which friction is the same in all directions: vectors that need not have length one,
-    /// with row and the scale of the disc.
-    pub(crate) fn isotropic(&self) -> impl Iterator<Item = ([f64; 3], usize, f64)> + use<> {
-        let rows = self.rows_along();
-        rows.map(|(direction, row, scale, factor)| (direction.map(|c| c * factor), row, scale))
+    /// The tangential rows.
+    pub(crate) fn along(&self) -> impl Iterator<Item = PointRow> + use<> {
+        self.on_disc().map(|(own, factor)| PointRow {
+            scale: own.scale * factor,
+            ..own
+        })
     }
 
-    /// Unit vectors, rows, the scale of the disc, and the factor of each row beside it.
-    fn rows_along(&self) -> impl Iterator<Item = ([f64; 3], usize, f64, f64)> + use<> {
+    /// All rows, the tangential ones in lengths in which friction is the same in all directions: with vectors that
+    /// need not have length one, and the scale of the disc.
+    pub(crate) fn isotropic(&self) -> impl Iterator<Item = PointRow> + use<> {
+        let along = self.on_disc().map(|(own, factor)| PointRow {
+            direction: own.direction.map(|c| c * factor),
+            ..own
+        });
+        std::iter::once(self.normal()).chain(along)
+    }
+
+    /// The tangential rows with the scale of the disc, and the factor of each beside it.
+    fn on_disc(&self) -> impl Iterator<Item = (PointRow, f64)> + use<> {
         let ([a, b], [p, q]) = (self.contact.frame.tangents, self.stretch);
+        let own = |direction, row, scale| PointRow { direction, row, scale };
         let list = match self.tangential {
-            TangentialRows::Disc { row, scale } => [Some((a, row, scale, p)), Some((b, row + 1, scale, q))],
-            TangentialRows::Interval { row, direction, scale } => [Some((direction, row, scale, p)), None],
+            TangentialRows::Disc { row, scale } => [Some((own(a, row, scale), p)), Some((own(b, row + 1, scale), q))],
+            TangentialRows::Interval { row, direction, scale } => [Some((own(direction, row, scale), p)), None],
             _ => [None, None],
         };
         list.into_iter().flatten()

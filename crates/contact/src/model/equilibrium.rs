@@ -68,7 +68,7 @@ pub(crate) fn friction_could_hold(
 ) -> Result<bool, ContactError> {
     let coarse = model.tfeti.coarse();
     let mut normal = lambda.to_vec();
-    normal[model.tangential_start()..model.tfeti.gluing().ranges().contact().end].fill(0.0);
+    normal[model.tangential_rows()].fill(0.0);
     let [pressed, held] = [&normal, lambda].map(|forces| {
         let mut out = vec![0.0; e.len()];
         coarse.apply(forces, &mut out, &mut coarse.scratch());
@@ -252,8 +252,8 @@ fn along(columns: &[Vec<f64>], row: usize, factor: f64) -> Vec<f64> {
 
 /// What friction forces of 1 N at a point do on the motions.
 fn tangents(columns: &[Vec<f64>], point: &ConstrainedPoint) -> Vec<Vec<f64>> {
-    let rows = point.isotropic();
-    rows.map(|(_, row, scale)| along(columns, row, 1.0 / scale)).collect()
+    let rows = point.isotropic().skip(1);
+    rows.map(|own| along(columns, own.row, 1.0 / own.scale)).collect()
 }
 
 /// What a force at each contact point does on the motions: newtons to work.

@@ -15,6 +15,7 @@ mod model;
 mod nearest;
 
 pub use contact_point::ConstrainedPoint;
+pub(crate) use contact_point::PointRow;
 pub(crate) use equilibrium::{check_equilibrium, freed, friction_could_hold, loose_motions_of, slide, slides};
 pub(crate) use model::{DISCS, INTERVALS, Model};
 pub(crate) use nearest::nearest;

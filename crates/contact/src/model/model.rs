@@ -179,8 +179,7 @@ impl Model {
     pub(crate) fn motions_left_by(&self, holds: impl Fn(usize) -> bool) -> Result<Vec<FreeMotion>, ContactError> {
         let coarse = self.tfeti.coarse();
         let mut weights = vec![1.0; coarse.dim()];
-        let contact = self.tfeti.gluing().ranges().contact().end;
-        for (row, weight) in weights[..contact].iter_mut().enumerate() {
+        for (row, weight) in weights[self.contact_rows()].iter_mut().enumerate() {
             *weight = f64::from(u8::from(holds(row)));
         }
         Ok(coarse.free_motions(Some(&RowWeights::diagonal(weights)))?)
@@ -304,13 +303,13 @@ impl Model {
         point.contact.compliance[0] * pressure
     }
 
-    /// Tangential rows.
-    pub(crate) fn tangential_rows(&self) -> usize {
-        self.tfeti.gluing().ranges().tangential().len()
+    /// Contact rows.
+    pub(crate) fn contact_rows(&self) -> Range<usize> {
+        self.tfeti.gluing().ranges().contact()
     }
 
-    /// First tangential row.
-    pub(crate) fn tangential_start(&self) -> usize {
-        self.tfeti.gluing().ranges().tangential().start
+    /// Those of them that are tangential.
+    pub(crate) fn tangential_rows(&self) -> Range<usize> {
+        self.tfeti.gluing().ranges().tangential()
     }
 }

@@ -1,6 +1,6 @@
 //! What each contact point does at the end of a step, and sums over them.
 
-use crate::model::{ConstrainedPoint, Model};
+use crate::model::{ConstrainedPoint, Model, PointRow};
 use crate::step::{StepProblem, entry_or_zero};
 use crate::tolerances::ON_BOUND;
 use signorini_tfeti::TangentialRows;
@@ -98,7 +98,7 @@ fn point_state(
     };
     let (mut friction, mut displacement, mut difference) = ([0.0; 2], [0.0; 2], [0.0; 2]);
     let mut on_bound = false;
-    for (j, (_, k, scale)) in point.along().enumerate() {
+    for (j, PointRow { row: k, scale, .. }) in point.along().enumerate() {
         friction[j] = scale * lambda[k];
         let elastic = entry_or_zero(gives_way, k);
         displacement[j] = (rows[k] - elastic - entry_or_zero(&problem.prescribed, k)) / scale;
@@ -143,7 +143,7 @@ mod tests {
     fn friction_along_the_slip_is_no_sliding() {
         let (model, problem) = first_step(block(0.0, Friction::coulomb(0.5)));
         let point = &model.points[4];
-        let (_, row, _) = point.along().next().expect("friction");
+        let row = point.along().next().expect("friction").row;
         for (pressed, friction, slip, expected) in [
             (1.0, 0.5, -1e-3, ContactState::Slip),
             (1.0, 0.5, 1e-3, ContactState::Stick),

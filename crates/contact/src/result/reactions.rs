@@ -6,7 +6,7 @@
 
 use super::recovered::Recovered;
 use crate::discrete::{ContactPoint, Supports};
-use crate::model::{ConstrainedPoint, Model};
+use crate::model::{ConstrainedPoint, Model, PointRow};
 use crate::scene::LoadKind;
 use crate::step::StepProblem;
 use crate::tolerances::{NO_SPRING, ROUNDING};
@@ -224,7 +224,7 @@ pub(crate) fn tied_forces<'a>(model: &'a Model, recovered: &Recovered) -> Vec<(&
 
 /// Takes from `rest` what the rows of a point do to a node, where `whole` is the force of the point.
 fn take_rows(model: &Model, point: &ConstrainedPoint, whole: &[f64; 3], node: u32, rest: &mut [f64; 3]) {
-    for (direction, row, scale) in point.directions() {
+    for PointRow { direction, row, scale } in point.rows() {
         let lambda = dot(whole, &direction) / scale;
         for (_, c, coefficient) in model.row(row).filter(|e| e.0 == node) {
             rest[c] -= lambda * coefficient;

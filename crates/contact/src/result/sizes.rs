@@ -93,7 +93,7 @@ pub(super) fn sizes(m: &Measured<'_>) -> Vec<Sizes> {
         own.forces += sum;
     }
     // gluing forces and reactions: what displacements alone cause has no loads
-    let contact = model.tfeti.gluing().ranges().contact().end;
+    let contact = model.contact_rows().end;
     let mut inner = vec![0.0; out.len()];
     bodies.add_squares(lambda, contact..lambda.len(), &mut inner);
     let mut all = inner.clone();

@@ -54,7 +54,7 @@ pub(crate) fn summarise(
     before: &[f64],
 ) -> Result<ContactSummary, ContactError> {
     let mut s = ContactSummary::default();
-    let start = model.tangential_start();
+    let start = model.tangential_rows().start;
     for (point, touch) in recovered.points.iter().zip(&model.points) {
         let active = point.state != ContactState::Open;
         s.active += usize::from(active);
@@ -74,10 +74,9 @@ pub(crate) fn summarise(
         }
         s.max_penetration = s.max_penetration.max(-point.gap);
         for along in touch.along() {
-            let (_, k, scale) = along;
-            let old = entry_or_zero(before, k - start);
-            let new = problem.relative(touch, along, recovered.rows[k]);
-            s.friction_work -= scale * lambda[k] * (new - old);
+            let old = entry_or_zero(before, along.row - start);
+            let new = problem.relative(touch, along, recovered.rows[along.row]);
+            s.friction_work -= along.scale * lambda[along.row] * (new - old);
         }
         if let (Some(now), Some(old)) = (
             problem.obstacles[0].get(touch.surface()),

@@ -53,7 +53,12 @@ impl Simulation {
         }
         let tfeti = &self.model.tfeti;
         let (rows, coarse) = (tfeti.dual_dim(), tfeti.coarse().rows());
-        state.fits(rows, coarse, self.model.tangential_rows(), self.model.points.len())?;
+        state.fits(
+            rows,
+            coarse,
+            self.model.tangential_rows().len(),
+            self.model.points.len(),
+        )?;
         state.origin = Some(origin);
         self.check_products(&mut state);
         self.result = None;

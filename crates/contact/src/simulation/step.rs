@@ -171,8 +171,9 @@ impl Simulation {
         start_vector(last, Some(before), coarse, along, &mut iterate.multiplier);
         iterate.known_rows.clear();
         if attempt != Attempt::Rest && state.sliding.iter().any(|s| *s) {
-            let contact = model.tfeti.gluing().ranges().contact().end;
-            iterate.known_rows.extend_from_slice(&iterate.lambda[..contact]);
+            iterate
+                .known_rows
+                .extend_from_slice(&iterate.lambda[model.contact_rows()]);
             (self.problem).restore_sliding(model, &state.sliding, &mut iterate.lambda);
         }
     }
@@ -251,12 +252,11 @@ fn start_vector(last: &[f64], before: Option<&[f64]>, n: usize, along: Option<f6
 /// Tangential displacements relative to the obstacle or the other body, m, by tangential row; without elastic slip,
 /// which comes back.
 fn traces(model: &Model, problem: &StepProblem, rows: &[f64]) -> Vec<f64> {
-    let mut trace = vec![0.0; model.tangential_rows()];
-    let start = model.tangential_start();
+    let tangential = model.tangential_rows();
+    let mut trace = vec![0.0; tangential.len()];
     for point in &model.points {
         for along in point.along() {
-            let k = along.1;
-            trace[k - start] = problem.relative(point, along, rows[k]);
+            trace[along.row - tangential.start] = problem.relative(point, along, rows[along.row]);
         }
     }
     trace

@@ -51,7 +51,7 @@ impl Simulation {
             return Ok((report, None, None));
         }
         self.start(state, way, line, attempt);
-        let contact = self.model.tfeti.gluing().ranges().contact();
+        let contact = self.model.contact_rows();
         // each body is judged alone: the forces of the heaviest would hide those of another
         let mut before: Vec<f64> = Vec::new();
         let mut gone = vec![false; self.model.bodies.count().max(1)];
@@ -179,7 +179,7 @@ impl Simulation {
         let offset = |row| (row, problem.offset[row]);
         targets.extend(own().filter(pressed).flat_map(rows).map(offset));
         if targets.is_empty() {
-            targets = own().flat_map(|p| p.along().map(|along| offset(along.1))).collect();
+            targets = own().flat_map(|p| p.along().map(|along| offset(along.row))).collect();
         }
         // what rounding leaves of forces there is none
         let mut lambda = self.iterate.lambda.clone();
@@ -267,7 +267,7 @@ impl Simulation {
             let known: HashSet<usize> = targets.iter().map(|(row, _)| *row).collect();
             // tangential targets alone would tilt a body
             let stays = |p: &&ConstrainedPoint| {
-                let slides = p.along().any(|along| known.contains(&along.1));
+                let slides = p.along().any(|along| known.contains(&along.row));
                 known.is_empty() || slides && !known.contains(&p.row)
             };
             targets.extend(points().filter(stays).map(|p| (p.row, rows[p.row])));
@@ -346,7 +346,7 @@ fn moved_points<'a>(
 
 /// The rows of a point.
 fn rows(point: &ConstrainedPoint) -> impl Iterator<Item = usize> {
-    point.directions().map(|direction| direction.1)
+    point.rows().map(|own| own.row)
 }
 
 /// The bodies that a row acts on.

@@ -63,7 +63,7 @@ pub(crate) struct ActiveSetSolver {
 
 impl ActiveSetSolver {
     pub(crate) fn new(model: &Model, settings: &Settings, own: ActiveSetSettings) -> Result<Self, ContactError> {
-        let contact = model.tfeti.gluing().ranges().contact().end;
+        let contact = model.contact_rows().end;
         let part = model.tfeti.part();
         let (dual, coarse) = match &part {
             Some(part) => (part.dual(), part.coarse()),

@@ -101,7 +101,7 @@ impl SmalseSolver {
             }
             let now = self.rows.imbalance(&iterate.lambda);
             // where there are no loads, a part of what contact does tells what is small
-            let contact = &iterate.lambda[task.model.tfeti.gluing().ranges().contact()];
+            let contact = &iterate.lambda[task.model.contact_rows()];
             let size = vector::norm(&self.rows.rhs).max(NEAR_BALANCE * vector::norm(contact));
             if now <= NEAR_BALANCE * size {
                 // held: what is left needs longer solves

@@ -4,7 +4,7 @@
 use super::fingerprint::hash;
 use super::state::{Peak, State};
 use crate::error::ContactError;
-use crate::model::{ConstrainedPoint, Model};
+use crate::model::{ConstrainedPoint, Model, PointRow};
 use crate::vec3::dot;
 use signorini_tfeti::Gluing;
 use std::collections::HashMap;
@@ -39,15 +39,15 @@ impl State {
 
     /// Points that stay keep where they stick; new ones stick where they are.
     fn carry_traces(&mut self, old: &Model, new: &Model, points: &[Option<usize>]) -> Result<(), ContactError> {
-        let starts = [old, new].map(Model::tangential_start);
-        let mut traces = [(); 2].map(|()| vec![0.0; new.tangential_rows()]);
+        let starts = [old, new].map(|model| model.tangential_rows().start);
+        let mut traces = [(); 2].map(|()| vec![0.0; new.tangential_rows().len()]);
         for (point, before) in new.points.iter().zip(points) {
             let before = before.map(|k| &old.points[k]);
             let mut rows = before
                 .into_iter()
                 .flat_map(ConstrainedPoint::along)
-                .map(|along| along.1);
-            for (direction, row, _) in point.along() {
+                .map(|along| along.row);
+            for PointRow { direction, row, .. } in point.along() {
                 let (last, older) = match rows.next() {
                     Some(row) => self.traces(row - starts[0]),
                     None => {
@@ -138,7 +138,7 @@ fn same_points(old: &Model, new: &Model) -> Vec<Option<usize>> {
         known.entry((point.surface(), point.node())).or_default().push(k);
     }
     let same = |a: &ConstrainedPoint, b: &ConstrainedPoint| {
-        let directions = |p: &ConstrainedPoint| p.directions().map(|d| d.0).collect::<Vec<_>>();
+        let directions = |p: &ConstrainedPoint| p.rows().map(|own| own.direction).collect::<Vec<_>>();
         a.contact.sides == b.contact.sides && directions(a) == directions(b)
     };
     let find = |point: &ConstrainedPoint| {

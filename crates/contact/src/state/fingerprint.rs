@@ -4,7 +4,7 @@
 //! Only what gives stored numbers their meaning counts. Loads, materials, gaps and laws of friction may change between
 //! two steps, and so may settings: the state is then where the changed scene goes on from.
 
-use crate::model::{ConstrainedPoint, Model};
+use crate::model::{ConstrainedPoint, Model, PointRow};
 use crate::scene::{Analysis, DifferenceFormula};
 use crate::settings::Settings;
 use signorini_tfeti::Side;
@@ -140,8 +140,8 @@ pub(crate) fn operator_hash(origin: &Fingerprint, model: &Model, settings: &Sett
     let entries = rows.flat_map(|row| gluing.row(row));
     let entries = entries.flat_map(|(subdomain, dof, coefficient)| [subdomain as u64, dof as u64, number(coefficient)]);
     let scales = model.points.iter().flat_map(|point| {
-        let rows = point.directions();
-        rows.flat_map(|(direction, row, scale)| {
+        let rows = point.rows();
+        rows.flat_map(|PointRow { direction, row, scale }| {
             let numbers = direction.into_iter().chain([scale]).map(number);
             std::iter::once(row as u64).chain(numbers)
         })

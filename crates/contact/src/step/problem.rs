@@ -2,7 +2,7 @@
 
 use crate::discrete::rounded;
 use crate::error::ContactError;
-use crate::model::{ConstrainedPoint, Model};
+use crate::model::{ConstrainedPoint, Model, PointRow};
 use crate::scene::{Contact, DifferenceFormula, Increment, Pose, Scene};
 use crate::state::{Peak, State};
 use crate::tolerances::{FORCE_ROUNDING, OPENED, REACHED, REST, ROUNDING};
@@ -117,7 +117,7 @@ impl StepProblem {
         let several = model.plan.effects.partners || model.scene.mesh.order() == 2;
         if model.plan.effects.motion && several {
             let several = |p: &&ConstrainedPoint| p.contact.sides.nodes().nth(1).is_some();
-            for (_, row, _) in model.points.iter().filter(several).flat_map(|p| p.along()) {
+            for PointRow { row, .. } in model.points.iter().filter(several).flat_map(|p| p.along()) {
                 let rows = self.prescribed.len().max(row + 1);
                 self.prescribed.resize(rows, 0.0);
                 self.prescribed[row] = self.offset[row];
@@ -184,20 +184,20 @@ impl StepProblem {
     fn add_offsets(&mut self, model: &Model, state: &State) -> Result<(), ContactError> {
         let effects = &model.plan.effects;
         let formula = self.formula.filter(|_| effects.history);
-        let start = model.tangential_start();
+        let start = model.tangential_rows().start;
         for point in &model.points {
             if effects.gap {
                 let gap = rounded(self.gap(&model.scene, point, 0)?, model.discrete.rounding);
                 self.offset[point.row] += point.scale * gap;
             }
             if let Some(formula) = formula {
-                for (_, k, scale) in point.along() {
-                    let (last, before) = state.traces(k - start);
-                    self.offset[k] += scale * formula.offset(last, before);
+                for PointRow { row, scale, .. } in point.along() {
+                    let (last, before) = state.traces(row - start);
+                    self.offset[row] += scale * formula.offset(last, before);
                 }
             }
             if effects.moving_obstacle {
-                for (direction, row, scale) in point.directions() {
+                for PointRow { direction, row, scale } in point.rows() {
                     self.offset[row] += scale * self.carried(point, &direction);
                 }
             }
@@ -275,7 +275,7 @@ impl StepProblem {
     pub(crate) fn relative(
         &self,
         point: &ConstrainedPoint,
-        (direction, row, scale): ([f64; 3], usize, f64),
+        PointRow { direction, row, scale }: PointRow,
         value: f64,
     ) -> f64 {
         (value - entry_or_zero(&self.prescribed, row)) / scale - self.carried(point, &direction)
