@@ -120,5 +120,5 @@ pub mod internal {
         EDGES, TET_FACES, cylindrical, facet_area_shares, facet_normals, facet_shape, facet_shares, tag_list,
     };
     pub use crate::quadrature::triangle;
-    pub use crate::tables::{DisjointSets, Lists, ascending, distinct};
+    pub use crate::tables::{DisjointSets, Lists, ascending, count_of, distinct};
 }

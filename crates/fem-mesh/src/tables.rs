@@ -15,7 +15,17 @@ impl<T> Default for Lists<T> {
     }
 }
 
+/// How many there are if numbers run from 0 without gaps: one more than the largest.
+pub fn count_of(numbers: &[u32]) -> usize {
+    numbers.iter().max().map_or(0, |last| *last as usize + 1)
+}
+
 impl Lists<u32> {
+    /// The positions of some numbers in a list for each number up to the largest, ascending in each.
+    pub fn by_number(numbers: &[u32]) -> Self {
+        Self::by_key(count_of(numbers), numbers)
+    }
+
     /// The positions of `keys`, which are below `count`, in a list for each key, ascending in each.
     pub fn by_key(count: usize, keys: &[u32]) -> Self {
         let mut starts = vec![0; count + 1];

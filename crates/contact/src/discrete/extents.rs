@@ -2,7 +2,7 @@
 
 use rstar::{AABB, Envelope};
 use signorini_fem_mesh::decomposition::volumes_and_surfaces;
-use signorini_fem_mesh::internal::DisjointSets;
+use signorini_fem_mesh::internal::{DisjointSets, count_of};
 use signorini_fem_mesh::{Decomposition, TetMesh};
 use std::collections::BTreeSet;
 
@@ -38,9 +38,8 @@ impl Extents {
             others.for_each(|other| sets.join(own as usize, other as usize));
         }
         let numbers = sets.numbers();
-        let bodies = numbers.iter().max().map_or(0, |last| *last as usize + 1);
         let mut body = vec![0; mesh.points().len()];
-        let mut boxes = vec![AABB::new_empty(); bodies];
+        let mut boxes = vec![AABB::new_empty(); count_of(&numbers)];
         for (subdomain, number) in subdomains.iter().zip(numbers) {
             boxes[number as usize].merge(&around(mesh, &subdomain.nodes));
             subdomain.nodes.iter().for_each(|&node| body[node as usize] = number);

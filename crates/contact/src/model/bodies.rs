@@ -5,7 +5,7 @@
 //! of them would let the heaviest alone decide when the others are done.
 
 use crate::discrete::DiscreteScene;
-use signorini_fem_mesh::internal::DisjointSets;
+use signorini_fem_mesh::internal::{DisjointSets, count_of};
 use signorini_qp::vector;
 use signorini_tfeti::Tfeti;
 
@@ -23,7 +23,7 @@ impl Bodies {
     pub(super) fn new(tfeti: &Tfeti, discrete: &DiscreteScene) -> Self {
         let (coarse, gluing) = (tfeti.coarse(), tfeti.gluing());
         let numbers = joined(tfeti, discrete);
-        let count = numbers.iter().max().map_or(0, |last| *last as usize + 1);
+        let count = count_of(&numbers);
         if count <= 1 {
             return Self {
                 count,

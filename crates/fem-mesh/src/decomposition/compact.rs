@@ -6,8 +6,8 @@
 
 use rayon::prelude::*;
 
-use crate::mesh::{TetMesh, connected_sets};
-use crate::tables::{Lists, distinct};
+use crate::mesh::TetMesh;
+use crate::tables::{Lists, count_of, distinct};
 use crate::tolerances::{MOST_SWEEPS, SWEEP_MOVES};
 use crate::vec3::{self, Vec3};
 
@@ -35,17 +35,18 @@ use super::subdomains::DecompositionError;
 pub fn compact_parts(mesh: &TetMesh, groups: &[u32], parts: &[u32]) -> Result<Vec<u32>, DecompositionError> {
     expect_parts(mesh, groups)?;
     expect_parts(mesh, parts)?;
-    let groups = connected_sets(mesh.neighbour_table(), |a, b| groups[a] == groups[b]);
-    Ok(split_at_cracks(mesh, &compact(mesh, &groups, parts)))
+    let compact = compact(mesh, &split_by(mesh, groups), parts);
+    Ok(split_at_cracks(mesh, &compact))
 }
 
 /// As [`compact_parts`], with groups that hang together, numbers with gaps, and parts on both sides of a crack.
 pub(crate) fn compact(mesh: &TetMesh, groups: &[u32], parts: &[u32]) -> Vec<u32> {
     let tets = parts.len();
     let centres: Vec<Vec3> = (0..tets).map(|tet| vec3::centroid(&mesh.tet_points(tet))).collect();
+    let corners = Lists::by_key(mesh.points().len(), mesh.tets().as_flattened());
     let mut parts = within_groups(groups, parts);
     for _ in 0..MOST_SWEEPS {
-        let next = sweep(mesh, groups, &centres, &parts);
+        let next = sweep(&corners, groups, &centres, &parts);
         let moved = next.iter().zip(&parts).filter(|(a, b)| a != b).count();
         parts = next;
         if moved as f64 <= SWEEP_MOVES * tets as f64 {
@@ -63,9 +64,10 @@ fn within_groups(groups: &[u32], parts: &[u32]) -> Vec<u32> {
     all().map(|pair| pairs.partition_point(|p| *p < pair) as u32).collect()
 }
 
-/// The nearest of the own part and those of the same group that touch it, for every tetrahedron.
-fn sweep(mesh: &TetMesh, groups: &[u32], centres: &[Vec3], parts: &[u32]) -> Vec<u32> {
-    let count = parts.iter().max().map_or(0, |&p| p as usize + 1);
+/// The nearest of the own part and those of the same group that touch it, for every tetrahedron; `corners` are those
+/// at each node.
+fn sweep(corners: &Lists<u32>, groups: &[u32], centres: &[Vec3], parts: &[u32]) -> Vec<u32> {
+    let count = count_of(parts);
     let mut sums = vec![([0.0; 3], 0.0); count];
     let mut group = vec![0; count];
     for (tet, (&part, &centre)) in parts.iter().zip(centres).enumerate() {
@@ -78,7 +80,7 @@ fn sweep(mesh: &TetMesh, groups: &[u32], centres: &[Vec3], parts: &[u32]) -> Vec
         .iter()
         .map(|(sum, number)| vec3::scale(1.0 / f64::max(*number, 1.0), *sum))
         .collect();
-    let touching = touching(mesh, parts, count, &group);
+    let touching = touching(corners, parts, &group);
     let distance = |part: u32, centre: Vec3| {
         let off = vec3::sub(means[part as usize], centre);
         vec3::dot(off, off)
@@ -99,11 +101,10 @@ fn sweep(mesh: &TetMesh, groups: &[u32], centres: &[Vec3], parts: &[u32]) -> Vec
 }
 
 /// The parts of the same group that share a node with each part, ascending.
-fn touching(mesh: &TetMesh, parts: &[u32], count: usize, group: &[u32]) -> Vec<Vec<u32>> {
-    let corners = Lists::by_key(mesh.points().len(), mesh.tets().as_flattened());
-    let mut out = vec![Vec::new(); count];
+fn touching(corners: &Lists<u32>, parts: &[u32], group: &[u32]) -> Vec<Vec<u32>> {
+    let mut out = vec![Vec::new(); group.len()];
     let mut here: Vec<u32> = Vec::new();
-    for node in 0..mesh.points().len() {
+    for node in 0..corners.count() {
         here.clear();
         here.extend(corners.of(node).iter().map(|&corner| parts[corner as usize / 4]));
         here.sort_unstable();
@@ -119,11 +120,10 @@ fn touching(mesh: &TetMesh, parts: &[u32], count: usize, group: &[u32]) -> Vec<V
 /// Gives all but the largest piece of each part to the neighbours that share most faces with them.
 pub(crate) fn join_pieces(mesh: &TetMesh, groups: &[u32], parts: &mut [u32]) {
     let pieces = split_by(mesh, parts);
-    let count = pieces.iter().max().map_or(0, |&p| p as usize + 1);
-    let tets = Lists::by_key(count, &pieces);
+    let tets = Lists::by_number(&pieces);
+    let count = tets.count();
     let size = |piece: usize| tets.of(piece).len();
-    let parts_before = parts.iter().max().map_or(0, |&p| p as usize + 1);
-    let mut largest = vec![usize::MAX; parts_before];
+    let mut largest = vec![usize::MAX; count_of(parts)];
     for piece in 0..count {
         let part = parts[tets.of(piece)[0] as usize] as usize;
         if largest[part] == usize::MAX || size(piece) > size(largest[part]) {

@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, HashMap, VecDeque};
 
 use crate::mesh::{TetMesh, face_each_other, face_nodes};
-use crate::tables::{DisjointSets, Lists, distinct};
+use crate::tables::{DisjointSets, Lists, count_of, distinct};
 use crate::tolerances::{BEHIND, CRACK, NECK, SMALL_PIECE};
 use crate::vec3::{Vec3, area_vector, centroid, dot, norm, scale, sub};
 
@@ -18,7 +18,7 @@ use super::parts::{renumbered, split_by};
 /// their first tetrahedra.
 pub(super) fn split_at_cracks(mesh: &TetMesh, parts: &[u32]) -> Vec<u32> {
     let mut parts = renumbered(parts);
-    let count = parts.iter().max().map_or(0, |&p| p as usize + 1);
+    let count = count_of(&parts);
     let of_facets: Vec<u32> = (0..mesh.facets().len()).map(|f| parts[mesh.facet_owner(f)]).collect();
     let facets = Lists::by_key(count, &of_facets);
     let mut members = None;
@@ -55,7 +55,7 @@ pub(super) fn split_at_cracks(mesh: &TetMesh, parts: &[u32]) -> Vec<u32> {
 fn join_small(mesh: &TetMesh, members: &Lists<u32>, parts: &[u32]) -> Vec<u32> {
     let pieces = split_by(mesh, parts);
     let mut joined = pieces.clone();
-    let tets = Lists::by_key(pieces.iter().max().map_or(0, |&p| p as usize + 1), &pieces);
+    let tets = Lists::by_number(&pieces);
     let mut is_small = vec![false; tets.count()];
     for part in 0..members.count() {
         let most = SMALL_PIECE * members.of(part).len() as f64;

@@ -2,9 +2,9 @@
 
 use super::compact::{compact, join_pieces};
 use super::cracks::split_at_cracks;
-use super::parts::{expect_parts, volumes_and_surfaces};
+use super::parts::{expect_parts, split_by, volumes_and_surfaces};
 use super::subdomains::DecompositionError;
-use crate::mesh::{TetMesh, connected_sets, extent};
+use crate::mesh::{TetMesh, extent};
 use crate::tables::Lists;
 use crate::tolerances::{
     BOX, EDGE_STEPS, FILLED, GRADED, LARGER, PLANE, ROD, ROD_BEND, ROD_QUADRATIC, ROD_TETS, ROUND, SNAP, STRAP_BEND,
@@ -45,8 +45,8 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     if number == 0 {
         return Err(DecompositionError::NoParts);
     }
-    let groups = connected_sets(mesh.neighbour_table(), |a, b| groups[a] == groups[b]);
-    let members = Lists::by_key(groups.iter().max().map_or(0, |&g| g as usize + 1), &groups);
+    let groups = split_by(mesh, groups);
+    let members = Lists::by_number(&groups);
     let centres: Vec<Vec3> = (0..tets).map(|tet| vec3::centroid(&mesh.tet_points(tet))).collect();
     let cutter = |shares| Cutter {
         mesh,

@@ -1,7 +1,7 @@
 //! Subdomains by part numbers of the tetrahedra.
 
 use crate::mesh::{NONE, TetMesh, connected_sets};
-use crate::tables::distinct;
+use crate::tables::{count_of, distinct};
 use crate::vec3;
 
 use super::subdomains::{Decomposition, DecompositionError};
@@ -15,7 +15,7 @@ impl Decomposition {
     /// a part is not connected (see [`split_disconnected`]).
     pub fn from_parts(mesh: &TetMesh, parts: &[u32]) -> Result<Self, DecompositionError> {
         expect_parts(mesh, parts)?;
-        let count = parts.iter().max().map_or(0, |&p| p as usize + 1);
+        let count = count_of(parts);
         // of more parts than tetrahedra one of the first is empty
         let part = first_gap(parts, count.min(parts.len()));
         if part < count {
@@ -59,7 +59,7 @@ pub(super) fn split_by(mesh: &TetMesh, parts: &[u32]) -> Vec<u32> {
 
 /// The same parts, numbered without gaps by their first tetrahedra.
 pub(super) fn renumbered(parts: &[u32]) -> Vec<u32> {
-    let mut number = vec![NONE; parts.iter().max().map_or(0, |&p| p as usize + 1)];
+    let mut number = vec![NONE; count_of(parts)];
     let mut next = 0;
     let new = |&part: &u32| {
         let number = &mut number[part as usize];
@@ -96,8 +96,7 @@ pub(super) fn expect_parts(mesh: &TetMesh, parts: &[u32]) -> Result<(), Decompos
 #[doc(hidden)]
 #[must_use]
 pub fn volumes_and_surfaces(mesh: &TetMesh, parts: &[u32]) -> Vec<[f64; 2]> {
-    let count = parts.iter().max().map_or(0, |&last| last as usize + 1);
-    let mut out = vec![[0.0; 2]; count];
+    let mut out = vec![[0.0; 2]; count_of(parts)];
     for (tet, &part) in parts.iter().enumerate() {
         let (corners, [volume, surface]) = (mesh.tet_points(tet), &mut out[part as usize]);
         *volume += vec3::tet_volume(&corners);

@@ -118,9 +118,8 @@ impl Decomposition {
 
     /// Expects part numbers without gaps.
     pub(super) fn build(mesh: &TetMesh, part_of: Vec<u32>) -> Self {
-        let parts = part_of.iter().max().map_or(0, |&p| p as usize + 1);
-        let tets = Lists::by_key(parts, &part_of);
-        let nodes = mesh.points().len();
+        let tets = Lists::by_number(&part_of);
+        let (parts, nodes) = (tets.count(), mesh.points().len());
         // with a table of local numbers for some parts after one another
         let subdomains: Vec<_> = (0..parts)
             .into_par_iter()

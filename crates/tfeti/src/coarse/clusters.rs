@@ -118,16 +118,12 @@ impl Clusters {
 
 /// The subdomains of each cluster.
 pub(crate) fn members(parts: &[u32], at: &[[f64; 3]], grid: Option<&[[u32; 3]]>) -> Vec<Vec<u32>> {
-    let count = parts.iter().max().map_or(0, |last| *last as usize + 1);
-    let mut groups: Vec<Vec<u32>> = vec![Vec::new(); count];
-    (0_u32..)
-        .zip(parts)
-        .for_each(|(s, &part)| groups[part as usize].push(s));
+    let groups = Lists::by_number(parts);
     let mut out: Vec<Vec<u32>> = Vec::new();
-    for group in groups {
+    for group in (0..groups.count()).map(|part| groups.of(part)) {
         match grid {
-            Some(grid) => boxes(&group, grid, &mut out),
-            None => halve(group, at, &mut out),
+            Some(grid) => boxes(group, grid, &mut out),
+            None => halve(group.to_vec(), at, &mut out),
         }
     }
     out

@@ -12,7 +12,7 @@ use crate::subdomain::kernel::{Kernel, displacement, mean};
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::{FREE, MOVING, NO_ACTION};
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
-use signorini_fem_mesh::internal::DisjointSets;
+use signorini_fem_mesh::internal::{DisjointSets, Lists, count_of};
 use signorini_fem_mesh::vec3::{dot, sub};
 use std::fmt;
 use std::sync::Arc;
@@ -109,26 +109,23 @@ impl Mobility {
             sets.join(a as usize, b as usize);
         }
         let part_of = sets.numbers();
-        let count = part_of.iter().max().map_or(0, |last| *last as usize + 1);
-        let mut members: Vec<Vec<usize>> = vec![Vec::new(); count];
-        for (s, &part) in part_of.iter().enumerate() {
-            members[part as usize].push(s);
-        }
-        let body = |members: Vec<usize>| {
-            let centre = mean(members.iter().map(|&s| centres[s]));
-            let square = |&s: &usize| {
+        let members = Lists::by_number(&part_of);
+        let body = |members: &[u32]| {
+            let own = || members.iter().map(|&s| s as usize);
+            let centre = mean(own().map(|s| centres[s]));
+            let square = |s: usize| {
                 let (own, off) = (subdomains.kernel(s).radius(), sub(centres[s], centre));
                 dot(off, off) + own * own
             };
-            let square: f64 = members.iter().map(square).sum();
+            let square: f64 = own().map(square).sum();
             let radius = (square / members.len() as f64).sqrt();
             Body {
                 centre,
                 radius,
-                first: members[0],
+                first: members[0] as usize,
             }
         };
-        let bodies = members.into_iter().map(body).collect();
+        let bodies = (0..members.count()).map(|part| body(members.of(part))).collect();
         let joints = joint_rows(gluing, &part_of);
         for row in &joints {
             for pair in row.windows(2) {
@@ -158,7 +155,7 @@ impl Mobility {
     }
 
     pub(crate) fn bodies(&self) -> usize {
-        self.body_of.iter().max().map_or(0, |b| *b as usize + 1)
+        count_of(&self.body_of)
     }
 
     fn kernel(&self, subdomain: usize) -> &Kernel {
@@ -203,9 +200,9 @@ impl Mobility {
                 sets.join(pair[0].0, pair[1].0);
             }
         }
-        let of: Vec<usize> = sets.numbers().into_iter().map(|g| g as usize).collect();
-        let count = of.iter().max().map_or(0, |last| last + 1);
-        let mut groups: Vec<Group> = (0..count).map(|_| Group::default()).collect();
+        let of = sets.numbers();
+        let mut groups: Vec<Group> = (0..count_of(&of)).map(|_| Group::default()).collect();
+        let of: Vec<usize> = of.into_iter().map(|group| group as usize).collect();
         let mut place = vec![0; of.len()];
         for (body, &group) in of.iter().enumerate() {
             place[body] = groups[group].bodies.len();
