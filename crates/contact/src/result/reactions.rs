@@ -157,19 +157,18 @@ pub(crate) fn nodal_reactions(
     recovered: &Recovered,
     ties: &[(&ContactPoint, [f64; 3])],
 ) -> BTreeMap<u32, [f64; 3]> {
-    let (points, lambda) = (&recovered.points, &recovered.support_multipliers);
     let gluing = model.tfeti.gluing();
     let mut forces: BTreeMap<u32, [f64; 3]> = BTreeMap::new();
-    for (row, lambda) in gluing.ranges().dirichlet.clone().zip(lambda) {
+    for row in gluing.ranges().dirichlet.clone() {
         let Some(node) = gluing.node(row) else {
             continue;
         };
-        let force = forces.entry(node).or_default();
+        let (force, lambda) = (forces.entry(node).or_default(), recovered.multiplier(row));
         for (_, dof, coefficient) in gluing.row(row) {
             force[dof % 3] += lambda * coefficient;
         }
     }
-    for (state, point) in points.iter().zip(&model.points) {
+    for (state, point) in recovered.points.iter().zip(&model.points) {
         let whole = state.force();
         let size = whole.iter().map(|f| f.abs()).fold(0.0, f64::max);
         for (node, own) in point.contact.sides.forces(whole) {
@@ -203,18 +202,17 @@ pub(crate) fn nodal_reactions(
 
 /// The equations that have rows, with their multipliers, N.
 fn equation_multipliers<'a>(model: &'a Model, recovered: &'a Recovered) -> impl Iterator<Item = (usize, f64)> {
-    let rows = model.tfeti.gluing().equations().iter();
-    let rows = rows.zip(&recovered.equation_multipliers);
-    rows.map(|(own, lambda)| (own.equation, own.scale * lambda))
+    let gluing = model.tfeti.gluing();
+    let rows = gluing.ranges().equations.clone().zip(gluing.equations());
+    rows.map(|(row, own)| (own.equation, own.scale * recovered.multiplier(row)))
 }
 
 /// The force on each point of tied contacts, N, along the directions that its rows have.
 pub(crate) fn tied_forces<'a>(model: &'a Model, recovered: &Recovered) -> Vec<(&'a ContactPoint, [f64; 3])> {
-    let first = model.tfeti.gluing().ranges().tied.start;
     let force = |(tied, tie): (&TiedRows, &'a ContactPoint)| {
         let mut force = [0.0; 3];
         for (row, (direction, scale)) in tied.rows.clone().zip(&tied.directions) {
-            let lambda = recovered.tied_multipliers[row - first];
+            let lambda = recovered.multiplier(row);
             (0..3).for_each(|c| force[c] += lambda * scale * direction[c]);
         }
         (tie, force)
@@ -319,7 +317,8 @@ fn by_coupling(model: &Model, recovered: &Recovered, (arm, about): (impl Fn(u32)
     let mut out = vec![Resultant::default(); model.scene.couplings.len()];
     let couplings = &model.discrete.couplings;
     let rows = model.tfeti.gluing().ranges().rigid.clone();
-    for ((row, lambda), held) in rows.zip(&recovered.rigid_multipliers).zip(&couplings.supports) {
+    for (row, held) in rows.zip(&couplings.supports) {
+        let lambda = recovered.multiplier(row);
         let coupling = held.subdomain as usize - couplings.first;
         if let Some(arm) = point_arm(model, coupling, about) {
             let whole = model.tfeti.gluing().direction(row);
@@ -338,12 +337,11 @@ fn by_coupling(model: &Model, recovered: &Recovered, (arm, about): (impl Fn(u32)
 fn by_spring(model: &Model, recovered: &Recovered, arm: impl Fn(u32) -> [f64; 3]) -> Vec<SupportReaction> {
     let springs = &model.discrete.springs.by_spring;
     let gluing = model.tfeti.gluing();
-    let rows = gluing.ranges().dirichlet.clone();
+    let rows = gluing.ranges().dirichlet.clone().rev();
     let mut forces: BTreeMap<u32, Vector3<f64>> = BTreeMap::new();
-    let multipliers = rows.zip(&recovered.support_multipliers).rev();
-    for (row, lambda) in multipliers.take(gluing.springs().len()) {
+    for row in rows.take(gluing.springs().len()) {
         if let Some(node) = gluing.node(row) {
-            *forces.entry(node).or_default() += Vector3::from(gluing.direction(row)) * *lambda;
+            *forces.entry(node).or_default() += Vector3::from(gluing.direction(row)) * recovered.multiplier(row);
         }
     }
     let own = springs.iter().map(|nodes| {

@@ -25,14 +25,8 @@ pub(crate) struct Recovered {
     pub(crate) sizes: Vec<Sizes>,
     pub(crate) certificate: Certificate,
     pub(crate) points: Vec<PointState>,
-    /// Multipliers of the support rows.
-    pub(crate) support_multipliers: Vec<f64>,
-    /// Multipliers of the rows that hold couplings.
-    pub(crate) rigid_multipliers: Vec<f64>,
-    /// Multipliers of the rows of tied contacts.
-    pub(crate) tied_multipliers: Vec<f64>,
-    /// Multipliers of the rows of equations.
-    pub(crate) equation_multipliers: Vec<f64>,
+    /// Multipliers of the last rows: those behind contact and gluing.
+    last_multipliers: Vec<f64>,
 }
 
 impl Recovered {
@@ -67,15 +61,17 @@ impl Recovered {
         Ok(Self {
             certificate: certify(&measured, &sizes),
             points: point_states(model, problem, lambda, (&rows, &gives_way)),
-            support_multipliers: lambda[tfeti.gluing().ranges().dirichlet.clone()].to_vec(),
-            rigid_multipliers: lambda[tfeti.gluing().ranges().rigid.clone()].to_vec(),
-            tied_multipliers: lambda[tfeti.gluing().ranges().tied.clone()].to_vec(),
-            equation_multipliers: lambda[tfeti.gluing().ranges().equations.clone()].to_vec(),
+            last_multipliers: lambda[tfeti.gluing().ranges().interface.end..].to_vec(),
             sizes,
             torn,
             rows,
             gives_way,
             residual,
         })
+    }
+
+    /// The multiplier of a row of ties, equations, couplings or supports.
+    pub(super) fn multiplier(&self, row: usize) -> f64 {
+        self.last_multipliers[row + self.last_multipliers.len() - self.rows.len()]
     }
 }

@@ -6,7 +6,7 @@
 //! meshes of order 2 there is nothing to damp: 0.3 % before.
 
 use super::points::PointState;
-use crate::discrete::{ContactPoint, area_vector};
+use crate::discrete::{ContactPoint, area_vector, of_contact};
 use crate::model::Model;
 use crate::vec3::norm;
 use signorini_fem_mesh::Surface;
@@ -76,17 +76,15 @@ struct Conditions<'a> {
 
 impl<'a> Conditions<'a> {
     fn new(model: &'a Model, surface: usize) -> Self {
-        let all = &model.discrete.conditions;
-        let from = all.partition_point(|c| c.surface < surface);
-        let until = all.partition_point(|c| c.surface <= surface);
-        let all = &all[from..until];
+        let own = of_contact(&model.discrete.conditions, surface);
+        let all = &model.discrete.conditions[own.clone()];
         let stands = |(condition, point): (&ContactPoint, &Option<usize>)| {
             let own = &model.points[(*point)?].contact;
             let near = (own.gap - condition.gap).abs() <= model.discrete.rounding;
             point.filter(|_| own.surface == surface || near)
         };
         Self {
-            points: all.iter().zip(&model.standing[from..until]).map(stands).collect(),
+            points: all.iter().zip(&model.standing[own]).map(stands).collect(),
             all,
         }
     }
