@@ -11,7 +11,7 @@ use super::partners::{Paired, Partner, Partners};
 use super::side::{Sides, mean_place, rounded};
 use crate::error::ContactError;
 use crate::mortar::Rim;
-use crate::scene::{Contact, Gap};
+use crate::scene::{Contact, Gap, Scene};
 use crate::tolerances::{JUMP, OVERSHOT};
 use signorini_fem_mesh::internal::Lists;
 use signorini_fem_mesh::vec3::{area_vector, norm, sub, unit};
@@ -22,8 +22,9 @@ use std::collections::HashMap;
 
 /// What means over the sides of a contact need.
 pub(super) struct Means<'a> {
-    mesh: &'a TetMesh,
-    contact: (usize, &'a Contact),
+    scene: &'a Scene,
+    /// Position of the contact in the scene.
+    contact: usize,
     surface: &'a Surface,
     /// What of a gap may be rounding, m.
     rounding: f64,
@@ -36,23 +37,23 @@ pub(super) struct Means<'a> {
 impl<'a> Means<'a> {
     /// `None` for a mesh of order 1, and where `mortar` has made the sides.
     pub(super) fn new(
-        mesh: &'a TetMesh,
-        (index, contact): (usize, &'a Contact),
+        scene: &'a Scene,
+        contact: usize,
         surface: &'a Surface,
         partners: &Partners,
         rounding: f64,
     ) -> Option<Self> {
-        if mesh.order() == 1 || matches!(partners, Partners::Mortar(_)) {
+        if scene.mesh.order() == 1 || matches!(partners, Partners::Mortar(_)) {
             return None;
         }
         Some(Self {
-            mesh,
-            contact: (index, contact),
+            scene,
+            contact,
             surface,
             rounding,
             around: around(surface),
             partners: match partners {
-                Partners::Nodes(partners) => all_partners(mesh, contact, surface, partners),
+                Partners::Nodes(partners) => all_partners(scene, contact, surface, partners),
                 _ => HashMap::new(),
             },
         })
@@ -60,13 +61,13 @@ impl<'a> Means<'a> {
 
     /// The mid-nodes of a surface with their partners, if all are in one place: nodes can then be tied one by one.
     pub(super) fn matching_mids(&self) -> Option<Vec<MatchingMid>> {
-        let place = |node: u32| self.mesh.points()[node as usize];
-        let mut out = Vec::new();
+        let (mesh, mut out) = (&self.scene.mesh, Vec::new());
+        let place = |node: u32| mesh.points()[node as usize];
         for (triangle, &facet) in self.surface.triangles().iter().zip(self.surface.facets()) {
             let [a, b, c] = *triangle;
             for (ends, node) in [[a, b], [b, c], [c, a]]
                 .into_iter()
-                .zip(self.mesh.facet_mids(facet as usize))
+                .zip(mesh.facet_mids(facet as usize))
             {
                 let partner = *self.partners.get(&node)?;
                 let apart = norm(sub(place(partner), place(node)));
@@ -82,7 +83,7 @@ impl<'a> Means<'a> {
     /// Where the force of a node acts that is one point, m: in the mean of its side.
     pub(super) fn place(&self, local: usize) -> [f64; 3] {
         mean_place(&self.side(local, self.around.of(local)), |node| {
-            self.mesh.points()[node as usize]
+            self.scene.mesh.points()[node as usize]
         })
     }
 
@@ -96,19 +97,18 @@ impl<'a> Means<'a> {
         (local, triangles): (usize, &[u32]),
         frame: &SurfaceFrame,
     ) -> Result<(Sides, f64), ContactError> {
-        let (index, contact) = self.contact;
         let triangles = if triangles.is_empty() { self.around.of(local) } else { triangles };
         let own = self.side(local, triangles);
         let other = |&(node, weight): &(u32, f64)| Some((*self.partners.get(&node)?, weight));
         let partner: Option<Vec<(u32, f64)>> = own.nodes().iter().map(other).collect();
-        let place = |node: u32| self.mesh.points()[node as usize];
+        let place = |node: u32| self.scene.mesh.points()[node as usize];
         let measured = |node: u32| {
             self.partners.get(&node).map_or(0.0, |&to| {
                 let gap = vector::dot(&sub(place(to), place(node)), &frame.normal);
                 rounded(gap, self.rounding)
             })
         };
-        let gap = mean_gap(self.mesh, (index, contact), &own, &frame.normal, measured)?;
+        let gap = mean_gap(self.scene, self.contact, &own, &frame.normal, measured)?;
         let sides = Sides {
             own,
             partner: partner.map(Side::new),
@@ -120,11 +120,8 @@ impl<'a> Means<'a> {
 
 /// The pair with [dual functions](Surface::with_dual) where the gap opens from the rim of its side. `mortar` has its
 /// own.
-pub(super) fn opened(
-    mesh: &TetMesh,
-    (index, contact): (usize, &Contact),
-    mut paired: Paired,
-) -> Result<Paired, ContactError> {
+pub(super) fn opened(scene: &Scene, index: usize, mut paired: Paired) -> Result<Paired, ContactError> {
+    let (mesh, contact) = (&scene.mesh, &scene.contacts[index]);
     let is_told = matches!(contact.gap, Gap::None | Gap::Constant(_));
     if mesh.order() == 1 || contact.tied || is_told || paired.is_apart() {
         return Ok(paired);
@@ -132,7 +129,7 @@ pub(super) fn opened(
     let surface = &paired.surface;
     let rim = Rim::new(mesh, surface, contact.crease);
     let partners = match &paired.partners {
-        Partners::Nodes(partners) => all_partners(mesh, contact, surface, partners),
+        Partners::Nodes(partners) => all_partners(scene, index, surface, partners),
         _ => HashMap::new(),
     };
     let place = |node: u32| mesh.points()[node as usize];
@@ -168,12 +165,13 @@ pub(super) struct MatchingMid {
 /// The gap of a side along a normal, m: the mean over its nodes, at which `measured` says what coordinates do. Beyond
 /// the end of an obstacle that of its centre, where nothing is met.
 pub(super) fn mean_gap(
-    mesh: &TetMesh,
-    (index, contact): (usize, &Contact),
+    scene: &Scene,
+    index: usize,
     side: &Side,
     normal: &[f64; 3],
     measured: impl Fn(u32) -> f64,
 ) -> Result<f64, ContactError> {
+    let (mesh, contact) = (&scene.mesh, &scene.contacts[index]);
     let centre = mean_place(side, |node| mesh.points()[node as usize]);
     if let Some(distance) = contact.beyond(centre, normal) {
         return Ok(distance);
@@ -209,7 +207,8 @@ pub(super) fn mean(
 }
 
 /// The partners of corners, and of mid-nodes those on the edge between the partners of its ends.
-fn all_partners(mesh: &TetMesh, contact: &Contact, surface: &Surface, partners: &[Partner]) -> HashMap<u32, u32> {
+fn all_partners(scene: &Scene, contact: usize, surface: &Surface, partners: &[Partner]) -> HashMap<u32, u32> {
+    let (mesh, contact) = (&scene.mesh, &scene.contacts[contact]);
     let mut mids: HashMap<[u32; 2], u32> = HashMap::new();
     for (facet, own) in mesh
         .facets()

@@ -1,7 +1,7 @@
 //! Directions of contact that the scene gives: one for all nodes, or those of an obstacle.
 
 use crate::error::ContactError;
-use crate::scene::{Contact, ContactNormal, Gap, Obstacle, Pose, Seen};
+use crate::scene::{Contact, ContactNormal, Gap, Obstacle, Pose, Scene, Seen};
 use crate::tolerances::{ALONG, AXIS, DISTANCE_WAY, FACING, GRADIENT, SAME_NORMAL};
 use signorini_fem_mesh::vec3::{cross, dot, norm, scale, sub, unit};
 use signorini_fem_mesh::{Surface, SurfaceFrame};
@@ -80,14 +80,15 @@ fn user_distance(contact: &Contact) -> Option<&Obstacle> {
 
 /// Refuses what is measured as a distance and is none, by how it changes over a way.
 fn check_distance(
-    (index, contact): (usize, &Contact),
+    scene: &Scene,
+    contact: usize,
     (node, position): (u32, [f64; 3]),
     found: (f64, [f64; 3]),
     way: f64,
 ) -> Result<(), ContactError> {
-    match user_distance(contact).and_then(|shape| shape.steep(position, found, way)) {
+    match user_distance(&scene.contacts[contact]).and_then(|shape| shape.steep(position, found, way)) {
         Some(slope) => Err(ContactError::ObstacleDistance {
-            contact: index,
+            contact,
             node,
             position,
             slope,
@@ -98,11 +99,13 @@ fn check_distance(
 
 /// The same of all nodes that face an obstacle whose distance is measured along other directions than its own.
 fn check_along(
-    (index, contact): (usize, &Contact),
+    scene: &Scene,
+    index: usize,
     surface: &Surface,
     place: impl Fn(usize) -> [f64; 3],
     way: f64,
 ) -> Result<(), ContactError> {
+    let contact = &scene.contacts[index];
     let Some(shape) = user_distance(contact) else {
         return Ok(());
     };
@@ -114,7 +117,7 @@ fn check_along(
             _ => own.normal,
         };
         if dot(found.1, along) < -FACING && is_unit(found.1) {
-            check_distance((index, contact), (node, position), found, way)?;
+            check_distance(scene, index, (node, position), found, way)?;
         }
     }
     Ok(())
@@ -124,17 +127,19 @@ fn check_along(
 /// side of the obstacle that it faces has ended, in all `poses`; empty for all others. `place` is where the force of a
 /// node acts.
 pub(super) fn shape_frames(
-    (index, contact): (usize, &Contact),
+    scene: &Scene,
+    index: usize,
     surface: &Surface,
     place: impl Fn(usize) -> [f64; 3],
     poses: &[Pose],
 ) -> Result<Vec<Option<SurfaceFrame>>, ContactError> {
+    let contact = &scene.contacts[index];
     let Some(shape) = &contact.shape else {
         return Ok(Vec::new());
     };
     let way = DISTANCE_WAY * surface.total_area().sqrt();
     if contact.normal != ContactNormal::Obstacle {
-        check_along((index, contact), surface, place, way)?;
+        check_along(scene, index, surface, place, way)?;
         return Ok(Vec::new());
     }
     let frame = |(local, (&node, own)): (usize, (&u32, &SurfaceFrame))| {
@@ -162,7 +167,7 @@ pub(super) fn shape_frames(
         if frame.normal_part(own.normal) <= FACING || is_never_met {
             return Ok(None);
         }
-        check_distance((index, contact), (node, position), (distance, gradient), way)?;
+        check_distance(scene, index, (node, position), (distance, gradient), way)?;
         Ok(Some(frame))
     };
     let nodes = surface.nodes().iter().zip(surface.frames());

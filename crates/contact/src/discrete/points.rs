@@ -109,14 +109,14 @@ pub(super) fn conditions(
     let acting = |(_, (contact, _)): &(usize, (&Contact, &Paired))| scene.acts(contact.span);
     for (index, (contact, paired)) in scene.contacts.iter().zip(paired).enumerate().filter(acting) {
         let (surface, fixed, partners) = (&paired.surface, paired.fixed, &paired.partners);
-        let means = Means::new(&scene.mesh, (index, contact), surface, partners, rounding);
+        let means = Means::new(scene, index, surface, partners, rounding);
         let mids = means.as_ref().filter(|_| contact.tied).and_then(Means::matching_mids);
         let means = means.filter(|_| mids.is_none());
         let place = |local: usize| match &means {
             Some(means) => means.place(local),
             None => scene.mesh.points()[surface.nodes()[local] as usize],
         };
-        let shaped = shape_frames((index, contact), surface, place, &poses[index])?;
+        let shaped = shape_frames(scene, index, surface, place, &poses[index])?;
         let sides = match (partners, fixed) {
             (Partners::Obstacle, None) if shaped.is_empty() => creases(&scene.mesh, surface, contact.crease),
             _ => HashMap::new(),
@@ -138,7 +138,7 @@ pub(super) fn conditions(
                     None => {
                         let mut sides = facing.sides.clone();
                         let measured = |_| facing.measured;
-                        let gap = mean_gap(&scene.mesh, (index, contact), &sides.own, &frame.normal, measured)?;
+                        let gap = mean_gap(scene, index, &sides.own, &frame.normal, measured)?;
                         if curved && !contact.tied {
                             sides.turn_partner(place_of(&scene.mesh), rounding);
                         }

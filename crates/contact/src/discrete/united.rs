@@ -19,7 +19,7 @@ pub(super) fn pair(scene: &Scene, rounding: f64) -> Result<Vec<Paired>, ContactE
     let mut apart: Vec<Apart> = Vec::new();
     for one in scene.contacts.iter().enumerate() {
         out.push(match Paired::matching(mesh, one, rounding)? {
-            Found::Paired(paired) => Some(opened(mesh, one, paired)?),
+            Found::Paired(paired) => Some(opened(scene, one.0, paired)?),
             Found::Apart(sides) => {
                 apart.push((one.0, sides));
                 None
