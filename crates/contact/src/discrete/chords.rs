@@ -1,6 +1,7 @@
 //! Edges of straight facets as chords of the curve that they stand for.
 
 use crate::tolerances::{BENT, FLAT_ARC, KINK};
+use signorini_fem_mesh::internal::ascending;
 use signorini_fem_mesh::vec3::{add, cross, dot, norm, scale, sub, unit};
 use signorini_fem_mesh::{Surface, TetMesh};
 use std::collections::HashMap;
@@ -57,7 +58,7 @@ fn smooth_normals(mesh: &TetMesh, surface: &Surface) -> Vec<[f64; 3]> {
 
 /// The edges 01, 12, 20 with their ends ascending.
 pub(super) fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
-    [[a, b], [b, c], [c, a]].map(|[p, q]| [p.min(q), p.max(q)])
+    [[a, b], [b, c], [c, a]].map(ascending)
 }
 
 /// The edges of a surface as chords of arcs.

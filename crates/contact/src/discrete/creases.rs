@@ -1,7 +1,6 @@
 //! Sides of a surface that meet at creases.
 
 use crate::vec3::edge_cosine;
-use signorini_fem_mesh::internal::Lists;
 use signorini_fem_mesh::vec3::{self, norm};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use std::collections::HashMap;
@@ -13,11 +12,6 @@ pub(super) struct SurfaceSide {
     pub(super) area: f64,
     /// Triangles around the node, as far as they are needed.
     pub(super) triangles: Vec<u32>,
-}
-
-/// The triangles around each node of a surface, ascending.
-pub(super) fn around(surface: &Surface) -> Lists<u32> {
-    Lists::by_key(surface.nodes().len(), surface.triangles().as_flattened()).map(|corner| corner / 3)
 }
 
 /// The sides that meet at each node of a crease; keys are places in the surface.
@@ -32,7 +26,7 @@ pub(super) fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap
         .iter()
         .map(|t| area_vector(mesh, surface, t))
         .collect();
-    let around = around(surface);
+    let around = surface.around();
     for node in 0..around.count() {
         let sides = sides(surface, &vectors, around.of(node), limit);
         if sides.len() < 2 {

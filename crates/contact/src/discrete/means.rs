@@ -6,7 +6,6 @@
 //! are the same need no means: each node is tied to its partner, mid-nodes too.
 
 use super::chords::edges;
-use super::creases::around;
 use super::partners::{Paired, Partner, Partners};
 use super::side::{Sides, mean_place, rounded};
 use crate::error::ContactError;
@@ -51,7 +50,7 @@ impl<'a> Means<'a> {
             contact,
             surface,
             rounding,
-            around: around(surface),
+            around: surface.around(),
             partners: match partners {
                 Partners::Nodes(partners) => all_partners(scene, contact, surface, partners),
                 _ => HashMap::new(),

@@ -3,7 +3,7 @@
 
 use crate::tolerances::{LINEAR, OPENING, SAME_NORMAL};
 use crate::vec3::edge_cosine;
-use signorini_fem_mesh::internal::{Lists, facet_normals};
+use signorini_fem_mesh::internal::facet_normals;
 use signorini_fem_mesh::vec3::{area_vector, dot, norm, unit};
 use signorini_fem_mesh::{Surface, TetMesh};
 use std::collections::HashSet;
@@ -24,8 +24,7 @@ impl<'a> Rim<'a> {
             .iter()
             .map(|f| mesh.facets()[*f as usize].nodes)
             .collect();
-        let corners = surface.triangles().as_flattened();
-        let around = Lists::by_key(surface.nodes().len(), corners).map(|corner| corner / 3);
+        let around = surface.around();
         let crease = crease.to_radians().cos();
         // an edge goes on if some other facet around its first node has both ends and does not meet it at a crease
         let goes_on = |own: usize, [from, to]: [usize; 2]| {

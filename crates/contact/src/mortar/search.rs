@@ -7,7 +7,7 @@ use crate::tolerances::{BENT, FACING, OVERLAP};
 use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
-use signorini_fem_mesh::internal::{facet_normals, shape_gradients};
+use signorini_fem_mesh::internal::{ascending, facet_normals, shape_gradients};
 use signorini_fem_mesh::vec3::{add, area_vector, centroid, dot, norm, scale, sub, unit};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use std::collections::HashMap;
@@ -262,7 +262,7 @@ impl<'a> OtherSide<'a> {
 
     /// Those of the edges 01, 12, 20 of a facet.
     fn arcs_of(&self, [a, b, c]: [u32; 3]) -> [f64; 3] {
-        [[a, b], [b, c], [c, a]].map(|[a, b]| self.arcs.get(&[a.min(b), a.max(b)]).copied().unwrap_or(0.0))
+        [[a, b], [b, c], [c, a]].map(|edge| self.arcs.get(&ascending(edge)).copied().unwrap_or(0.0))
     }
 
     /// A distance beyond which no facet can be.

@@ -8,6 +8,7 @@ use super::seen::Seen;
 use crate::error::ContactError;
 use crate::tolerances::{RIM, SAME_NORMAL, SHARP};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
+use signorini_fem_mesh::internal::ascending;
 use signorini_fem_mesh::vec3::{add, area_vector, cross, dot, is_finite, norm, scale, sub, unit};
 use std::collections::{HashMap, HashSet};
 
@@ -272,8 +273,7 @@ fn first_at_place(points: &[[f64; 3]]) -> Vec<u32> {
 
 /// The edge from a corner of a triangle to the next, as any of its triangles names it.
 fn edge(triangle: &[u32; 3], corner: usize) -> [u32; 2] {
-    let [a, b] = [triangle[corner], triangle[(corner + 1) % 3]];
-    [a.min(b), a.max(b)]
+    ascending([triangle[corner], triangle[(corner + 1) % 3]])
 }
 
 impl Facet {

@@ -1,7 +1,7 @@
 //! Surfaces with nodal normals, frames and areas, flat or curved.
 
 use crate::quadrature;
-use crate::tables::distinct;
+use crate::tables::{Lists, distinct};
 use crate::tolerances::{NEARLY_PARALLEL, NO_NORMAL, NO_WEIGHT};
 use crate::vec3::{self, Vec3, add, cross, dot, norm, scale, sub};
 
@@ -261,6 +261,12 @@ impl Surface {
     /// [`Surface::facets`].
     pub fn triangles(&self) -> &[[u32; 3]] {
         &self.triangles
+    }
+
+    /// The triangles around each node, ascending.
+    #[doc(hidden)]
+    pub fn around(&self) -> Lists<u32> {
+        Lists::by_key(self.nodes.len(), self.triangles.as_flattened()).map(|corner| corner / 3)
     }
 
     /// The mean of a displacement around a node, as mesh nodes with weights that sum to one, over those triangles
