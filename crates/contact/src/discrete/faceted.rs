@@ -46,10 +46,10 @@ struct Faceted {
     range: Range<usize>,
     /// Whether its overlaps may go; else they are meant.
     closes: bool,
-    sides: Vec<Side>,
+    sides: Vec<BentSide>,
 }
 
-struct Side {
+struct BentSide {
     tags: Vec<FacetTag>,
     surface: Surface,
     bends: HashMap<u32, Bend>,
@@ -76,7 +76,7 @@ pub(super) fn close_faceted(
     let is_measured = |(index, paired): &(usize, &Paired)| {
         let contact = &scene.contacts[*index];
         match contact.gap {
-            Gap::Measured => paired.is_apart() && !contact.tied,
+            Gap::Measured => paired.is_mortar() && !contact.tied,
             // nodes of linear facets are on the curve
             Gap::Obstacle => scene.mesh.order() == 2,
             _ => false,
@@ -94,10 +94,10 @@ pub(super) fn close_faceted(
         } else {
             (&contact.tags, &contact.partner)
         };
-        let mut sides = vec![Side::new(&scene.mesh, own, paired.surface.clone())];
+        let mut sides = vec![BentSide::new(&scene.mesh, own, paired.surface.clone())];
         if matches!(contact.gap, Gap::Measured) {
             let surface = Surface::new(&scene.mesh, partner)?;
-            sides.push(Side::new(&scene.mesh, partner, surface));
+            sides.push(BentSide::new(&scene.mesh, partner, surface));
         }
         Ok::<_, ContactError>(Faceted {
             index,
@@ -138,7 +138,7 @@ pub(super) fn close_faceted(
 
 /// Bends sides that go on smoothly in one another as one: at a rim that is none normals are those of both.
 fn unite(mesh: &TetMesh, faceted: &mut [Faceted]) -> Result<(), ContactError> {
-    let mut sides: Vec<&mut Side> = faceted.iter_mut().flat_map(|f| &mut f.sides).collect();
+    let mut sides: Vec<&mut BentSide> = faceted.iter_mut().flat_map(|f| &mut f.sides).collect();
     let surfaces: Vec<&Surface> = sides.iter().map(|side| &side.surface).collect();
     let united = Lists::by_key(sides.len(), &smooth_sets(&surfaces));
     for own in (0..united.count())
@@ -238,7 +238,7 @@ impl Faceted {
     }
 }
 
-impl Side {
+impl BentSide {
     fn new(mesh: &TetMesh, tags: &[FacetTag], surface: Surface) -> Self {
         Self {
             tags: tags.to_vec(),

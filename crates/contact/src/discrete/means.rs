@@ -122,7 +122,7 @@ impl<'a> Means<'a> {
 pub(super) fn opened(scene: &Scene, index: usize, mut paired: Paired) -> Result<Paired, ContactError> {
     let (mesh, contact) = (&scene.mesh, &scene.contacts[index]);
     let is_told = matches!(contact.gap, Gap::None | Gap::Constant(_));
-    if mesh.order() == 1 || contact.tied || is_told || paired.is_apart() {
+    if mesh.order() == 1 || contact.tied || is_told || paired.is_mortar() {
         return Ok(paired);
     }
     let surface = &paired.surface;

@@ -66,7 +66,7 @@ pub(super) enum Partners {
 
 impl Paired {
     /// Whether the meshes of its sides do not match.
-    pub(super) fn is_apart(&self) -> bool {
+    pub(super) fn is_mortar(&self) -> bool {
         matches!(self.partners, Partners::Mortar(_))
     }
 
@@ -107,7 +107,7 @@ impl Paired {
     /// loses its pressure. Linear tetrahedra are too stiff to. And a flat one that reaches beyond has none if it is
     /// much coarser, as its points beyond would hold the other side from tipping over its edge, or if its body is much
     /// harder (linear meshes): a rim of the softer one would be all that several of them press.
-    pub(super) fn apart(
+    pub(super) fn mortar(
         (mesh, materials): (&TetMesh, &Materials),
         (index, contact): (usize, &Contact),
         [surface, other]: [Surface; 2],

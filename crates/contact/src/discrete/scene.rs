@@ -72,7 +72,7 @@ impl DiscreteScene {
         let started = Instant::now();
         let paired = pair(scene, rounding)?;
         let search = started.elapsed();
-        let mortar = paired.iter().enumerate().filter(|(_, p)| p.is_apart());
+        let mortar = paired.iter().enumerate().filter(|(_, p)| p.is_mortar());
         let apart = mortar.map(|(index, p)| (index, p.swapped)).collect();
         let times = scene.analysis.times();
         let poses: Vec<Vec<Pose>> = scene.contacts.iter().map(|c| c.poses(times)).collect();

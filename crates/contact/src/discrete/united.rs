@@ -31,7 +31,7 @@ pub(super) fn pair(scene: &Scene, rounding: f64) -> Result<Vec<Paired>, ContactE
         let (index, first) = (members[0], &scene.contacts[members[0]]);
         let crossing = crossing(scene, &members);
         let found =
-            |contact: &Contact, sides| Paired::apart((mesh, &scene.materials), (index, contact), sides, &crossing);
+            |contact: &Contact, sides| Paired::mortar((mesh, &scene.materials), (index, contact), sides, &crossing);
         if group.len() == 1 {
             out[index] = group.pop().map(|(_, sides)| found(first, sides)).transpose()?;
             continue;

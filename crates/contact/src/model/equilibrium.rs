@@ -282,7 +282,7 @@ fn generators(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Vec
 
 /// A rigid part: a body, or what hinges join to one.
 #[derive(Debug, Clone, Copy, Default)]
-struct Part {
+struct RigidPart {
     body: usize,
     /// Its first subdomain.
     subdomain: usize,
@@ -350,7 +350,7 @@ pub(crate) fn slide(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> 
 /// The same, of length one; its radius, and its length in the sum.
 fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, f64, f64) {
     let subdomains = model.discrete.decomposition.subdomains();
-    let mut parts: Vec<Part> = Vec::new();
+    let mut parts: Vec<RigidPart> = Vec::new();
     for (motion, factor) in motions.iter().zip(factors) {
         // what moves relative to another is one of the bodies, or a point that moves with them
         let is_body = |part: &BodyMotion| !subdomains[part.subdomain].is_relative;
@@ -359,7 +359,7 @@ fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, 
             let at = match parts.iter().position(|p| p.subdomain == part.subdomain) {
                 Some(at) => at,
                 None => {
-                    parts.push(Part {
+                    parts.push(RigidPart {
                         body: part.body,
                         subdomain: part.subdomain,
                         radius: part.radius,
@@ -374,16 +374,16 @@ fn describe(model: &Model, motions: &[&FreeMotion], factors: &[f64]) -> (Slide, 
             }
         }
     }
-    let size = |p: &Part| vector::norm(&p.motion);
+    let size = |p: &RigidPart| vector::norm(&p.motion);
     let most = parts.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
     let most = most.copied().unwrap_or_default();
     let (m, length) = (most.motion.map(|v| v / size(&most)), size(&most));
-    let node = |part: &Part| subdomains[part.subdomain].nodes[0];
+    let node = |part: &RigidPart| subdomains[part.subdomain].nodes[0];
     let mut others = [None; 3];
     let far = parts
         .iter()
         .filter(|p| p.body != most.body && size(p) >= ALONGSIDE * length);
-    let mut far: Vec<&Part> = far.collect();
+    let mut far: Vec<&RigidPart> = far.collect();
     far.sort_by_key(|p| p.body);
     far.dedup_by_key(|p| p.body);
     for (other, part) in others.iter_mut().zip(far) {

@@ -18,7 +18,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::sync::Arc;
 
 /// What bodies are moved from.
-struct Place<'a> {
+struct Standing<'a> {
     lambda: &'a [f64],
     alpha: &'a [f64],
     /// `B u`, in row units.
@@ -113,7 +113,7 @@ impl Simulation {
             targets
         };
         let zeros = vec![0.0; self.iterate.lambda.len()];
-        let from = Place {
+        let from = Standing {
             lambda: &zeros,
             alpha: &vec![0.0; self.problem.rhs.len()],
             rows: &zeros,
@@ -184,7 +184,7 @@ impl Simulation {
         // what rounding leaves of forces there is none
         let mut lambda = self.iterate.lambda.clone();
         moved.difference(&held_rows).for_each(|row| lambda[*row] = 0.0);
-        let from = Place {
+        let from = Standing {
             lambda: &lambda,
             alpha: &self.iterate.alpha,
             rows: &recovered.rows,
@@ -207,7 +207,7 @@ impl Simulation {
         &self,
         state: &State,
         motions: &[FreeMotion],
-        from: &Place<'_>,
+        from: &Standing<'_>,
         targets: &Targets,
     ) -> Result<Option<(Vec<f64>, Recovered)>, ContactError> {
         let (model, problem) = (&self.model, &self.problem);
