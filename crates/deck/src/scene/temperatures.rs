@@ -9,8 +9,8 @@ use signorini_fem_mesh::vec3::Vec3;
 
 use super::faces::Known;
 use super::history::{Histories, Track};
-use crate::error::{DeckError, Location, Word};
-use crate::model::{Given, Ignored};
+use crate::error::{DeckError, Word};
+use crate::model::{Given, Ignored, Model, Section};
 
 /// Rises by history: the first track that asks for them, and nodes.
 #[derive(Default)]
@@ -37,11 +37,9 @@ impl Fields {
     }
 }
 
-/// The loads, each with the first word that asks for it.
-pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<Vec<(Load, Word)>, DeckError> {
-    let Known { model, sets, raw, .. } = known;
-    let nodes = raw.node_labels.len();
-    let mut first = vec![0.0; nodes];
+/// What each node is warmer than at first, step by step.
+fn tracks(Known { model, sets, raw, .. }: Known) -> Result<BTreeMap<u32, Track>, DeckError> {
+    let mut first = vec![0.0; raw.node_labels.len()];
     for line in &model.initial {
         for node in sets.nodes.find(&line.target, &line.word)? {
             if let Some(node) = raw.in_mesh(node) {
@@ -50,8 +48,8 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
         }
     }
     let mut tracks: BTreeMap<u32, Track> = BTreeMap::new();
-    let lines = model.steps.iter().flat_map(|step| &step.temperatures.lines);
-    let absolute = lines.into_iter().any(|line| line.given.amplitude.is_some());
+    let mut lines = model.steps.iter().flat_map(|step| &step.temperatures.lines);
+    let absolute = lines.any(|line| line.given.amplitude.is_some());
     let mut order = 0;
     for (step, given) in model.steps.iter().enumerate() {
         if given.temperatures.removes() {
@@ -72,6 +70,30 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
             }
         }
     }
+    Ok(tracks)
+}
+
+/// The strain of each section by a rise of one; `None` without *EXPANSION.
+fn expansions(model: &Model) -> Result<Vec<Option<[f64; 6]>>, DeckError> {
+    let of_section = |section: &Section| {
+        let Some((_, law @ [x, y, z])) = model.material(section)?.expansion else {
+            return Ok(None);
+        };
+        let along = |axes: [Vec3; 3]| {
+            let of = |p: usize, q: usize| (0..3).map(|k| law[k] * axes[k][p] * axes[k][q]).sum::<f64>();
+            let [shear_yz, shear_xz, shear_xy] = [(1, 2), (0, 2), (0, 1)].map(|(p, q)| 2.0 * of(p, q));
+            [of(0, 0), of(1, 1), of(2, 2), shear_yz, shear_xz, shear_xy]
+        };
+        let axes = model.axes(section, x == y && y == z)?;
+        Ok(Some(axes.map_or([x, y, z, 0.0, 0.0, 0.0], along)))
+    };
+    model.sections.iter().map(of_section).collect()
+}
+
+/// The loads, each with the first word that asks for it.
+pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<Vec<(Load, Word)>, DeckError> {
+    let Known { model, raw, .. } = known;
+    let tracks = tracks(known)?;
     let mut fields = Fields::new(known, tracks.iter().map(|(node, track)| (*node, track.clone())))?;
     // nodes that do not change in proportion would have a load each; what the steps give makes a few for all
     if fields.groups.len() > model.steps.len() + 1 {
@@ -79,34 +101,14 @@ pub(super) fn temperatures(known: Known, ignored: &mut Vec<Ignored>) -> Result<V
         let parts = all.flat_map(|(node, track)| track.parts().map(move |part| (*node, part)));
         fields = Fields::new(known, parts)?;
     }
-    let mut laws = Vec::with_capacity(model.sections.len());
-    for section in &model.sections {
-        let expansion = model.material(section)?.expansion.as_ref();
-        let strain = |law: &(Location, [f64; 3])| -> Result<[f64; 6], DeckError> {
-            let [x, y, z] = law.1;
-            let along = |axes: [Vec3; 3]| {
-                let of = |p: usize, q: usize| (0..3).map(|k| law.1[k] * axes[k][p] * axes[k][q]).sum::<f64>();
-                [
-                    of(0, 0),
-                    of(1, 1),
-                    of(2, 2),
-                    2.0 * of(1, 2),
-                    2.0 * of(0, 2),
-                    2.0 * of(0, 1),
-                ]
-            };
-            let isotropic = x == y && y == z;
-            Ok(model.axes(section, isotropic)?.map_or([x, y, z, 0.0, 0.0, 0.0], along))
-        };
-        laws.push(expansion.map(strain).transpose()?);
-    }
+    let laws = expansions(model)?;
     if laws.iter().all(Option::is_none) {
         let why = "no material of a section has *EXPANSION";
         ignored.extend(fields.groups.values().map(|(track, _)| Ignored::new(&track.word, why)));
     }
     let (mut out, mut told) = (Vec::new(), None);
     for (history, (track, nodes_of)) in &fields.groups {
-        let mut rises = vec![0.0; nodes];
+        let mut rises = vec![0.0; raw.node_labels.len()];
         for (node, rise) in nodes_of {
             raw.with_copies(*node).for_each(|node| rises[node as usize] += rise);
         }
