@@ -1,9 +1,11 @@
 //! What the steps say of one component of a node that is held.
 
+use std::collections::BTreeMap;
+
 use super::history::Track;
 use super::timeline::{Acting, Beginning, Timeline};
-use crate::error::Word;
-use crate::model::Given;
+use crate::error::{DeckError, Word};
+use crate::model::{Components, Condition, Given};
 
 /// A node of the mesh, or the position of one, and a component.
 pub(super) type Key = (u32, usize);
@@ -26,7 +28,7 @@ pub(super) struct Held {
 
 impl Held {
     /// Notes a value of a component of a node with this number in the deck; `step` is none before the first.
-    pub(super) fn give(&mut self, step: Option<usize>, given: Given, what: &str) -> Result<(), String> {
+    fn give(&mut self, step: Option<usize>, given: Given, what: &str) -> Result<(), String> {
         let now = step.unwrap_or(0);
         let again = !(self.before && step == Some(0));
         if let Some(before) = self.track.given_in(now)
@@ -53,6 +55,52 @@ impl Held {
             false if ramp && from.is_some_and(by_line) => Beginning::Line,
             false => Beginning::Jump,
         }
+    }
+}
+
+/// What a line says of a component of a node.
+pub(super) struct Said<'a> {
+    pub(super) line: &'a Condition<Components>,
+    /// Its target.
+    pub(super) owner: usize,
+    /// Its step; none before the first.
+    pub(super) step: Option<usize>,
+    /// The step from which on the component is held, if that is not the first.
+    pub(super) from: Option<usize>,
+    /// The component in words.
+    pub(super) what: String,
+}
+
+impl Said<'_> {
+    /// Notes it in a table of held components.
+    pub(super) fn note(&self, table: &mut BTreeMap<Key, Held>, key: Key, timeline: &Timeline) -> Result<(), DeckError> {
+        let (line, next) = (self.line, table.len());
+        let refuse = |word: &Word, why| Err(word.cannot(format!("{} {why}", self.what)));
+        match (table.get_mut(&key), self.step, &line.kind.fixed) {
+            (Some(held), _, None) if held.fixed => {
+                return refuse(&line.word, "is FIXED, and stays so; remove one of both");
+            }
+            (Some(held), _, Some(fixed)) if held.track.follows(timeline) => {
+                return refuse(fixed, "follows an amplitude in total time; end that before");
+            }
+            (Some(held), Some(step), Some(_)) => {
+                held.track.forget(step);
+                if held.span[0] != Some(step) {
+                    return Ok(());
+                }
+                held.fixed = true;
+            }
+            _ => {}
+        }
+        let held = table.entry(key).or_insert_with(|| Held {
+            owner: self.owner,
+            track: Track::new(next, &line.word),
+            before: self.step.is_none(),
+            fixed: self.from.is_some() && line.kind.fixed.is_some(),
+            span: [self.from, None],
+        });
+        let given = held.give(self.step, line.given, &self.what);
+        given.map_err(|why| line.word.cannot(why))
     }
 }
 

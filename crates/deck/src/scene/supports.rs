@@ -8,8 +8,8 @@ use signorini_fem_mesh::History;
 use super::between::{Follower, Targets, between, followers};
 use super::couplings::Coupling as Node;
 use super::faces::{FaceTable, Known};
-use super::held::{Held, Key, Owner};
-use super::history::{Histories, Track};
+use super::held::{Held, Key, Owner, Said};
+use super::history::Histories;
 use super::pretension::ONE;
 use super::rigid::{FreeLead, Lead, all_components, rigid_components};
 use super::spread::coupled_nodes;
@@ -204,37 +204,16 @@ impl Table {
                 if let Some(inside) = inside {
                     self.given.entry((inside, component)).or_default().insert(owner);
                 }
+                let said = Said {
+                    line,
+                    owner,
+                    step,
+                    from,
+                    what,
+                };
                 let copies = inside.map(|inside| known.raw.with_copies(inside).skip(1));
                 for key in std::iter::once(key).chain(copies.into_iter().flatten()) {
-                    let next = map.len();
-                    let known_before = map.get_mut(&(key, component));
-                    match (known_before, step, &line.kind.fixed) {
-                        (Some(held), _, None) if held.fixed => {
-                            let why = format!("{what} is FIXED, and stays so; remove one of both");
-                            return Err(line.word.cannot(why));
-                        }
-                        (Some(held), _, Some(fixed)) if held.track.follows(known.timeline) => {
-                            let why = format!("{what} follows an amplitude in total time; end that before");
-                            return Err(fixed.cannot(why));
-                        }
-                        (Some(held), Some(step), Some(_)) => {
-                            held.track.forget(step);
-                            if held.span[0] != Some(step) {
-                                continue;
-                            }
-                            held.fixed = true;
-                        }
-                        _ => {}
-                    }
-                    let held = map.entry((key, component)).or_insert_with(|| Held {
-                        owner,
-                        track: Track::new(next, &line.word),
-                        before: step.is_none(),
-                        fixed: from.is_some() && line.kind.fixed.is_some(),
-                        span: [from, None],
-                    });
-                    held.give(step, line.given, &what)
-                        .map_err(|why| line.word.cannot(why))?;
+                    said.note(map, (key, component), known.timeline)?;
                 }
             }
         }
