@@ -197,15 +197,20 @@ impl Sums {
 
     fn interval(&mut self, at: usize, x: f64, r: f64, (lo, hi): (f64, f64)) {
         let outside = (lo - x).max(x - hi).max(0.0);
-        self.inside += x.max(lo).min(hi).powi(2);
-        let moved = (x - r / self.scale).max(lo).min(hi);
-        let natural = self.scale * (x - moved);
+        // `f64::max` would hide what is not a number
+        let clamp = |v: f64| match v {
+            v if v < lo => lo,
+            v if v > hi => hi,
+            v => v,
+        };
+        self.inside += clamp(x).powi(2);
+        let natural = self.scale * (x - clamp(x - r / self.scale));
         let (low, high) = (x - lo <= self.near, hi - x <= self.near);
         let wrong = match (low, high) {
             (true, true) => 0.0,
-            (true, false) => r.min(0.0),
-            (false, true) => r.max(0.0),
-            (false, false) => r,
+            (true, false) if r > 0.0 => 0.0,
+            (false, true) if r < 0.0 => 0.0,
+            _ => r,
         };
         let sign = if low || high { wrong } else { 0.0 };
         self.add(at, outside * outside, natural * natural, wrong * wrong, sign * sign);

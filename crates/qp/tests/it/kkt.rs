@@ -164,6 +164,12 @@ fn what_is_not_a_number_is_no_optimum() {
     assert_eq!(found.relative(), 0.0);
     found.stationarity = f64::NAN;
     assert!(found.relative().is_nan());
+    // a product that is infinity less infinity, on bounds that would take any gradient
+    let a = DenseOperator::new(2, vec![1e308, -1e308, -1e308, 1e308]).expect("operator");
+    let bounds = Segment::bounds(vec![1e10; 2], vec![f64::INFINITY; 2]);
+    let set = ProductSet::new(vec![bounds]).expect("set");
+    let found = check(&QuadraticCost::new(&a, &[1.0; 2], 1.0), &set, &[1e10; 2]).expect("figures");
+    assert!(found.relative().is_nan(), "{found:?}");
 }
 
 #[test]
