@@ -2,7 +2,6 @@
 
 use super::effects::FrictionKind;
 use super::plan::Plan;
-use crate::report::Warning;
 use std::fmt;
 
 /// Unknowns of a subdomain from which on cutting it further pays: about ten cells an edge.
@@ -12,102 +11,95 @@ impl fmt::Display for Plan {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let cost = &self.estimate;
         let mb = |bytes: u64| bytes as f64 / 1e6;
+        macro_rules! line {
+            ($name:literal, $($text:tt)+) => {
+                write!(f, "\n  {:<11} {}", $name, format_args!($($text)+))?
+            };
+        }
         write!(f, "plan")?;
-        let mut line = |name: &str, text: String| write!(f, "\n  {name:<11} {text}");
-        line("mesh", format!("{} tetrahedra, {} nodes", self.elements, self.nodes))?;
+        line!("mesh", "{} tetrahedra, {} nodes", self.elements, self.nodes);
         if let Some(error) = self.mesh_error {
             let percent = (100.0 * error).round();
-            line(
+            line!(
                 "",
-                format!(
-                    "error of strains about {percent} %, mostly within a factor of 3; discretisation_error() measures it"
-                ),
-            )?;
+                "error of strains about {percent} %, mostly within a factor of 3; discretisation_error() measures it"
+            );
         }
-        line(
-            "subdomains",
-            format!("{} ({} torn unknowns)", self.subdomains, self.primal),
-        )?;
+        line!("subdomains", "{} ({} torn unknowns)", self.subdomains, self.primal);
         if self.primal > LARGE * self.subdomains {
-            line(
-                "",
-                "large ones: 4 to 6 cells an edge each are faster (with_subdomains)".to_owned(),
-            )?;
+            line!("", "large ones: 4 to 6 cells an edge each are faster (with_subdomains)");
         }
         if cost.is_mostly_coarse() {
-            let motions = self.coarse;
-            line(
+            line!(
                 "",
-                format!(
-                    "too small ones: their {motions} rigid motions take most of the time; some hundred tetrahedra each are faster"
-                ),
-            )?;
+                "too small ones: their {} rigid motions take most of the time; some hundred tetrahedra each are faster",
+                self.coarse
+            );
         }
-        line("gluing", self.gluing_text())?;
-        line("supports", self.supports_text())?;
+        match self.effects.gluing {
+            true => line!("gluing", "{} rows", self.interface_rows),
+            false => line!("gluing", "none (one subdomain)"),
+        }
+        line!("supports", "{}", self.supports_text());
         if self.effects.ties {
             let moving = if self.effects.moving_ties { ", moving" } else { "" };
-            line("ties", format!("{} rows{moving}", self.tied_rows))?;
+            line!("ties", "{} rows{moving}", self.tied_rows);
         }
         if self.effects.equations {
-            line("equations", format!("{} rows", self.equation_rows))?;
+            line!("equations", "{} rows", self.equation_rows);
         }
-        line("contact", self.contact_text())?;
+        line!("contact", "{}", self.contact_text());
         for (contact, second) in &self.apart {
             let side = if *second { "second" } else { "first" };
-            line(
-                "",
-                format!("contact {contact}: meshes do not match, points on its {side} side"),
-            )?;
+            line!("", "contact {contact}: meshes do not match, points on its {side} side");
         }
-        line("friction", self.friction_text())?;
-        line("history", self.history_text())?;
+        let rows = self.tangential_rows;
+        match self.effects.friction {
+            FrictionKind::None => line!("friction", "none (no tangential rows)"),
+            FrictionKind::Tresca => line!("friction", "Tresca, {rows} rows, no outer loop"),
+            FrictionKind::Coulomb => line!("friction", "Coulomb, {rows} rows, no slip rate"),
+            FrictionKind::RateDependent => line!("friction", "Coulomb, rate dependent, {rows} rows"),
+        }
+        match self.effects.history {
+            true => line!("history", "{} steps, old traces kept", self.steps),
+            false => line!("history", "none (each step stands alone)"),
+        }
         if self.stages > 1 {
-            line(
+            line!(
                 "stages",
-                format!("{}, set up one after another, the next beside the last", self.stages),
-            )?;
+                "{}, set up one after another, the next beside the last",
+                self.stages
+            );
         }
-        line("dual", format!("{} rows, coarse {}", self.dual(), self.coarse))?;
-        line("method", self.method.to_string())?;
+        line!("dual", "{} rows, coarse {}", self.dual(), self.coarse);
+        line!("method", "{}", self.method);
         let hard = match self.formed_bytes {
             0 => String::new(),
             bytes => format!("; {:.1} MB more for a hard step", mb(bytes)),
         };
         let [vectors, inverses] = [self.vector_bytes, cost.inverse_bytes].map(mb);
         let [coarse, tables] = [cost.coarse_bytes, cost.table_bytes].map(mb);
-        line(
+        line!(
             "memory",
-            format!(
-                "vectors {vectors:.1} MB, inverses {inverses:.1} MB ({} classes), coarse {coarse:.1} MB, tables {tables:.1} MB{hard}",
-                cost.classes
-            ),
-        )?;
-        line("products", format!("{} are likely", cost.products))?;
+            "vectors {vectors:.1} MB, inverses {inverses:.1} MB ({} classes), coarse {coarse:.1} MB, tables {tables:.1} MB{hard}",
+            cost.classes
+        );
+        line!("products", "{} are likely", cost.products);
         if let Some(t) = &cost.times {
-            let product = 1e3 * t.product;
-            line(
+            let (setup, steps, product) = (t.setup, t.steps, 1e3 * t.product);
+            line!(
                 "time",
-                format!(
-                    "set-up {:.2} s, steps {:.2} s, a product {product:.2} ms, on one processor",
-                    t.setup, t.steps
-                ),
-            )?;
+                "set-up {setup:.2} s, steps {steps:.2} s, a product {product:.2} ms, on one processor"
+            );
         }
-        let warnings = self.warnings().iter();
-        warnings.map(Warning::to_string).try_for_each(|w| line("warning", w))
+        for warning in self.warnings() {
+            line!("warning", "{warning}");
+        }
+        Ok(())
     }
 }
 
 impl Plan {
-    fn gluing_text(&self) -> String {
-        if self.effects.gluing {
-            format!("{} rows", self.interface_rows)
-        } else {
-            "none (one subdomain)".to_owned()
-        }
-    }
-
     fn supports_text(&self) -> String {
         let e = &self.effects;
         let moving = if e.motion { ", moving" } else { "" };
@@ -139,23 +131,5 @@ impl Plan {
         let partners = if e.partners { ", between bodies" } else { "" };
         let compliant = if e.compliance { ", gives way" } else { "" };
         format!("{} nodes, {gap}{moving}{partners}{compliant}", self.normal_rows)
-    }
-
-    fn friction_text(&self) -> String {
-        let rows = self.tangential_rows;
-        match self.effects.friction {
-            FrictionKind::None => "none (no tangential rows)".to_owned(),
-            FrictionKind::Tresca => format!("Tresca, {rows} rows, no outer loop"),
-            FrictionKind::Coulomb => format!("Coulomb, {rows} rows, no slip rate"),
-            FrictionKind::RateDependent => format!("Coulomb, rate dependent, {rows} rows"),
-        }
-    }
-
-    fn history_text(&self) -> String {
-        if self.effects.history {
-            format!("{} steps, old traces kept", self.steps)
-        } else {
-            "none (each step stands alone)".to_owned()
-        }
     }
 }
