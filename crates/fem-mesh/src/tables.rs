@@ -76,6 +76,11 @@ impl<T> Lists<T> {
         &self.items[self.range(list)]
     }
 
+    /// The lists.
+    pub fn iter(&self) -> impl ExactSizeIterator<Item = &[T]> {
+        (0..self.count()).map(|list| self.of(list))
+    }
+
     pub(crate) fn of_mut(&mut self, list: usize) -> &mut [T] {
         let range = self.range(list);
         &mut self.items[range]
@@ -123,6 +128,14 @@ impl DisjointSets {
     pub fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.first(a), self.first(b));
         self.parent[a.max(b)] = a.min(b) as u32;
+    }
+
+    /// Makes one set of those of some numbers.
+    pub fn join_all(&mut self, numbers: impl IntoIterator<Item = usize>) {
+        let mut numbers = numbers.into_iter();
+        if let Some(first) = numbers.next() {
+            numbers.for_each(|other| self.join(first, other));
+        }
     }
 
     /// The smallest number of the set with this one.

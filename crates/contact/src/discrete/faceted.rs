@@ -140,11 +140,8 @@ pub(super) fn close_faceted(
 fn unite(mesh: &TetMesh, faceted: &mut [Faceted]) -> Result<(), ContactError> {
     let mut sides: Vec<&mut BentSide> = faceted.iter_mut().flat_map(|f| &mut f.sides).collect();
     let surfaces: Vec<&Surface> = sides.iter().map(|side| &side.surface).collect();
-    let united = Lists::by_key(sides.len(), &smooth_sets(&surfaces));
-    for own in (0..united.count())
-        .map(|set| united.of(set))
-        .filter(|own| own.len() > 1)
-    {
+    let united = Lists::by_number(&smooth_sets(&surfaces));
+    for own in united.iter().filter(|own| own.len() > 1) {
         let tags = distinct(own.iter().flat_map(|k| sides[*k as usize].tags.iter().copied()));
         let bends = bends(mesh, &Surface::new(mesh, &tags)?);
         own.iter().for_each(|k| sides[*k as usize].bends.clone_from(&bends));
@@ -160,14 +157,9 @@ fn groups(faceted: &[Faceted]) -> Vec<Vec<&Faceted>> {
             sets.join(*seen.entry(*node).or_insert(k), k);
         }
     }
-    let mut out: Vec<Vec<&Faceted>> = Vec::new();
-    for (one, set) in faceted.iter().zip(sets.numbers()) {
-        match out.get_mut(set as usize) {
-            Some(group) => group.push(one),
-            None => out.push(vec![one]),
-        }
-    }
-    out
+    let groups = Lists::by_number(&sets.numbers());
+    let group = |own: &[u32]| own.iter().map(|&k| &faceted[k as usize]).collect();
+    groups.iter().map(group).collect()
 }
 
 /// Whether sides touch in the mean, after subtracting from their gaps what the facets add to them. Points further apart

@@ -91,17 +91,11 @@ fn joined(tfeti: &Tfeti, discrete: &DiscreteScene) -> Vec<u32> {
     for point in pairs.chain(&discrete.ties) {
         let relative = discrete.couplings.relative(point.surface);
         let relative = relative.map(|subdomain| coarse.body_of()[subdomain as usize] as usize);
-        let mut bodies = point.sides.nodes().map(body).chain(relative);
-        if let Some(first) = bodies.next() {
-            bodies.for_each(|other| sets.join(first, other));
-        }
+        sets.join_all(point.sides.nodes().map(body).chain(relative));
     }
     for equation in &discrete.equations {
         let places = equation.places.iter().map(|p| coarse.body_of()[p.0 as usize] as usize);
-        let mut bodies = equation.terms.iter().map(|t| body((t.0, 0.0))).chain(places);
-        if let Some(first) = bodies.next() {
-            bodies.for_each(|other| sets.join(first, other));
-        }
+        sets.join_all(equation.terms.iter().map(|t| body((t.0, 0.0))).chain(places));
     }
     sets.numbers()
 }

@@ -159,7 +159,7 @@ impl Raw {
         self.mids.iter_mut().flatten().for_each(number);
         let added = std::mem::take(&mut self.added);
         self.added = added.map(|(node, share)| (numbers[node as usize], share));
-        let first: Vec<u32> = (0..self.added.count()).map(|k| self.added.of(k)[0].0).collect();
+        let first: Vec<u32> = self.added.iter().map(|around| around[0].0).collect();
         self.by_first = Lists::by_key(self.node_labels.len(), &first);
         let labels: Vec<u32> = first.iter().map(|n| self.node_labels[*n as usize]).collect();
         self.node_labels.extend(labels);
@@ -200,12 +200,8 @@ impl Raw {
         let nodes = distinct(nodes);
         let known = nodes.iter().filter(|n| (**n as usize) < self.by_first.count());
         let near = known.flat_map(|&n| self.by_first.of(n as usize));
-        let is_inside = |k: &u32| {
-            self.added
-                .of(*k as usize)
-                .iter()
-                .all(|n| nodes.binary_search(&n.0).is_ok())
-        };
+        let is_known = |around: &(u32, f64)| nodes.binary_search(&around.0).is_ok();
+        let is_inside = |k: &u32| self.added.of(*k as usize).iter().all(is_known);
         let first = self.first_added();
         let inside: Vec<u32> = near.copied().filter(is_inside).map(|k| first + k).collect();
         distinct(nodes.into_iter().chain(inside))
@@ -217,8 +213,7 @@ impl Raw {
 
     /// The nodes that are added, each with its neighbours and their shares.
     pub(super) fn added(&self) -> impl Iterator<Item = (u32, &[(u32, f64)])> {
-        let first = self.first_added();
-        (0..self.added.count()).map(move |k| (first + k as u32, self.added.of(k)))
+        (self.first_added()..).zip(self.added.iter())
     }
 
     /// The neighbours of one of them.

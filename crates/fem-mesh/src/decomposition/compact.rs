@@ -4,6 +4,8 @@
 //! Trans. Inform. Theory 28, 1982; Q. Du, V. Faber, M. Gunzburger, *Centroidal Voronoi tessellations*, SIAM Review
 //! 41, 1999.
 
+use std::collections::BTreeMap;
+
 use rayon::prelude::*;
 
 use crate::mesh::TetMesh;
@@ -104,9 +106,9 @@ fn sweep(corners: &Lists<u32>, groups: &[u32], centres: &[Vec3], parts: &[u32]) 
 fn touching(corners: &Lists<u32>, parts: &[u32], group: &[u32]) -> Vec<Vec<u32>> {
     let mut out = vec![Vec::new(); group.len()];
     let mut here: Vec<u32> = Vec::new();
-    for node in 0..corners.count() {
+    for around in corners.iter() {
         here.clear();
-        here.extend(corners.of(node).iter().map(|&corner| parts[corner as usize / 4]));
+        here.extend(around.iter().map(|&corner| parts[corner as usize / 4]));
         here.sort_unstable();
         here.dedup();
         for &a in &here {
@@ -121,22 +123,17 @@ fn touching(corners: &Lists<u32>, parts: &[u32], group: &[u32]) -> Vec<Vec<u32>>
 pub(crate) fn join_pieces(mesh: &TetMesh, groups: &[u32], parts: &mut [u32]) {
     let pieces = split_by(mesh, parts);
     let tets = Lists::by_number(&pieces);
-    let count = tets.count();
-    let size = |piece: usize| tets.of(piece).len();
-    let mut largest = vec![usize::MAX; count_of(parts)];
-    for piece in 0..count {
-        let part = parts[tets.of(piece)[0] as usize] as usize;
-        if largest[part] == usize::MAX || size(piece) > size(largest[part]) {
-            largest[part] = piece;
+    let mut largest: BTreeMap<u32, usize> = BTreeMap::new();
+    for (piece, own) in tets.iter().enumerate() {
+        let known = largest.entry(parts[own[0] as usize]).or_insert(piece);
+        if own.len() > tets.of(*known).len() {
+            *known = piece;
         }
     }
-    let mut loose: Vec<bool> = vec![true; count];
-    largest
-        .iter()
-        .filter(|piece| **piece != usize::MAX)
-        .for_each(|&piece| loose[piece] = false);
+    let mut loose = vec![true; tets.count()];
+    largest.into_values().for_each(|piece| loose[piece] = false);
     // each round joins at least the pieces next to what is fixed already: a body is connected
-    let mut waiting: Vec<usize> = (0..count).filter(|&piece| loose[piece]).collect();
+    let mut waiting: Vec<usize> = (0..tets.count()).filter(|&piece| loose[piece]).collect();
     while !waiting.is_empty() {
         let found: Vec<Option<u32>> = waiting
             .iter()

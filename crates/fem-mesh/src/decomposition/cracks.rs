@@ -124,8 +124,7 @@ impl Crack {
         let local = |node: u32| nodes.partition_point(|n| *n < node);
         let mut sets = DisjointSets::new(nodes.len());
         for &k in &faces {
-            let own: Vec<usize> = inner(k).map(local).collect();
-            own.windows(2).for_each(|pair| sets.join(pair[0], pair[1]));
+            sets.join_all(inner(k).map(local));
         }
         let mut side = |node: u32| nodes[sets.first(local(node))];
         let mut apart = Vec::new();

@@ -55,9 +55,7 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     };
     let plain = cutter([const { None }; 3]);
     // elsewhere long cells along an axis are not layers
-    let boxes: Vec<bool> = (0..members.count())
-        .map(|group| plain.is_box(members.of(group)))
-        .collect();
+    let boxes: Vec<bool> = members.iter().map(|group| plain.is_box(group)).collect();
     let (grading, shares) = if boxes.contains(&true) { shares(mesh) } else { ([1.0; 3], [const { None }; 3]) };
     let graded = Some(cutter(shares)).filter(|cutter| cutter.shares.iter().any(Option::is_some));
     let bulk = match count {
@@ -66,8 +64,7 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     };
     let (mut slabs, mut next) = (vec![0; tets], 0);
     let mut whole = vec![false; members.count()];
-    for group in 0..members.count() {
-        let own = members.of(group);
+    for (group, own) in members.iter().enumerate() {
         let share = (own.len() as f64 / tets as f64 * number as f64).round() as usize;
         let share = share.clamp(1, own.len());
         let layered = graded.as_ref().filter(|_| boxes[group]);

@@ -124,7 +124,7 @@ impl Division {
     /// the given nodes of the edge, the face or the cell, and the shares of their places in that of the new one. These
     /// are the shape functions of second order, or, of cells of first order, halves for the ends of the edge and zeros.
     pub fn added(&self) -> impl ExactSizeIterator<Item = &[(u32, f64)]> {
-        (0..self.added.count()).map(|k| self.added.of(k))
+        self.added.iter()
     }
 
     fn add(&mut self, cell: &Cell, quadratic: bool, inside: &mut Inside) {

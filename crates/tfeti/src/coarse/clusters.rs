@@ -120,7 +120,7 @@ impl Clusters {
 pub(crate) fn members(parts: &[u32], at: &[[f64; 3]], grid: Option<&[[u32; 3]]>) -> Vec<Vec<u32>> {
     let groups = Lists::by_number(parts);
     let mut out: Vec<Vec<u32>> = Vec::new();
-    for group in (0..groups.count()).map(|part| groups.of(part)) {
+    for group in groups.iter() {
         match grid {
             Some(grid) => boxes(group, grid, &mut out),
             None => halve(group.to_vec(), at, &mut out),

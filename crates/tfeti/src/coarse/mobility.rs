@@ -125,12 +125,10 @@ impl Mobility {
                 first: members[0] as usize,
             }
         };
-        let bodies = (0..members.count()).map(|part| body(members.of(part))).collect();
+        let bodies = members.iter().map(body).collect();
         let joints = joint_rows(gluing, &part_of);
         for row in &joints {
-            for pair in row.windows(2) {
-                sets.join(pair[0].subdomain as usize, pair[1].subdomain as usize);
-            }
+            sets.join_all(row.iter().map(|entry| entry.subdomain as usize));
         }
         let mut out = Self {
             part_of,
@@ -196,9 +194,7 @@ impl Mobility {
         let rows: Vec<_> = rows.chain(self.joints.iter().cloned()).collect();
         let mut sets = DisjointSets::new(self.bodies.len());
         for row in &rows {
-            for pair in row.windows(2) {
-                sets.join(pair[0].0, pair[1].0);
-            }
+            sets.join_all(row.iter().map(|action| action.0));
         }
         let of = sets.numbers();
         let mut groups: Vec<Group> = (0..count_of(&of)).map(|_| Group::default()).collect();

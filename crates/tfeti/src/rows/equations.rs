@@ -227,16 +227,13 @@ fn lines(
     };
     let mut sets = DisjointSets::new(nodes + decomposition.subdomains().len());
     let of_point = |point: &PointRows| contact[point.point].nodes().map(|n| n.0 as usize).collect::<Vec<_>>();
-    let mut join = |all: Vec<usize>| all.windows(2).for_each(|pair| sets.join(pair[0], pair[1]));
     let places = |e: &FreeEquation| -> Vec<usize> {
         let own = e.places.iter().map(|p| nodes + p.0 as usize);
         e.terms.iter().map(|t| t.0 as usize).chain(own).collect()
     };
-    equations.iter().for_each(|e| join(places(e)));
-    rows.tied
-        .iter()
-        .chain(&rows.rows)
-        .for_each(|point| join(of_point(point)));
+    equations.iter().for_each(|e| sets.join_all(places(e)));
+    let points = rows.tied.iter().chain(&rows.rows);
+    points.for_each(|point| sets.join_all(of_point(point)));
     let touched: BTreeSet<usize> = equations.iter().flat_map(places).map(|at| sets.first(at)).collect();
     let mut own = |points: &[PointRows], kind: &dyn Fn(u32) -> Kind| -> Vec<Line> {
         let mut out = Vec::new();

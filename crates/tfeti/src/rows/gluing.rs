@@ -322,7 +322,7 @@ impl NodeGroups {
         let count = joined.iter().flatten().max().map_or(0, |most| most + 1);
         let mut sets = DisjointSets::new(count as usize);
         for nodes in joined {
-            nodes.iter().for_each(|n| sets.join(nodes[0] as usize, *n as usize));
+            sets.join_all(nodes.into_iter().map(|n| n as usize));
         }
         Self((0..count).map(|n| sets.first(n as usize) as u32).collect())
     }
