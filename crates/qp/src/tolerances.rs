@@ -234,10 +234,16 @@ pub(crate) const BEYOND: f64 = 1.0 + 1e-13;
 /// end it, and complementarity up to which that is rounding.
 pub(crate) const INTERIOR_STEPS: usize = 100;
 pub(crate) const FALLS: f64 = 0.9;
-pub(crate) const ROUGH: f64 = 1e-9;
-/// Work of the residual, likewise, up to which the equations are solved.
-pub(crate) const SOLVED: f64 = 1e-9;
 pub(crate) const STUCK: usize = 5;
+pub(crate) const ROUGH: f64 = 1e-9;
+/// Work of the residual, likewise, up to which the equations are solved, or over what its parts work: the rounding of
+/// factors that vanishing circles spoil.
+pub(crate) const SOLVED: f64 = 1e-9;
+pub(crate) const FACTOR_ROUNDING: f64 = 10.0 * f64::EPSILON;
+/// A step so short is held up by products that have fallen behind: multipliers bring them back to this part of the
+/// mean.
+pub(crate) const HELD_UP: f64 = 0.2;
+pub(crate) const BEHIND: f64 = 0.1;
 
 // Fixed points
 

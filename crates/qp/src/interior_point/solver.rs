@@ -12,8 +12,8 @@ use crate::error::{QpError, expect_finite, expect_length, expect_lengths};
 use crate::problem::{ConvexSet, DenseOperator, ProductSet, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    CENTRED, CONTRADICTING, DEPTHS, FALLS, INTERIOR_STEPS, MORE_STEPS, PUSHES, ROUGH, ROUNDS, SETTLED_STEPS,
-    SHORT_OF_BOUNDARY, SOLVED, STUCK,
+    BEHIND, CENTRED, CONTRADICTING, DEPTHS, FACTOR_ROUNDING, FALLS, HELD_UP, INTERIOR_STEPS, MORE_STEPS, PUSHES, ROUGH,
+    ROUNDS, SETTLED_STEPS, SHORT_OF_BOUNDARY, SOLVED, STUCK,
 };
 use crate::vector;
 
@@ -261,7 +261,7 @@ impl Run<'_> {
             .zip(&*self.x)
             .map(|(entries, x)| x.abs() * column(entries))
             .sum();
-        f64::EPSILON * parts
+        FACTOR_ROUNDING * parts
     }
 
     /// What values of inequalities times multipliers are compared with: twice the work of the load, that of the
@@ -335,6 +335,20 @@ impl Run<'_> {
         vector::axpy(length, &towards, self.x);
         vector::axpy(length, &change, &mut self.multipliers);
         self.tell_active(&before);
+        if length < HELD_UP {
+            self.bring_back();
+        }
+    }
+
+    /// Raises multipliers whose products with the values of their inequalities have fallen behind.
+    fn bring_back(&mut self) {
+        let least = BEHIND * self.complementarity() / self.cones.all.len() as f64;
+        for (cone, y) in self.cones.all.iter().zip(&mut self.multipliers) {
+            let raised = least / cone.value(self.x);
+            if raised > *y && raised.is_finite() {
+                *y = raised;
+            }
+        }
     }
 
     /// Values of the inequalities and multipliers.

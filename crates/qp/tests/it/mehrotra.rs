@@ -139,7 +139,7 @@ fn an_equality_with_a_large_weight_leaves_rounding() {
     let size = a.dim();
     let [even, odd] = [0, 1].map(|first| x[first..n].iter().step_by(2).sum::<f64>());
     let balance = |i: usize| if i % 2 == 0 { 1.0 } else { -even / odd };
-    for weight in [1e2, 1e6] {
+    for weight in [1e1, 1e2, 1e3, 1e4, 3e4, 1e5, 3e5, 1e6, 3e6] {
         let mut entries = a.entries().to_vec();
         for i in 0..n {
             for j in 0..n {
