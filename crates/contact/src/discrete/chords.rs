@@ -7,7 +7,8 @@ use signorini_fem_mesh::{Surface, TetMesh};
 use std::collections::HashMap;
 
 /// The heights of the arcs over the edges of a surface in a mesh of order 1, by their mesh nodes, ascending: of those
-/// that have one, m. Edges that turn by much are those of a prism, and those at kinks between flat sides are flat.
+/// that have one, m. Edges that turn by much may be those of a prism, so that theirs are not a number; those at kinks
+/// between flat sides are flat.
 pub(super) fn arcs(mesh: &TetMesh, surface: &Surface) -> HashMap<[u32; 2], f64> {
     let chords = Chords::new(mesh, surface, smooth_normals(mesh, surface));
     let all = || surface.triangles().iter().flat_map(|t| edges(*t));
@@ -29,9 +30,10 @@ pub(super) fn arcs(mesh: &TetMesh, surface: &Surface) -> HashMap<[u32; 2], f64> 
     }
     let is_kink = |node: u32| flat[node as usize] > KINK * most[node as usize];
     let arc = |edge: [u32; 2]| {
-        let height = chords.arc(edge, None);
-        let is_arc = (BENT * length(edge)..FLAT_ARC * length(edge)).contains(&height.abs());
-        (is_arc && !edge.into_iter().any(is_kink)).then(|| (edge.map(|n| surface.nodes()[n as usize]), height))
+        let (height, length) = (chords.arc(edge, None), length(edge));
+        let is_bent = height.abs() >= BENT * length && !edge.into_iter().any(is_kink);
+        let known = if height.abs() < FLAT_ARC * length { height } else { f64::NAN };
+        is_bent.then(|| (edge.map(|n| surface.nodes()[n as usize]), known))
     };
     all().filter_map(arc).collect()
 }

@@ -175,17 +175,17 @@ pub(super) fn mean_gap(
     if let Some(distance) = contact.beyond(centre, normal) {
         return Ok(distance);
     }
-    mean(mesh, contact, (side, centre), |node, place| {
+    mean(mesh, contact, (side, centre, normal), |node, place| {
         contact.gap_at(index, node, place, normal, measured(node))
     })
 }
 
 /// The mean over the nodes of a side of what is at each; where a gap that is given jumps between them, what is at the
-/// centre.
+/// centre, which is beside a curved side.
 pub(super) fn mean(
     mesh: &TetMesh,
     contact: &Contact,
-    (side, centre): (&Side, [f64; 3]),
+    (side, centre, normal): (&Side, [f64; 3], &[f64; 3]),
     at: impl Fn(u32, [f64; 3]) -> Result<f64, ContactError>,
 ) -> Result<f64, ContactError> {
     let (mut sum, mut least, mut most) = (0.0, f64::INFINITY, f64::NEG_INFINITY);
@@ -197,12 +197,14 @@ pub(super) fn mean(
     if !matches!(contact.gap, Gap::Field(_)) || most <= least {
         return Ok(sum);
     }
-    let there = at(side.nodes()[0].0, centre)?;
+    let first = side.nodes()[0].0;
+    let there = at(first, centre)?;
+    let beside = vector::dot(&sub(centre, mesh.points()[first as usize]), normal).abs();
     // where all directions are alike, as around a node, the mean of a quadratic field is its value in the middle
     let range = most - least;
     let beyond = (sum - most).max(least - sum) > OVERSHOT * range;
-    let jumps = beyond || (sum - there).abs() > JUMP * range;
-    Ok(if jumps { there } else { sum })
+    let jumps = beyond || (sum - there).abs() > JUMP * range + beside;
+    Ok(if jumps { there.clamp(least, most) } else { sum })
 }
 
 /// The partners of corners, and of mid-nodes those on the edge between the partners of its ends.

@@ -124,7 +124,7 @@ impl Paired {
             let sides = [&surface, &other];
             curves.extend(sides.into_iter().flat_map(|side| arcs(mesh, side)));
             // convex sides touch in a point or along a line: means know more of what is between nodes
-            if curves.values().all(|arc| *arc > 0.0) {
+            if curves.values().all(|arc| arc.is_nan() || *arc > 0.0) {
                 curves.clear();
             }
         }

@@ -65,9 +65,12 @@ impl ContactPoint {
         if let Some(distance) = contact.beyond(pose.origin(&self.centre), &pose.back(normal)) {
             return Ok(pose.brings(distance, &self.centre, normal));
         }
-        let brought = mean(&scene.mesh, contact, (&self.sides.own, self.centre), |node, place| {
-            contact.gap_brought(self.surface, node, place, normal, (self.gap - self.closed, pose))
-        })?;
+        let brought = mean(
+            &scene.mesh,
+            contact,
+            (&self.sides.own, self.centre, normal),
+            |node, place| contact.gap_brought(self.surface, node, place, normal, (self.gap - self.closed, pose)),
+        )?;
         Ok(brought + self.closed)
     }
 

@@ -5,9 +5,11 @@ use crate::tolerances::OVERLAP;
 
 /// The distances of the corners of a facet from the curve that pieces stand for, m, if they or the facet itself are
 /// bent, as the arcs over its `own` edges tell. Of a corner beyond all pieces that of both curves where these end.
+/// `None` where an arc is not known: a distance would be that of facets on one side.
 pub(super) fn curve(corners: &[Point; 3], own: [f64; 3], pieces: &[Piece]) -> Option<[f64; 3]> {
     let arcs = pieces.iter().map(|piece| piece.laid.arcs).chain([own]);
-    if arcs.flatten().all(|arc| arc == 0.0) {
+    let mut arcs = arcs.flatten();
+    if arcs.clone().all(|arc| arc == 0.0) || arcs.any(f64::is_nan) {
         return None;
     }
     let height = |arcs: &[f64; 3], l: &[f64; 3]| -> f64 { (0..3).map(|k| 4.0 * arcs[k] * l[k] * l[(k + 1) % 3]).sum() };

@@ -19,7 +19,7 @@ const FARTHER: f64 = 4.0;
 
 type Corners = [[f64; 3]; 3];
 
-/// Heights of a curve over the edges of facets, by their nodes, ascending, m.
+/// Heights of a curve over the edges of facets, by their nodes, ascending, m; not a number where they are not known.
 pub(crate) type Arcs = HashMap<[u32; 2], f64>;
 
 /// A triangle of a surface: mesh nodes of its corners, and in a mesh of order 2 those on its edges 01, 12, 20.

@@ -161,6 +161,21 @@ fn uneven_linear_facets_press_as_their_circle_does() {
     }
 }
 
+/// A cell of 36 degrees among short ones may be that of a prism: where a shaft ends inside its facets it pressed four
+/// times as much as an interference of 0.01 m, and no warning told.
+#[test]
+fn a_long_cell_among_short_ones_presses_nothing() {
+    let along = |y: f64| 0.75 * y + 1.25 * (y - 0.4).clamp(0.0, 0.2);
+    let sleeve = block([1.0; 3], [1, 5, 4]).map_points(|[x, y, z]| {
+        let (radius, angle) = (10.0 + 4.0 * x, 0.5 * std::f64::consts::PI * along(y));
+        [radius * angle.cos(), radius * angle.sin(), 2.0 * z - 1.2]
+    });
+    let meshes = || [arc([4.0, 10.0], 20, 1, false), sleeve.clone().expect("arc")];
+    let (force, warnings) = pressed(10.0, meshes(), |fit| fit);
+    let (told, _) = pressed(10.01, meshes(), |fit| fit.with_gap(-0.01));
+    assert!(force < 1e-2 * told, "{force}, {told} {warnings:?}");
+}
+
 /// A land of one cell between two chamfers is no arc: it lies on a plate of other cells without a force.
 #[test]
 fn a_land_between_chamfers_is_flat() {
