@@ -47,7 +47,8 @@ signorini_fem_mesh::errors! {
         EdgeOverlap { step: usize, contact: usize, node: u32, place: [f64; 3], overlap: f64, largest: f64 } =
             "step {step}: the sides of contact {contact} are {overlap:.3e} inside each other at node {node}, {}, where \
             another contact has a condition and this one, between meshes that do not match, has none (displacements are up \
-            to {largest:.3e}): take smaller facets there, or meshes that match", told(place);
+            to {largest:.3e}): take smaller facets there, or meshes that match, or name this contact before the other one if it \
+            is the one that presses there", told(place);
         TurnedNormal { step: usize, contact: usize, node: u32, place: [f64; 3], turn: f64 } =
             "step {step}: node {node} of contact {contact} at {} is displaced to where the normal of its obstacle is \
             another one by {turn:.1} degrees; it keeps the one that it began with, so forces are missing or \
