@@ -48,7 +48,7 @@ impl Simulation {
     }
 
     /// The attempts, and one without contact forces where loads do no work on what contact alone stops: first, if
-    /// bodies stood apart or their forces fade, else after a brief one. So it is after that where all loads end.
+    /// bodies stood apart, else after a brief one. So it is after that where all loads end.
     fn with_apart(
         &self,
         mut attempts: Vec<Start>,
@@ -75,7 +75,7 @@ impl Simulation {
             return Ok(attempts);
         }
         let apart = (false, Attempt::Apart);
-        if !held && (self.stood_apart(state) || !locks && self.fades(state, way)) {
+        if !held && self.stood_apart(state) {
             attempts.insert(0, apart);
             return Ok(attempts);
         }
@@ -191,13 +191,5 @@ impl Simulation {
         let small = |row: usize| self.settings.tolerance * self.problem.rest(self.model.bodies.of_row(row));
         let force = |row: usize| state.lambda[0].get(row).copied().unwrap_or(0.0);
         self.model.points.iter().all(|p| -force(p.row) <= small(p.row))
-    }
-
-    /// Whether the normal forces are gone if they go on falling as they did in the last step.
-    fn fades(&self, state: &State, way: &Way) -> bool {
-        let sum = |lambda: &Vec<f64>| -> Option<f64> { self.model.points.iter().map(|p| lambda.get(p.row)).sum() };
-        let [last, before] = state.lambda.each_ref().map(sum);
-        last.zip(before)
-            .is_some_and(|(last, before)| last + way.ratio() * (last - before) >= 0.0)
     }
 }
