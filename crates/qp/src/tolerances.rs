@@ -164,8 +164,6 @@ pub(crate) const BEHIND_PATH: f64 = 0.01;
 pub(crate) const PATIENCE: usize = 12;
 /// Sets without progress after which the solved set tells what is active next, not the point moved to.
 pub(crate) const UNSURE: usize = 4;
-/// Decrease of the error on sets behind a start that tells its active set.
-pub(crate) const TOLD: f64 = 1e-3;
 /// Times that a body which constraints alone hold is balanced with a set that follows.
 pub(crate) const BALANCE_ROUNDS: usize = 3;
 /// Part of a round's way that the next one goes back, from which on they swing about their limit; rounds then, and the

@@ -7,7 +7,7 @@ use crate::problem::{ConvexSet, EqualityProjector, Hook, MovingSet, ProductSet, 
 use crate::report::Status;
 use crate::tolerances::{
     BEHIND_PATH, FOLLOW, LONGER, MAGNIFIED, NATURAL_STEP, NEGLIGIBLE, ON_PATH, PASSING_PART, PATIENCE, PROGRESS,
-    ROUNDED, RUNAWAY, SHRUNK, SMALL_PART, TOLD, UNBALANCED,
+    ROUNDED, RUNAWAY, SHRUNK, SMALL_PART, UNBALANCED,
 };
 use crate::vector;
 
@@ -81,8 +81,6 @@ pub(crate) struct Run<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) hook: Option<&'s mut Hook<'s, ProductSet>>,
     /// Kind and length of each segment.
     shape: Vec<(Discriminant<Segment>, usize)>,
-    /// Whether the start tells its active set.
-    pub(crate) told: bool,
     /// Whether the product with the start is known.
     pub(crate) ax_known: bool,
     /// Whether unconstrained components alone stop every mode of the equality.
@@ -131,7 +129,6 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         };
         Ok(Self {
             shape: set.shape().collect(),
-            told: false,
             ax_known: known,
             repairs_suffice: projector.loose().is_empty(),
             settings,
@@ -409,8 +406,6 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         } else {
             self.settings.forcing
         };
-        // a set that a start tells is worth solving
-        let forcing = if self.told && self.progress.waited == 0 { forcing.min(TOLD) } else { forcing };
         let goal = Goal {
             forcing: (at.work.coupling).forcing(forcing, self.moved.jump, self.first_error),
             // of an error in other blocks than before the last move tells nothing

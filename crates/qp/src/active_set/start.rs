@@ -19,7 +19,6 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         self.path.unknown = !self.is_known();
         let told = std::mem::take(&mut self.at.work.told);
         self.guess();
-        self.told = told;
         if told {
             self.at.work.active.foresee_guess();
             // what slides all over stops a mode, too
