@@ -142,7 +142,7 @@ pub(crate) const CACHE: u64 = 16 << 20;
 /// Most bytes of an `F` that is formed, with the factor of what is eliminated, and most contact rows of it; factors of
 /// interior points and active sets of a step with its inverse.
 pub(crate) const EXPLICIT_BYTES: f64 = 3.2e9;
-pub(crate) const EXPLICIT_CONTACT: usize = 4000;
+pub(crate) const EXPLICIT_CONTACT: usize = 8000;
 pub(crate) const INTERIOR_FACTORS: f64 = 100.0;
 pub(crate) const EXPLICIT_SETS: f64 = 20.0;
 /// Time of an operation of a product with `F` over that of a dense factor, and operations of such a factor in the time
