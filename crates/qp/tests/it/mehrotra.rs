@@ -138,7 +138,7 @@ fn an_equality_with_a_large_weight_leaves_rounding() {
     let _ = interior_point(&a, &b, &set, &slopes, TARGET, &mut x).expect("valid");
     let size = a.dim();
     let [even, odd] = [0, 1].map(|first| x[first..n].iter().step_by(2).sum::<f64>());
-    let balance = |i: usize| if i % 2 == 0 { 1.0 } else { -even / odd };
+    let balance = |i: usize| if i.is_multiple_of(2) { 1.0 } else { -even / odd };
     for weight in [1e1, 1e2, 1e3, 1e4, 3e4, 1e5, 3e5, 1e6, 3e6] {
         let mut entries = a.entries().to_vec();
         for i in 0..n {
