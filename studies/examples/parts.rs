@@ -32,7 +32,7 @@ const EYE: [f64; 3] = [1.0, -1.6, 0.9];
 #[derive(Debug, Clone, PartialEq, Parser)]
 #[command(name = "parts", about = "Real parts on meshes of Gmsh, cut by the library")]
 pub struct PartsOptions {
-    /// Meshes `PART-SIZE.msh`, or folders of such; PART is one of bracket, sphere, punch, plates, tooth.
+    /// Meshes `PART-SIZE.msh`, or folders of such; PART is one of bracket, flange, sphere, punch, plates, tooth.
     #[arg(value_name = "MESH", default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes"))]
     pub meshes: Vec<PathBuf>,
     /// Numbers of subdomains; 0 leaves it to the library.
@@ -218,7 +218,7 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
         Ok(Contact::rigid(surface(name)?).with_friction(Friction::coulomb(coefficient)))
     };
     let steel = Hooke::isotropic(STEEL[0], STEEL[1])?;
-    let bare = Scene::new(mesh.clone(), Materials::uniform(steel));
+    let bare = Scene::new(mesh.clone(), Materials::uniform(steel.clone()));
     Ok(match part {
         // held by the friction of its feet alone; 2000 N would pull it away
         "bracket" => bare
@@ -226,6 +226,28 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
             .with_load(push("bolt", [0.0, 0.0, -10e3])?)
             .with_load(push("end", [1500.0, 0.0, 0.0])?.with_history(ramp))
             .with_analysis(steps),
+        // the heads of its bolts come down by 0.03 mm, then 1 MPa lifts the cover; all bodies slide on the gasket
+        "flange" => {
+            let soft = Hooke::isotropic(500.0, 0.4)?;
+            let volume = |name: &str| names.volume(name);
+            let table = vec![
+                (volume("base")?, steel.clone()),
+                (volume("cover")?, steel),
+                (volume("gasket")?, soft),
+            ];
+            let between = |a: &str, b: &str| -> Result<Contact, Failure> {
+                Ok(Contact::between(surface(a)?, surface(b)?).with_friction(Friction::coulomb(0.3)))
+            };
+            let heads = between("heads", "outside")?.with_gap(-0.03).with_gap_history(ramp);
+            let lift = History::table(vec![(0.0, 0.0), (1.0, 0.0), (2.0, 1.0)])?;
+            Scene::new(mesh.clone(), Materials::new(table)?)
+                .with_support(Support::fixed(surface("foot")?))
+                .with_contact(between("below", "seat")?)
+                .with_contact(between("above", "inside")?)
+                .with_contact(heads)
+                .with_load(Load::pressure(surface("inside")?, 1.0).with_history(lift))
+                .with_analysis(Analysis::quasistatic(2.0, 4))
+        }
         "sphere" => bare
             .with_support(Support::partial(surface("x")?, component(0)))
             .with_support(Support::partial(surface("y")?, component(1)))

@@ -152,7 +152,44 @@ def tooth(size):
     uniform(size)
 
 
-PARTS = {bracket: 1.9, sphere: 0.0625, punch: 1.5, plates: 1.5, tooth: 1.2}
+def flange(size):
+    """A ring with four bolts, and the cover that they hold on a gasket of 2: 120 across, in three bodies."""
+
+    def ring(inner, outer, low, high):
+        whole = occ.addCylinder(0, 0, low, 0, 0, high - low, outer)
+        if inner == 0:
+            return [(3, whole)]
+        return occ.cut([(3, whole)], [(3, occ.addCylinder(0, 0, low, 0, 0, high - low, inner))])[0]
+
+    base, gasket, cover = ring(30, 60, 0, 12), ring(32, 40, 12, 14), ring(0, 60, 14, 26)
+    bolts = []
+    for x, y in [(35, 35), (-35, 35), (-35, -35), (35, -35)]:
+        cover = occ.cut(cover, [(3, occ.addCylinder(x, y, 14, 0, 0, 12, 5.5))])[0]
+        shank, head = occ.addCylinder(x, y, 12, 0, 0, 14, 5), occ.addCylinder(x, y, 26, 0, 0, 6, 8)
+        bolts += occ.fuse([(3, shank)], [(3, head)])[0]
+    base = occ.fuse(base, bolts)[0]
+    occ.synchronize()
+    for label, body in [("base", base), ("gasket", gasket), ("cover", cover)]:
+        gmsh.model.addPhysicalGroup(3, [body[0][1]], name=label)
+
+    def side(label, body, height):
+        faces = [tag for _, tag in gmsh.model.getBoundary(body, oriented=False)]
+        level = lambda tag: [gmsh.model.getBoundingBox(2, tag)[k] for k in (2, 5)]
+        flat = [tag for tag in faces if all(abs(z - height) < 0.01 for z in level(tag))]
+        gmsh.model.addPhysicalGroup(2, flat, name=label)
+
+    side("foot", base, 0)
+    side("seat", base, 12)
+    side("heads", base, 26)
+    side("below", gasket, 12)
+    side("above", gasket, 14)
+    side("inside", cover, 14)
+    side("outside", cover, 26)
+    gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+    gmsh.option.setNumber("Mesh.MeshSizeMin", size / 3)
+
+
+PARTS = {bracket: 1.9, sphere: 0.0625, punch: 1.5, plates: 1.5, tooth: 1.2, flange: 3}
 
 
 def write(path, part, size, sizes=None):
