@@ -218,7 +218,7 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
         Ok(Contact::rigid(surface(name)?).with_friction(Friction::coulomb(coefficient)))
     };
     let steel = Hooke::isotropic(STEEL[0], STEEL[1])?;
-    let bare = Scene::new(mesh.clone(), Materials::uniform(steel.clone()));
+    let bare = Scene::new(mesh.clone(), Materials::uniform(steel));
     Ok(match part {
         // held by the friction of its feet alone; 2000 N would pull it away
         "bracket" => bare
@@ -231,7 +231,7 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
             let soft = Hooke::isotropic(500.0, 0.4)?;
             let volume = |name: &str| names.volume(name);
             let table = vec![
-                (volume("base")?, steel.clone()),
+                (volume("base")?, steel),
                 (volume("cover")?, steel),
                 (volume("gasket")?, soft),
             ];
