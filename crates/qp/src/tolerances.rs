@@ -133,7 +133,7 @@ pub(crate) const COUPLED_STEPS: usize = 40;
 pub(crate) const COUPLED_GROWTH: f64 = 2.0;
 /// Largest error, over the constrained part, with which a coupled set begins: before, the active set changes too much.
 pub(crate) const COUPLED_NEAR: f64 = 0.1;
-/// Sets without progress after which coupling is tried far from the solution, or given up.
+/// Sets without progress after which coupling is tried far from the solution.
 pub(crate) const COUPLED_WAIT: usize = 4;
 /// Decrease on a coupled set: this many times the part of the last error that the move brought back, and the least.
 pub(crate) const COUPLED_LOST: f64 = 10.0;

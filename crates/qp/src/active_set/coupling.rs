@@ -63,8 +63,6 @@ pub(crate) struct Coupling {
     pub(crate) on: bool,
     /// Whether they got on badly with it in this solve.
     pub(crate) failed: bool,
-    /// Active sets without progress when it was switched on.
-    from: usize,
 }
 
 impl Coupling {
@@ -75,7 +73,7 @@ impl Coupling {
 
     /// Makes ready for a solve with so many `constrained` components.
     pub(crate) fn start(&mut self, set: &ProductSet, constrained: usize) -> Result<(), QpError> {
-        (self.on, self.failed, self.from) = (false, self.slopes.is_empty(), 0);
+        (self.on, self.failed) = (false, self.slopes.is_empty());
         if self.failed {
             return Ok(());
         }
@@ -125,14 +123,8 @@ impl Coupling {
 
     /// Decides for the next set, if it is `free` to couple: its relative `error`, and sets without progress so far.
     pub(crate) fn begin(&mut self, free: bool, error: f64, waited: usize) {
-        self.from = self.from.min(waited);
-        self.failed |= self.on && waited >= self.from + COUPLED_WAIT;
         let near = error <= COUPLED_NEAR || waited >= COUPLED_WAIT;
-        let on = free && near && !self.failed;
-        if on && !self.on {
-            self.from = waited;
-        }
-        self.on = on;
+        self.on = free && near && !self.failed;
     }
 
     /// Whether the iteration goes badly after that many steps: the estimate was `start` and is `now`.
@@ -157,7 +149,7 @@ mod tests {
     use crate::problem::Segment;
 
     #[test]
-    fn couples_near_the_solution_and_changes_sides_where_sets_go_in_circles() {
+    fn couples_near_the_solution_and_where_sets_go_in_circles() {
         let mut coupling = Coupling::default();
         let mut begins = |free, error, waited| {
             coupling.begin(free, error, waited);
@@ -165,11 +157,10 @@ mod tests {
         };
         assert!(!begins(true, 0.5, 0) && !begins(true, 0.5, COUPLED_WAIT - 1));
         assert!(begins(true, 0.5, COUPLED_WAIT), "far, but nothing else helps");
-        assert!(begins(true, 0.5, 2 * COUPLED_WAIT - 1));
-        assert!(begins(true, 0.05, 0) && !begins(false, 0.01, 0));
-        assert!(begins(true, 0.02, 1) && begins(true, 0.02, COUPLED_WAIT));
-        assert!(!begins(true, 0.02, COUPLED_WAIT + 1), "four sets since it began");
-        assert!(!begins(true, 1e-9, 0), "for the rest of the solve");
+        assert!(!begins(false, 0.01, 0) && begins(true, 0.05, 0));
+        assert!(coupling.too_strong(COUPLED_STEPS, 1.0, 1.0));
+        coupling.begin(true, 1e-9, 0);
+        assert!(!coupling.on, "for the rest of the solve");
     }
 
     /// Discs are found in any order; those without a slope stand alone, and slopes that mean nothing are refused.
