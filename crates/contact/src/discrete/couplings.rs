@@ -361,10 +361,11 @@ impl<'a> Placed<'a> {
             return refuse("the time from which it is locked must be finite and not negative");
         }
         let places: Vec<_> = nodes.iter().map(|&n| scene.mesh.points()[n as usize]).collect();
-        let point = match coupling.is_point() {
-            false => coupling.reference,
+        let point = if coupling.is_point() {
             // not far from them, wherever it is said to be
-            true => scale(1.0 / places.len() as f64, places.iter().copied().fold([0.0; 3], add)),
+            scale(1.0 / places.len() as f64, places.iter().copied().fold([0.0; 3], add))
+        } else {
+            coupling.reference
         };
         if forces_at_three(&places, point, [0.0; 3], [0.0; 3]).is_none() {
             return refuse("its nodes lie on one line, or are less than three; give it nodes that do not");

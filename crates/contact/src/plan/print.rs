@@ -36,9 +36,10 @@ impl fmt::Display for Plan {
                 self.coarse
             );
         }
-        match self.effects.gluing {
-            true => line!("gluing", "{} rows", self.interface_rows),
-            false => line!("gluing", "none (one subdomain)"),
+        if self.effects.gluing {
+            line!("gluing", "{} rows", self.interface_rows);
+        } else {
+            line!("gluing", "none (one subdomain)");
         }
         line!("supports", "{}", self.supports_text());
         if self.effects.ties {
@@ -60,9 +61,10 @@ impl fmt::Display for Plan {
             FrictionKind::Coulomb => line!("friction", "Coulomb, {rows} rows, no slip rate"),
             FrictionKind::RateDependent => line!("friction", "Coulomb, rate dependent, {rows} rows"),
         }
-        match self.effects.history {
-            true => line!("history", "{} steps, old traces kept", self.steps),
-            false => line!("history", "none (each step stands alone)"),
+        if self.effects.history {
+            line!("history", "{} steps, old traces kept", self.steps);
+        } else {
+            line!("history", "none (each step stands alone)");
         }
         if self.stages > 1 {
             line!(
