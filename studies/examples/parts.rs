@@ -218,10 +218,11 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
         Ok(Contact::rigid(surface(name)?).with_friction(Friction::coulomb(coefficient)))
     };
     let steel = Hooke::isotropic(STEEL[0], STEEL[1])?;
-    let bare = Scene::new(mesh.clone(), Materials::uniform(steel));
+    let made_of = |materials| Scene::new(mesh.clone(), materials);
+    let bare = || made_of(Materials::uniform(steel));
     Ok(match part {
         // held by the friction of its feet alone; 2000 N would pull it away
-        "bracket" => bare
+        "bracket" => bare()
             .with_contact(floor("floor", 0.2)?)
             .with_load(push("bolt", [0.0, 0.0, -10e3])?)
             .with_load(push("end", [1500.0, 0.0, 0.0])?.with_history(ramp))
@@ -240,7 +241,7 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
             };
             let heads = between("heads", "outside")?.with_gap(-0.03).with_gap_history(ramp);
             let lift = History::table(vec![(0.0, 0.0), (1.0, 0.0), (2.0, 1.0)])?;
-            Scene::new(mesh.clone(), Materials::new(table)?)
+            made_of(Materials::new(table)?)
                 .with_support(Support::fixed(surface("foot")?))
                 .with_contact(between("below", "seat")?)
                 .with_contact(between("above", "inside")?)
@@ -248,13 +249,13 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
                 .with_load(Load::pressure(surface("inside")?, 1.0).with_history(lift))
                 .with_analysis(Analysis::quasistatic(2.0, 4))
         }
-        "sphere" => bare
+        "sphere" => bare()
             .with_support(Support::partial(surface("x")?, component(0)))
             .with_support(Support::partial(surface("y")?, component(1)))
             .with_load(push("top", [0.0, 0.0, -Hertz::load() / 4.0])?)
             .with_contact(Contact::half_space(surface("ball")?, [0.0; 3], [0.0, 0.0, 1.0])),
         // pressed, then pushed with half of what friction holds
-        "punch" => bare
+        "punch" => bare()
             .with_contact(
                 Contact::half_space(surface("floor")?, [0.0; 3], [0.0, 0.0, 1.0]).with_friction(Friction::coulomb(0.3)),
             )
@@ -267,14 +268,15 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
             let above = Contact::rigid(surface("above")?)
                 .with_friction(Friction::coulomb(0.2))
                 .with_motion([0.02, 0.0, -0.005], ramp);
-            bare.with_contact(below).with_contact(above).with_analysis(steps)
+            bare().with_contact(below).with_contact(above).with_analysis(steps)
         }
         // a rack presses the flank, 20 degrees from the vertical, and rubs upwards along it
         "tooth" => {
             let (sin, cos) = 20f64.to_radians().sin_cos();
             let normal = [-cos, 0.0, -sin];
             let slide = [-0.03 * cos - 0.03 * sin, 0.0, -0.03 * sin + 0.03 * cos];
-            bare.with_support(Support::fixed(surface("rim")?))
+            bare()
+                .with_support(Support::fixed(surface("rim")?))
                 .with_contact(
                     Contact::half_space(surface("flank")?, [8.0, 0.0, 0.0], normal)
                         .with_friction(Friction::coulomb(0.1))

@@ -197,9 +197,10 @@ impl Simulation {
         state.motions = motions.map(along).collect();
         let spans = model.scene.has_spans() && model.scene.stage_steps().end < model.plan.steps;
         let is_held = || model.loose_motions().is_ok_and(|motions| motions.is_empty());
-        state.displacement = match spans || history && goes_on && !is_held() {
-            true => model.tfeti.nodal_mean(&recovered.torn),
-            false => Vec::new(),
+        state.displacement = if spans || history && goes_on && !is_held() {
+            model.tfeti.nodal_mean(&recovered.torn)
+        } else {
+            Vec::new()
         };
         state.rate.clear();
         if history && model.any_law(Friction::depends_on_rate) {

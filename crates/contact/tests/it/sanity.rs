@@ -472,12 +472,10 @@ fn a_scene_in_which_nothing_acts_is_told() {
     assert_eq!(idle(body().with_contact(floor().with_gap(0.1))), Some(false));
     assert_eq!(idle(held().with_contact(floor())), Some(true));
     let rises = |way| floor().with_gap(0.1).with_motion([0.0, 0.0, way], ramp());
-    assert_eq!(
-        idle(held().with_contact(rises(0.09))),
-        Some(true),
-        "it stays below the body"
-    );
-    assert_eq!(idle(held().with_contact(rises(-0.2))), Some(true), "it moves away");
+    // it stays below the body, or moves away
+    for way in [0.09, -0.2] {
+        assert_eq!(idle(held().with_contact(rises(way))), Some(true), "{way}");
+    }
     let over = held().with_load(push.clone().with_history(never)).with_analysis(last);
     assert_eq!(idle(over), Some(true));
     let up = |way| Support::fixed(brick::Z_MIN).with_motion([0.0, 0.0, way], ramp());
