@@ -207,6 +207,11 @@ pub(crate) const BORDER: usize = 12;
 /// What a group of a subdomain's factor costs a solve besides its tiles, in tiles.
 pub(crate) const GROUP: usize = 4;
 
+/// Stiffness of a spring over that of the stiffest node from which on it holds: below, contact is to balance what it can
+/// (softer by ten it took 4 times the products of a stiff one, softer by 100 the limit).
+pub(crate) const SOFT_SPRING: f64 = 1e-4;
+/// The same from which on it is in the projector: below, a factor would find it singular.
+pub(crate) const NO_HOLD: f64 = 1e-13;
 /// Least scale of the row of a spring: softer ones are still seen as holding.
 pub(crate) const SOFTEST: f64 = 1e-3;
 /// Part of a direction of a row beside those of the same node, over its length, below which it is one of them.

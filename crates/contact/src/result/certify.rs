@@ -27,10 +27,15 @@ pub(super) fn certify(m: &Measured<'_>, sizes: &[Sizes]) -> Certificate {
     for own in sizes {
         c.equilibrium.worsen(own.residual, own.forces);
     }
+    let gluing = model.tfeti.gluing();
+    let springs = gluing.springs();
     for row in ranges.interface.start..ranges.total() {
         let own = &sizes[model.bodies.of_row(row)];
-        let jump = (m.rows[row] - problem.offset[row]).abs() / model.tfeti.gluing().length(row);
-        c.continuity.worsen(jump, own.displacement);
+        let jump = (m.rows[row] - problem.offset[row]).abs() / gluing.length(row);
+        // of a soft spring the force counts: against the way on which it takes all
+        let spring = (row + springs.len()).checked_sub(ranges.total()).map(|k| &springs[k]);
+        let whole = spring.map_or(0.0, |spring| own.forces * spring.compliance / spring.scale.powi(2));
+        c.continuity.worsen(jump, own.displacement.max(whole));
     }
     for (k, point) in model.points.iter().enumerate() {
         let own = &sizes[model.bodies.of_row(point.row)];

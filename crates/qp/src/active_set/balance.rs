@@ -8,7 +8,8 @@
 //! x(b) = P(y - a c b),     cᵀ x(b) = f
 //! ```
 //!
-//! `P` projects on the set, `a >= 0` are lengths of steps; bounded components of length zero stay. `f - cᵀ x(b)` is
+//! `P` projects on the set, `a >= 0` are lengths of steps; bounded components of length zero stay. Springs are components
+//! without bounds. `f - cᵀ x(b)` is
 //! the gradient of a convex function of `b`, whose minimum Newton's method with a line search finds without operator
 //! products.
 //!
@@ -23,6 +24,7 @@
 
 use crate::problem::{Constrained, LooseMode, ProductSet, for_constrained, for_discs, solve_cholesky};
 use crate::tolerances::{BALANCED, HALVINGS, NEWTON_DECREASE, NEWTON_STEPS, NO_IMBALANCE, ROUNDED_WORK, SHIFT};
+use std::collections::BTreeMap;
 
 /// The search for the amplitudes.
 pub(crate) struct Search<'a> {
@@ -33,6 +35,8 @@ pub(crate) struct Search<'a> {
     /// `a`, one value for both components of a disc.
     a: Vec<f64>,
     f: Vec<f64>,
+    /// `cᵀ a c` of the springs, by rows; empty without.
+    springs: Vec<f64>,
     b: Vec<f64>,
     /// `P(s)`.
     x: Vec<f64>,
@@ -49,7 +53,14 @@ pub(crate) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    pub(crate) fn new(modes: &'a [LooseMode], set: &'a ProductSet, e: &[f64], (y, a): (&'a [f64], &[f64])) -> Self {
+    /// `x` has the values of springs, which stay unless these `give`.
+    pub(crate) fn new(
+        modes: &'a [LooseMode],
+        set: &'a ProductSet,
+        (e, x): (&[f64], &[f64]),
+        (y, a): (&'a [f64], &[f64]),
+        give: bool,
+    ) -> Self {
         // what no component holds cannot be balanced, and need not: projectors refuse a right side that works on it;
         // nor can rounding be that pulls
         let side = |m: &LooseMode| {
@@ -59,8 +70,25 @@ impl<'a> Search<'a> {
                 terms().map(|(a, e)| a * e).sum::<f64>(),
                 (squares[0] * squares[1]).sqrt(),
             );
-            if m.row.is_empty() || work.abs() <= ROUNDED_WORK * size { 0.0 } else { work }
+            let springs: f64 = m.springs.iter().map(|&(i, c, _)| c * x[i]).sum();
+            let harmless = m.row.is_empty() && m.springs.is_empty() || work.abs() <= ROUNDED_WORK * size;
+            let work = if harmless { 0.0 } else { work };
+            work - springs
         };
+        let count = if give { modes.len() } else { 0 };
+        let mut springs = vec![0.0; count * count];
+        let mut by_spring: BTreeMap<usize, Vec<(usize, f64, f64)>> = BTreeMap::new();
+        for (r, mode) in modes.iter().enumerate().take(count) {
+            for &(i, c, a) in &mode.springs {
+                by_spring.entry(i).or_default().push((r, c, a));
+            }
+        }
+        for own in by_spring.values() {
+            for &(r, c, a) in own {
+                own.iter()
+                    .for_each(|&(s, other, _)| springs[r * count + s] += a * c * other);
+            }
+        }
         let mut a = a.to_vec();
         let mut start: Vec<usize> = (0..a.len()).collect();
         for_discs(set, |i, _, _| {
@@ -81,7 +109,12 @@ impl<'a> Search<'a> {
                 }
             }
         }
+        for (r, first) in first.iter_mut().enumerate().take(count) {
+            let row = springs[r * count..].iter().take(*first);
+            *first = row.take_while(|k| **k == 0.0).count();
+        }
         Self {
+            springs,
             modes,
             set,
             y,
@@ -98,8 +131,8 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// The point, and whether it balances; if not, the set holds no point that does.
-    pub(crate) fn run(mut self) -> (Vec<f64>, bool) {
+    /// The point, whether it balances (if not, the set holds no point that does), and the amplitudes.
+    pub(crate) fn run(mut self) -> (Vec<f64>, bool, Vec<f64>) {
         self.evaluate();
         for _ in 0..NEWTON_STEPS {
             if self.imbalance <= NO_IMBALANCE {
@@ -117,7 +150,7 @@ impl<'a> Search<'a> {
                 break;
             }
         }
-        (self.x, self.imbalance <= BALANCED)
+        (self.x, self.imbalance <= BALANCED, self.b)
     }
 
     /// Point, value, gradient and imbalance at `b`.
@@ -128,15 +161,23 @@ impl<'a> Search<'a> {
             y,
             a,
             f,
+            springs,
             b,
             x,
             ..
         } = self;
+        // of no springs, nothing
+        let taken = |r: usize| -> f64 {
+            let row = springs.chunks_exact(b.len().max(1)).nth(r).into_iter().flatten();
+            row.zip(&*b).map(|(k, b)| k * b).sum()
+        };
         x.copy_from_slice(y);
         for (mode, b) in modes.iter().zip(&*b) {
             mode.row.iter().for_each(|&(i, c)| x[i] -= a[i] * c * b);
         }
-        let mut value: f64 = b.iter().zip(&*f).map(|(b, f)| b * f).sum();
+        let mut value: f64 = (b.iter().zip(&*f).enumerate())
+            .map(|(r, (b, f))| b * (f + 0.5 * taken(r)))
+            .sum();
         for_constrained(set, |block| match block {
             Constrained::Bound { i, lower, upper, .. } => {
                 let s = x[i];
@@ -156,8 +197,9 @@ impl<'a> Search<'a> {
         });
         self.value = value;
         self.imbalance = 0.0;
-        for ((mode, f), g) in modes.iter().zip(&*f).zip(&mut self.gradient) {
-            let (mut sum, mut size) = (*f, f.abs());
+        for (r, ((mode, f), g)) in modes.iter().zip(&*f).zip(&mut self.gradient).enumerate() {
+            let held = taken(r);
+            let (mut sum, mut size) = (*f + held, f.abs() + held.abs());
             for &(i, c) in &mode.row {
                 sum -= c * x[i];
                 size += (c * x[i]).abs();
@@ -180,11 +222,13 @@ impl<'a> Search<'a> {
             a,
             b,
             moved,
+            springs,
             second,
             ..
         } = self;
         let k = modes.len();
         second.fill(0.0);
+        second.iter_mut().zip(&*springs).for_each(|(all, own)| *all = *own);
         let mut add = |weight: f64, c: &[(usize, f64)]| {
             for (n, (r, cr)) in c.iter().enumerate() {
                 let row = &mut second[r * k..(r + 1) * k];
@@ -304,7 +348,8 @@ mod tests {
         let a: Vec<f64> = (0..10)
             .map(|k| 0.5 + 0.1 * f64::from(k / 2) + f64::from(k % 2) * f64::from(u8::from(k > 3)))
             .collect();
-        Search::new(&modes(), &set(), e, (y, &a)).run()
+        let (x, balances, _) = Search::new(&modes(), &set(), (e, &[]), (y, &a), false).run();
+        (x, balances)
     }
 
     #[test]
@@ -339,18 +384,49 @@ mod tests {
         let set = ProductSet::new(vec![Segment::upper(vec![0.0; 3]), Segment::discs(vec![1.0])]).expect("a set");
         let modes = [LooseMode::new(vec![1.0], &[1.0, 1.0, 1.0, 0.0, 0.0])];
         // gaps 1, 2 and 4: two springs carry 1 at a depth of 2
-        let (x, balances) = Search::new(&modes, &set, &[-1.0], (&[1.0, 2.0, 4.0, 0.0, 0.0], &[1.0; 5])).run();
+        let (x, balances, _) = Search::new(
+            &modes,
+            &set,
+            (&[-1.0], &[]),
+            (&[1.0, 2.0, 4.0, 0.0, 0.0], &[1.0; 5]),
+            false,
+        )
+        .run();
         let off = x
             .iter()
             .zip([-1.0, 0.0, 0.0, 0.0, 0.0])
             .map(|(x, y): (&f64, f64)| (x - y).abs());
         assert!(balances && off.fold(0.0, f64::max) < 1e-12, "{x:?}");
-        let (x, balances) = Search::new(&modes, &set, &[-4.0], (&[1.0, 2.0, 4.0, 0.0, 0.0], &[1.0; 5])).run();
+        let (x, balances, _) = Search::new(
+            &modes,
+            &set,
+            (&[-4.0], &[]),
+            (&[1.0, 2.0, 4.0, 0.0, 0.0], &[1.0; 5]),
+            false,
+        )
+        .run();
         let off = x
             .iter()
             .zip([-2.5, -1.5, 0.0, 0.0, 0.0])
             .map(|(x, y): (&f64, f64)| (x - y).abs());
         assert!(balances && off.fold(0.0, f64::max) < 1e-12, "{x:?}");
+    }
+
+    /// What friction does not hold goes to a spring, behind what the spring has already.
+    #[test]
+    fn springs_take_what_the_set_does_not() {
+        let set = ProductSet::new(vec![Segment::discs(vec![1.0])]).expect("a set");
+        let mut mode = LooseMode::new(vec![1.0], &[1.0, 0.0, 0.0]);
+        mode.springs = vec![(2, 0.5, 1e-3)];
+        let (modes, e) = ([mode], [3.0]);
+        let search = |give| Search::new(&modes, &set, (&e, &[0.0, 0.0, 0.4]), (&[0.0; 2], &[1.0; 2]), give).run();
+        assert!(!search(false).1);
+        let (x, balances, b) = search(true);
+        let spring = 0.4 - 1e-3 * 0.5 * b[0];
+        assert!(
+            balances && (x[0] - 1.0).abs() < 1e-12 && (0.5 * spring - 2.0).abs() < 1e-9,
+            "{x:?} {b:?}"
+        );
     }
 
     #[test]
@@ -365,15 +441,16 @@ mod tests {
     #[test]
     fn a_mode_without_rows_slows_nothing_down() {
         let mut all = modes();
-        all.push(LooseMode::new(vec![0.0; 4], &[]));
+        all.push(LooseMode::new(vec![0.0; 4], None));
         let (y, e) = (
             [-1.0, 0.5, -2.0, 0.3, 3.0, 0.5, -0.2, 0.1, 0.6, 0.6],
             [-4.0, 2.5, 0.6, 0.2],
         );
         let a = [0.5, 0.6, 0.7, 0.8, 0.9, 0.9, 1.0, 1.0, 1.1, 1.1];
         let (set, modes) = (set(), modes());
-        let (alone, balances) = Search::new(&modes, &set, &e, (&y, &a)).run();
-        assert_eq!(Search::new(&all, &set, &e, (&y, &a)).run(), (alone, balances));
+        let (alone, balances, _) = Search::new(&modes, &set, (&e, &[]), (&y, &a), false).run();
+        let found = Search::new(&all, &set, (&e, &[]), (&y, &a), false).run();
+        assert_eq!((found.0, found.1), (alone, balances));
         assert!(balances);
     }
 
@@ -385,7 +462,8 @@ mod tests {
             LooseMode::new(vec![0.0, 1.0], &[0.0, 0.0]),
         ];
         // the second right side is what loads leave by rounding
-        let search = Search::new(&modes, &set, &[-3.0, 1e-13], (&[0.0, -1.0], &[0.0, 1.0]));
-        assert_eq!(search.run(), (vec![0.0, -3.0], true));
+        let search = Search::new(&modes, &set, (&[-3.0, 1e-13], &[]), (&[0.0, -1.0], &[0.0, 1.0]), false);
+        let (x, balances, _) = search.run();
+        assert_eq!((x, balances), (vec![0.0, -3.0], true));
     }
 }

@@ -64,6 +64,8 @@ pub(crate) struct Iterate<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) step: f64,
     /// Whether `x` is a start that has left the point whose product is known, by `t`.
     pub(crate) ahead: bool,
+    /// Whether the last balance took springs that stop loose modes.
+    pub(crate) on_springs: bool,
 }
 
 impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Iterate<'_, A, C, M> {
@@ -220,31 +222,39 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
     }
 
     /// Moves `x` to the point of the set next to it whose constrained components balance what nothing else does, in
-    /// the metric of the preconditioner. Where there is none, which is returned as false, the equality comes first.
+    /// the metric of the preconditioner; where they cannot, with the springs of loose modes. Where there is none, which
+    /// is returned as false, the equality comes first.
     pub(crate) fn project(&mut self) -> bool {
-        let balances = self.approach();
-        if !balances {
+        let from = self.x[..self.constrained()].to_vec();
+        self.on_springs = false;
+        if self.approach(&from, false) {
+            return true;
+        }
+        let sprung = self.projector.loose().iter().any(|mode| !mode.springs.is_empty());
+        self.on_springs = sprung && self.approach(&from, true);
+        if !self.on_springs {
             self.projector.balance(self.x, self.problem.rhs);
         }
-        balances
+        self.on_springs
     }
 
-    /// The same but for the equality where there is no such point: constrained components then balance as far as they
-    /// can.
-    fn approach(&mut self) -> bool {
-        let constrained = self.constrained();
-        let (y, lengths) = (&self.x[..constrained], &self.problem.scale[..constrained]);
-        let point = self.balanced(y, lengths);
-        let balances = point.is_ok();
-        let (Ok(point) | Err(point)) = point;
-        self.x[..constrained].copy_from_slice(&point);
+    /// The same from `y`, with springs only if these `give`, but for the equality where there is no such point:
+    /// constrained components then balance as far as they can.
+    fn approach(&mut self, y: &[f64], give: bool) -> bool {
+        let (point, balances, amplitudes) = self.balanced(y, &self.problem.scale[..y.len()], give);
+        self.x[..y.len()].copy_from_slice(&point);
+        let springs = (self.projector.loose().iter().zip(&amplitudes)).filter(|_| balances && give);
+        for (mode, b) in springs {
+            mode.springs.iter().for_each(|&(i, c, a)| self.x[i] -= a * c * b);
+        }
         balances
     }
 
     /// [`project_start`](Iterate::project_start), and where that moves nothing [`project`](Iterate::project) with the
     /// set of the start: the projector may still have that of another solve.
     pub(crate) fn begin(&mut self) -> Result<(), QpError> {
-        if self.project_start() || self.approach() {
+        let from = self.x[..self.constrained()].to_vec();
+        if self.project_start() || self.approach(&from, false) {
             return Ok(());
         }
         if self.set_weights()?.is_none() {
@@ -272,11 +282,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
                 }
             }
         });
-        let point = self.balanced(&y, &lengths);
-        if let Ok(point) = &point {
-            self.x[..constrained].copy_from_slice(point);
-        }
-        point.is_ok()
+        let (point, balances, _) = self.balanced(&y, &lengths, false);
+        self.take(&point, balances)
     }
 
     /// Moves the constrained components of `x` to where bodies that are rigid balance on springs of this part of the
@@ -289,17 +296,21 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
             .map(|a| stiffness * a)
             .collect();
         let y: Vec<f64> = lengths.iter().zip(self.problem.linear).map(|(a, b)| a * b).collect();
-        let point = self.balanced(&y, &lengths);
-        if let Ok(point) = &point {
-            self.x[..constrained].copy_from_slice(point);
-        }
-        point.is_ok()
+        let (point, balances, _) = self.balanced(&y, &lengths, false);
+        self.take(&point, balances)
     }
 
-    fn balanced(&self, y: &[f64], lengths: &[f64]) -> Result<Vec<f64>, Vec<f64>> {
+    fn balanced(&self, y: &[f64], lengths: &[f64], give: bool) -> (Vec<f64>, bool, Vec<f64>) {
         let (modes, rhs) = (self.projector.loose(), self.problem.rhs);
-        let (point, balances) = Search::new(modes, self.set, rhs, (y, lengths)).run();
-        if balances { Ok(point) } else { Err(point) }
+        Search::new(modes, self.set, (rhs, self.x), (y, lengths), give).run()
+    }
+
+    /// Moves to a point if that balances; whether it does.
+    fn take(&mut self, point: &[f64], balances: bool) -> bool {
+        if balances {
+            self.x[..point.len()].copy_from_slice(point);
+        }
+        balances
     }
 
     /// Estimated errors: the lengths of `z`.

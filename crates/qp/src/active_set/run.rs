@@ -161,6 +161,7 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
                 compliance: Compliance::default(),
                 step: NATURAL_STEP,
                 ahead: false,
+                on_springs: false,
             },
         })
     }

@@ -47,7 +47,9 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         loop {
             if let Some(anew) = self.set_weights()? {
                 factored |= anew;
-                if self.projector.balances(self.x, self.problem.rhs) {
+                // where constraints hold a mode, a set in which its springs would is a body that is thrown off
+                let held = self.on_springs || self.projector.holds_without_springs();
+                if held && self.projector.balances(self.x, self.problem.rhs) {
                     return Ok(factored);
                 }
             }

@@ -106,7 +106,8 @@ pub trait EqualityProjector {
 
     // Modes that no unconstrained component stops.
 
-    /// These modes: [`repair`](Self::repair) leaves them as they are, and constrained components have to balance them.
+    /// These modes: [`repair`](Self::repair) leaves them as they are but for springs, and constrained components have
+    /// to balance them with these.
     #[doc(hidden)]
     fn loose(&self) -> &[LooseMode] {
         &[]
@@ -116,6 +117,12 @@ pub trait EqualityProjector {
     /// modes that no component of positive weight stops must see no work of `e - G x`.
     #[doc(hidden)]
     fn balances(&mut self, _x: &[f64], _e: &[f64]) -> bool {
+        true
+    }
+
+    /// Whether the components of positive weight stop every [loose](Self::loose) mode without its springs.
+    #[doc(hidden)]
+    fn holds_without_springs(&mut self) -> bool {
         true
     }
 
@@ -139,13 +146,17 @@ pub struct LineWeight {
     pub weight: f64,
 }
 
-/// A mode that no unconstrained component stops: a combination of the rows of `G` that vanishes on all of them.
+/// A mode that no unconstrained component stops: a combination of the rows of `G` that vanishes on all of them but
+/// springs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct LooseMode {
     /// Factor of each row of `G`.
     pub amplitudes: Vec<f64>,
     /// What of the combination is not zero on the leading, constrained components: their numbers, in order, and values.
     pub row: Vec<(usize, f64)>,
+    /// Unconstrained components that stop it like springs: number, value, and how much the component changes per
+    /// gradient.
+    pub springs: Vec<(usize, f64, f64)>,
 }
 
 impl LooseMode {
@@ -156,6 +167,7 @@ impl LooseMode {
         Self {
             amplitudes,
             row: entries.filter(|(_, c)| *c != 0.0).collect(),
+            springs: Vec::new(),
         }
     }
 }

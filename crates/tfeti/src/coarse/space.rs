@@ -176,7 +176,13 @@ impl Coarse {
     pub(crate) fn loose_mode(&self, amplitudes: &[f64], contact: usize) -> LooseMode {
         let mut row = vec![0.0; self.dim()];
         self.transpose_times(amplitudes, &mut row);
-        LooseMode::new(amplitudes.to_vec(), &row[..contact])
+        let mut mode = LooseMode::new(amplitudes.to_vec(), &row[..contact]);
+        let first = row.len() - self.0.gluing.springs().len();
+        let springs = (first..)
+            .zip(self.0.gluing.springs())
+            .map(|(i, s)| (i, row[i], s.compliance.recip()));
+        mode.springs = springs.filter(|s| s.1 != 0.0).collect();
+        mode
     }
 
     /// Rigid motions of bodies that rows of positive weight leave free; all rows count if there are no weights.

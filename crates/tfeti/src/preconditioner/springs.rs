@@ -1,11 +1,10 @@
 //! What springs change in a preconditioner of `F + C`.
 //!
-//! The row of a spring alone, of length `s`, is scaled so that the inverse of `F + C` is about the stiffness `k` of its
-//! node. The product with the stiffness makes `s² k` of it. Where contact may take the place of a spring its row
+//! The product with the stiffness `k` of its node makes `s² k` of the row of a spring, of length `s`; its
+//! `factor` makes the inverse of `F + C` of it. Where contact may take the place of a spring its row
 //! depends on others, on which that product vanishes: there `1 / c` is added. The scaling of copies knows springs by
 //! itself.
 
-use crate::rows::gluing::SpringRow;
 use crate::system::tfeti::Tfeti;
 use std::collections::HashSet;
 
@@ -26,7 +25,6 @@ impl Springs {
         let springs = if scaled { &[] } else { gluing.springs() };
         let total = gluing.ranges().total();
         let first = total - springs.len();
-        let factor = |spring: &SpringRow| 1.0 / spring.scale;
         let copies = |row: usize| gluing.row(row).into_iter().map(|(s, dof, _)| (s, dof / 3));
         let touching: HashSet<(usize, usize)> = match springs {
             [] => HashSet::new(),
@@ -36,7 +34,7 @@ impl Springs {
         let alone = rows.filter(|(row, _)| copies(*row).any(|copy| touching.contains(&copy)));
         Self {
             first,
-            factors: springs.iter().map(factor).collect(),
+            factors: springs.iter().map(|spring| spring.factor).collect(),
             alone: alone.map(|(row, spring)| (row, 1.0 / spring.compliance)).collect(),
         }
     }

@@ -9,7 +9,7 @@ use crate::projector::levels::{Basis, row_weights};
 use crate::projector::split::factor::SplitFactor;
 use crate::projector::split::front::Front;
 use crate::projector::split::fronts::ContactWeights;
-use crate::tolerances::{MOVING, ROUNDED_STEP, SHORT_ROWS, WORK};
+use crate::tolerances::{MOVING, ROUNDED_STEP, SHORT_ROWS, SOFT_SPRING, WORK};
 use signorini_qp::internal::{LineWeight, LooseMode};
 use signorini_qp::vector::{dot, norm};
 use signorini_qp::{EqualityProjector, QpError};
@@ -41,6 +41,8 @@ pub struct ActiveSetProjector {
     always: CoarseFactor,
     /// What these do not hold.
     loose: Vec<LooseMode>,
+    /// Rows of springs that are too soft to hold.
+    soft: Vec<usize>,
     /// Factor of the last active set.
     active: CoarseFactor,
     /// Of the rows that may have another weight than 1.
@@ -124,7 +126,13 @@ impl ActiveSetProjector {
             fronts: Vec::new(),
             contact: ContactWeights::default(),
         };
+        let mut always = row_weights(coarse, &weights, metric.as_deref());
+        let soft = soft_springs(coarse, contact_rows, metric.as_deref());
+        soft.iter().for_each(|&row| always.diagonal[row] = 0.0);
+        let sprung = !soft.is_empty() && !coarse.0.free_motions(Some(&always)).is_empty();
         let factor = match &parts.basis {
+            // soft springs would take what contact balances, and throw the body far off
+            _ if sprung => coarse.factor_weighted(always)?,
             Some(Basis::Model(_, always)) => always.clone(),
             _ => parts.factor(coarse, row_weights(coarse, &weights, metric.as_deref()), None)?,
         };
@@ -148,8 +156,10 @@ impl ActiveSetProjector {
             coarse: coarse.clone(),
             always: factor.clone(),
             loose,
+            soft,
             active: factor,
-            weights,
+            // the first set has springs
+            weights: if sprung { Vec::new() } else { weights },
             lines: Vec::new(),
             parts,
             spare: None,
@@ -211,6 +221,17 @@ impl ActiveSetProjector {
         work(self);
         self.scratch.digits = Digits::Double;
     }
+}
+
+/// Rows of springs that are soft beside the stiffest rows, where contact may hold what they do.
+fn soft_springs(coarse: &Coarse, contact_rows: usize, metric: Option<&[f64]>) -> Vec<usize> {
+    let springs = coarse.0.gluing.springs();
+    let Some(metric) = metric.filter(|_| contact_rows > 0) else {
+        return Vec::new();
+    };
+    let rows = (metric.len() - springs.len()..).zip(springs);
+    let soft = rows.filter(|(row, spring)| metric[*row] * spring.scale.powi(2) < SOFT_SPRING);
+    soft.map(|(row, _)| row).collect()
 }
 
 impl SplitParts {
@@ -375,6 +396,15 @@ impl EqualityProjector for ActiveSetProjector {
 
     fn loose(&self) -> &[LooseMode] {
         &self.loose
+    }
+
+    fn holds_without_springs(&mut self) -> bool {
+        let Some(weights) = self.active.weights().filter(|_| !self.soft.is_empty()) else {
+            return true;
+        };
+        let mut without = weights.clone();
+        self.soft.iter().for_each(|&row| without.diagonal[row] = 0.0);
+        self.coarse.0.free_motions(Some(&without)).is_empty()
     }
 
     fn balance(&mut self, x: &mut [f64], e: &[f64]) {

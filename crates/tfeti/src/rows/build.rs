@@ -359,12 +359,14 @@ impl Builder<'_> {
             self.stiffness.unit_shares(copies, &mut self.shares);
             let shares = copies.iter().zip(&self.shares);
             let own: f64 = shares.map(|(copy, share)| share * share * all.of(copy)).sum();
-            let scale = (1.0 + compliance * own).sqrt().recip().max(SOFTEST);
+            let wanted = (1.0 + compliance * own).sqrt().recip();
+            let scale = wanted.max(SOFTEST);
             self.spread(node, spring.direction.map(|c| scale * c));
             self.close(node);
             self.gluing.springs.push(SpringRow {
                 compliance: scale * scale * compliance,
                 scale,
+                factor: wanted / (scale * scale),
             });
         }
         self.gluing.ranges.dirichlet = self.gluing.ranges.rigid.end..self.next();

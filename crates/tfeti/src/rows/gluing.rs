@@ -55,6 +55,9 @@ pub struct SpringRow {
     pub compliance: f64,
     /// Length of the row.
     pub scale: f64,
+    /// Where the stiffness `k` of the node preconditions, `factor² scale² k` inverts `scale² / k` and the compliance
+    /// together: one over the scale, less for the softest.
+    pub factor: f64,
 }
 
 /// The rows of a tied constraint.

@@ -3,7 +3,7 @@
 use crate::linalg::sparse::SolveMemory;
 use crate::subdomain::inverse::Inverse;
 use crate::system::tfeti::Tfeti;
-use crate::tolerances::{SAMPLE, SHORT_ROWS, SOFT_BODY};
+use crate::tolerances::{NO_HOLD, SAMPLE, SHORT_ROWS, SOFT_BODY};
 use rayon::prelude::*;
 use signorini_fem_mesh::internal::distinct;
 use std::collections::BTreeMap;
@@ -174,6 +174,12 @@ impl Tfeti {
             weights[row] /= 1.0 + compliance * weights[row];
         }
         self.compare_weights(&mut weights);
+        let first = weights.len() - springs.len();
+        for (weight, spring) in weights[first..].iter_mut().zip(springs) {
+            if *weight * spring.scale.powi(2) < NO_HOLD {
+                *weight = 0.0;
+            }
+        }
         self.weigh_rigid(&mut weights);
         Some(weights)
     }
