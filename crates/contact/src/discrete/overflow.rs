@@ -9,21 +9,13 @@ use crate::scene::{LoadKind, Pose, Scene};
 use crate::tolerances::LARGEST;
 use signorini_fem_mesh::{Decomposition, assemble_eigenstrain, assemble_load};
 use signorini_qp::vector;
-use signorini_tfeti::TfetiError;
 
 /// Refuses materials of regions in use; the least and the largest stiffness of a region times the extent of the mesh,
 /// N/m.
 pub(super) fn check_materials(scene: &Scene) -> Result<[f64; 2], ContactError> {
     let mut ends = [f64::INFINITY, 0.0_f64];
     for region in scene.mesh.distinct_regions() {
-        let law = scene.materials.get(region).map_err(|source| {
-            let element = scene.mesh.regions().iter().position(|r| *r == region);
-            let element = element.unwrap_or(0);
-            TfetiError::Material {
-                element,
-                message: source.to_string(),
-            }
-        })?;
+        let law = scene.materials.get(region).map_err(ContactError::Material)?;
         let value = law.bound();
         if !(1.0 / LARGEST..=LARGEST).contains(&value) {
             return Err(ContactError::Stiffness {

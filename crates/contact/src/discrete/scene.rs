@@ -5,7 +5,7 @@ use super::equations::equations;
 use super::faceted::{FacetedOverlaps, close_faceted};
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
 use super::penetration::check_penetration;
-use super::points::{ContactPoint, HandedOn, conditions, handed_on, of_contact, points};
+use super::points::{ContactPoint, conditions, of_contact, points};
 use super::springs::Springs;
 use super::supports::Supports;
 use super::turn::check_turn;
@@ -36,6 +36,8 @@ pub(crate) struct DiscreteScene {
     pub(crate) conditions: Vec<ContactPoint>,
     /// The contact points that stand for them, and for each condition which one does.
     pub(crate) points: Vec<ContactPoint>,
+    /// Which of them have rows: those that supports do not hold along their normal.
+    has_rows: Vec<bool>,
     pub(crate) stands: Vec<usize>,
     /// The nodes of tied contacts.
     pub(crate) ties: Vec<ContactPoint>,
@@ -49,8 +51,6 @@ pub(crate) struct DiscreteScene {
     pub(crate) rounding: f64,
     /// Contacts whose meshes do not match, and whether the other side than the scene names first has the points.
     pub(crate) apart: Vec<(usize, bool)>,
-    /// Nodes of theirs that other contacts cross.
-    pub(crate) handed_on: Vec<HandedOn>,
     /// Their overlaps about as deep as facets are beside their curve.
     pub(crate) faceted: FacetedOverlaps,
     /// How long it took to find the sides of the contacts.
@@ -89,7 +89,6 @@ impl DiscreteScene {
             conditions.retain(|c| c.sides.partner.is_none() || !bonded.contains(&c.node()));
         }
         let faceted = close_faceted(scene, &paired, &mut conditions, rounding)?;
-        let handed_on = handed_on(&paired);
         let surfaces: Vec<Surface> = paired.into_iter().map(|p| p.surface).collect();
         for (index, own) in surfaces.iter().enumerate() {
             let own_conditions = &conditions[of_contact(&conditions, index)];
@@ -110,9 +109,9 @@ impl DiscreteScene {
         let loads = nodal_loads(scene, (&decomposition, &couplings), softest)?;
         // both in the order of the points
         let mut without = prescribed.iter().map(|p| p.point).peekable();
-        let with_rows = points.iter().enumerate();
-        let with_rows = with_rows.filter(|(k, _)| without.next_if_eq(k).is_none());
-        check_laws(with_rows.map(|(_, p)| {
+        let has_rows: Vec<bool> = (0..points.len()).map(|k| without.next_if_eq(&k).is_none()).collect();
+        let with_rows = points.iter().zip(&has_rows).filter(|(_, has)| **has);
+        check_laws(with_rows.map(|(p, _)| {
             let friction = scene.contacts[p.surface].friction();
             (friction, p.node(), p.position)
         }))?;
@@ -130,9 +129,9 @@ impl DiscreteScene {
             equations,
             equation_rows,
             surfaces,
-            handed_on,
             conditions,
             points,
+            has_rows,
             stands,
             ties,
             constraints,
@@ -143,6 +142,11 @@ impl DiscreteScene {
             faceted,
             search,
         })
+    }
+
+    /// The contact points that have rows.
+    pub(crate) fn with_rows(&self) -> impl Iterator<Item = &ContactPoint> {
+        self.points.iter().zip(&self.has_rows).filter(|p| *p.1).map(|p| p.0)
     }
 }
 
@@ -157,7 +161,7 @@ fn constraints(
         let contact = &scene.contacts[p.surface];
         ContactConstraint {
             partner: p.sides.partner.clone(),
-            friction: contact.friction().is_some(),
+            friction: p.is_rough(scene),
             moving: contact.moves() && !contact.tied,
             tied: contact.tied,
             relative: couplings
