@@ -320,18 +320,22 @@ pub(crate) const STIFF_GRADED: f64 = 2.5;
 /// are much the same on equal cells; on graded ones they grow with it.
 pub(crate) const STIFF_MEANS: f64 = 1.0;
 
+/// Difference of the distances of facets over one place, over the size of the facet that sees them, from which on they
+/// are layers, of which the nearest counts.
+pub(crate) const LAYERS: f64 = 1e-3;
+
+/// Largest ratio of friction along and across its axis: beyond, solves were seen to break down.
+pub(crate) const MOST_STRETCH: f64 = 1e3;
+
 /// Part of the stiffness that the natural map takes at rows that may depend on others of their node: two rows along one
 /// direction move it twice.
 pub(crate) const SHARED_ROWS: f64 = 0.5;
 
-/// Differences of gaps around a node, over the root of its area, up to which sides are flush there.
-pub(crate) const FLUSH: f64 = 1e-6;
+/// Part of the largest displacement from which on an overlap at nodes of edges is told.
+pub(crate) const EDGE_OVERLAP: f64 = 0.01;
 
 /// Part of the way by which sides have closed from which on an overlap of nodes of quadratic facets is told.
 pub(crate) const NARROW: f64 = 0.1;
-
-/// Part of the largest displacement from which on an overlap at nodes that contacts hand on is told.
-pub(crate) const EDGE_OVERLAP: f64 = 0.01;
 
 /// What a release would change, over the error of a solved active set, from which on it is worth it.
 pub(crate) const CONTRADICTION: f64 = 10.0;

@@ -3,7 +3,7 @@
 use super::cover::{Cover, Flat, Laid, Piece, Way, barycentric};
 use super::distances::{curve, gaps};
 use super::opening::Rim;
-use crate::tolerances::{BENT, FACING, OVERLAP};
+use crate::tolerances::{BENT, FACING, LAYERS, OVERLAP};
 use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
 use rstar::{AABB, RTree};
@@ -301,17 +301,25 @@ impl<'a> OtherSide<'a> {
         }
         // of several layers the nearest
         let whole = plane.size * plane.size;
-        if found.iter().map(|(piece, _)| piece.area).sum::<f64>() <= whole * (1.0 + OVERLAP) {
+        let is_over = |(a, near): &(Piece, f64), (b, far): &(Piece, f64)| {
+            let apart = (near - far).abs() > LAYERS * plane.size;
+            apart && (a.closest(b.middle()).0 == 0.0 || b.closest(a.middle()).0 == 0.0)
+        };
+        let several = (1..found.len()).any(|k| found[..k].iter().any(|other| is_over(other, &found[k])));
+        if !several && found.iter().map(|(piece, _)| piece.area).sum::<f64>() <= whole * (1.0 + OVERLAP) {
             return found;
         }
         found.sort_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
         let mut covered = 0.0;
-        found.retain(|(piece, _)| {
-            let fits = covered + piece.area <= whole * (1.0 + OVERLAP);
-            covered += if fits { piece.area } else { 0.0 };
-            fits
-        });
-        found
+        let mut kept: Vec<(Piece, f64)> = Vec::with_capacity(found.len());
+        for one in found {
+            let fits = covered + one.0.area <= whole * (1.0 + OVERLAP);
+            if fits && !kept.iter().any(|other| is_over(other, &one)) {
+                covered += one.0.area;
+                kept.push(one);
+            }
+        }
+        kept
     }
 
     fn piece(

@@ -393,6 +393,42 @@ fn quadratic_sides_with_bent_edges_turn_together() {
     assert!(parts.clone().all(|f| f.abs() < 1e-8 * PRESSURE), "{imbalance:?}");
 }
 
+/// Combs whose shelves lie on one another, the upper ones half beyond the lower: in one contact each sees the nearest
+/// shelf only, as with a contact a shelf. Pieces of the next shelf had a share where the nearest covered half a facet.
+#[test]
+fn layers_of_one_contact_are_told_apart() {
+    let shelves = 3;
+    let shelf = Brick::new([8.0, 4.0, 0.6], [6, 4, 1]).build().expect("brick");
+    let tag = |k: usize, tag: FacetTag| FacetTag(100 * (k as u32 + 1) + tag.0);
+    let at = |k: usize, offset: [f64; 3]| {
+        let moved = shelf.map_points(|x| [0, 1, 2].map(|c| x[c] + offset[c]));
+        moved.expect("moved").map_tags(|t| tag(k, t))
+    };
+    let places = (0..shelves).flat_map(|k| {
+        let height = 1.5 * k as f64;
+        [at(2 * k, [0.0, 0.0, height]), at(2 * k + 1, [2.0, 0.0, height + 0.6])]
+    });
+    let mesh = places
+        .reduce(|all, one| all.append(&one).expect("appended"))
+        .expect("a mesh");
+    let base = (0..shelves).fold(Scene::new(mesh, uniform(YOUNG, POISSON)), |scene, k| {
+        let guide = Support::components(tag(2 * k + 1, brick::X_MAX), [true, true, false]);
+        scene
+            .with_support(Support::fixed(tag(2 * k, brick::X_MIN)))
+            .with_support(guide)
+            .with_load(Load::pressure(tag(2 * k + 1, brick::Z_MAX), 1e-4 * YOUNG))
+    });
+    let sides = |k: usize| (tag(2 * k, brick::Z_MAX), tag(2 * k + 1, brick::Z_MIN));
+    let each = (0..shelves).fold(base.clone(), |scene, k| {
+        scene.with_contact(Contact::between(sides(k).0, sides(k).1))
+    });
+    let whole = (1..shelves).fold(Contact::between(sides(0).0, sides(0).1), |contact, k| {
+        contact.with_tag(sides(k).0).with_partner(sides(k).1)
+    });
+    let [each, whole] = [each, base.with_contact(whole)].map(|scene| solve(scene, Settings::default()).displacement);
+    assert_close(&whole, &each, 1e-6, "displacements");
+}
+
 /// Sides that do not face each other, a tag on both sides, bodies inside each other: refused as where meshes match. The
 /// plan says which side has the points: that with the larger facets, or the first of those that are alike.
 #[test]
