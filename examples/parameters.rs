@@ -46,13 +46,15 @@ pub fn block() -> Result<Scene, Error> {
 pub fn solve(block: &Scene, coefficient: f64) -> Result<Outcome, Error> {
     let floor = Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(coefficient));
     let scene = block.clone().with_contact(floor);
-    let mut simulation = match Simulation::new(scene, Settings::default()) {
-        // the set-up knows by which factor friction is too small
-        Err(ContactError::NotHeld {
-            friction: Some(factor), ..
-        }) => return Ok(Outcome::Slides(factor * coefficient)),
-        made => made?,
-    };
+    let made = Simulation::new(scene, Settings::default());
+    // the set-up knows by which factor friction is too small; `plain` is the error without names that a scene may have
+    if let Err(ContactError::NotHeld {
+        friction: Some(factor), ..
+    }) = made.as_ref().map_err(ContactError::plain)
+    {
+        return Ok(Outcome::Slides(factor * coefficient));
+    }
+    let mut simulation = made?;
     let result = simulation.step()?;
     // any other end is an error that says what to do
     result.require_converged()?;

@@ -102,7 +102,7 @@ signorini_fem_mesh::errors! {
             "friction at node {node}: the slip bound {} must be finite and not negative", number(*value);
         Formula { alpha: f64, beta: f64, gamma: f64, rule: &'static str } =
             "difference formula {alpha}, {beta}, {gamma}: {rule}; use PAPER or BACKWARD_EULER";
-        NoSteps = "the analysis has no step or more than a hundred million; ask for at least one step";
+        NoSteps = "the analysis has no step or more than a hundred million; ask for one to that many";
         Time { step: usize, time: f64 } =
             "step {step}: its time {time} s is not finite or not above the one before (the first must be above 0)";
         UnequalSteps { step: usize, length: f64, first: f64 } =

@@ -37,7 +37,7 @@
 //! ```
 //!
 //! Features: `vtu` writes ParaView files, `gmsh` reads Gmsh meshes, `deck` reads CalculiX and Abaqus decks,
-//! `checkpoint` turns states into bytes and back, `serde` serialises reports, certificates, reactions,
+//! `checkpoint` turns states into bytes and back, `serde` serialises step reports, certificates, reactions,
 //! contact points, tags, facets, frames and bricks. All are off by default.
 
 pub use signorini_contact as contact;

@@ -22,7 +22,7 @@ pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> 
         unmerged(scene, discrete),
         unused_materials(listed, &present),
         locking(scene, &present),
-        idle_contact(scene, points),
+        idle_contact(scene, discrete),
         large_gap(scene, discrete),
         closed,
         pressing,
@@ -93,10 +93,10 @@ fn locking(scene: &Scene, present: &[u32]) -> Option<Warning> {
     (poisson > LOCKING).then_some(Warning::Locking { region, poisson })
 }
 
-/// The first contact without a point.
-fn idle_contact(scene: &Scene, points: &[ContactPoint]) -> Option<Warning> {
+/// The first contact without a point that supports leave free.
+fn idle_contact(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
     let mut idle: Vec<bool> = scene.contacts.iter().map(|c| !c.tied && scene.acts(c.span)).collect();
-    points.iter().for_each(|point| idle[point.surface] = false);
+    discrete.with_rows().for_each(|point| idle[point.surface] = false);
     let contact = idle.into_iter().position(|idle| idle)?;
     Some(Warning::IdleContact { contact })
 }

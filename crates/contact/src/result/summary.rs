@@ -34,7 +34,8 @@ pub struct ContactSummary {
     pub max_penetration: f64,
     /// Work done against friction by the displacement increments of this step (relative to the obstacle), J. With the
     /// paper's formula it can be slightly negative at points that stick after sliding, see
-    /// [`DifferenceFormula`](crate::DifferenceFormula).
+    /// [`DifferenceFormula`](crate::DifferenceFormula). To first order in the length of the step: n equal steps of one
+    /// that grows in proportion have (n + 1) / n of its work.
     pub friction_work: f64,
     /// Friction force times the tangential difference of (2.9), J; never negative beyond the certificate. Equal to
     /// `friction_work` for backward Euler.

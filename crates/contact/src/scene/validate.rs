@@ -9,6 +9,7 @@ use super::scene::Scene;
 use super::support::Place;
 use crate::error::ContactError;
 use crate::part::Part;
+use crate::tolerances::MOST_STRETCH;
 use signorini_fem_mesh::internal::tag_list;
 use signorini_fem_mesh::vec3::{is_finite, norm};
 use signorini_fem_mesh::{FacetTag, History};
@@ -216,8 +217,8 @@ impl Scene {
         }
         if let Some((_, ratio)) = contact.friction_axis {
             let name = "ratio of friction across its axis";
-            let good = ratio.is_finite() && ratio > 0.0;
-            check(good, name, ratio, "(0, inf): an ellipse has two axes")?;
+            let good = (1.0 / MOST_STRETCH..=MOST_STRETCH).contains(&ratio);
+            check(good, name, ratio, "[0.001, 1000]: an ellipse has two axes")?;
         }
         if let Friction::Coulomb(coefficient) = &contact.friction {
             coefficient.validate(index)?;

@@ -204,3 +204,27 @@ fn the_plan_expects_the_error_of_the_mesh() {
         None
     );
 }
+
+/// A contact whose nodes supports hold along its normal has no rows, in the plan, too, and is told.
+#[test]
+fn a_contact_that_supports_leave_nothing_is_told() {
+    for held in [
+        Support::components(brick::Z_MIN, [false, false, true]),
+        Support::fixed(brick::Z_MIN),
+    ] {
+        let scene = Scene::new(block([1.0; 3], [2; 3]), uniform(1e6, 0.3))
+            .with_support(held)
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3)))
+            .with_load(Load::pressure(brick::Z_MAX, 1.0));
+        let simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        let plan = simulation.plan();
+        assert_eq!((plan.normal_rows, plan.tangential_rows), (0, 0));
+        assert!(
+            plan.warnings()
+                .iter()
+                .any(|w| matches!(w.plain(), Warning::IdleContact { contact: 0 }))
+        );
+        assert_eq!(simulation.tfeti().gluing().ranges().contact().len(), 0);
+    }
+}
