@@ -5,8 +5,8 @@
 //! limit was reached, from the start of the step where the active-set method stagnated. Its steps lower a cost, and
 //! with [`Expansion::FixedStep`](signorini_qp::Expansion) it is proved to solve every Tresca problem.
 
-use super::coarse::not_determined;
 use super::iterate::{Attempt, Iterate, Task, is_coulomb, step_status};
+use super::not_determined::not_determined;
 use super::preconditioner::SelectedPreconditioner;
 use super::release::Exchanges;
 use super::smalse::SmalseSolver;

@@ -7,8 +7,8 @@
 //! In: a [`StepProblem`](crate::step::StepProblem) and an [`Iterate`]. Out: multipliers and a report of the step.
 
 mod active_set;
-mod coarse;
 mod iterate;
+mod not_determined;
 mod preconditioner;
 mod release;
 mod scaling;

@@ -1,8 +1,8 @@
 //! The paper's methods: successive approximations (3.17) with Tresca problems by SMALSE and KPRGP
 //! (Algorithm 4.1), and the one inexact loop in which the slip bounds follow the outer steps of SMALSE.
 
-use super::coarse::OrthonormalRows;
 use super::iterate::{Iterate, Task, is_coulomb, step_status};
+use super::not_determined::not_determined;
 use crate::error::ContactError;
 use crate::model::{DISCS, INTERVALS, Model, friction_could_hold};
 use crate::report::StepReport;
@@ -14,10 +14,12 @@ use crate::tolerances::{
 };
 use signorini_qp::internal::Contraction;
 use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
-use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
 use signorini_qp::{
-    MovingSet, ProductSet, Projected, QuadraticCost, Segment, SmalseSettings, Status, norm_estimate, smalse, vector,
+    Equality, MovingSet, ProductSet, Projected, QuadraticCost, Segment, SmalseSettings, Status, norm_estimate, smalse,
+    vector,
 };
+use signorini_qp::{FixedPointReport, Verdict, successive_approximations};
+use signorini_tfeti::internal::CoarseScratch;
 use signorini_tfeti::{DualOperator, OrthonormalCoarse};
 
 /// How often a step may tighten the inner tolerance tenfold.
@@ -31,7 +33,11 @@ const MAX_EVALUATIONS: usize = 200;
 const MAX_STALLS: usize = 3;
 
 pub(crate) struct SmalseSolver {
-    rows: OrthonormalRows,
+    /// Orthonormal coarse rows, which these methods need.
+    coarse: OrthonormalCoarse,
+    scratch: CoarseScratch,
+    /// Right side of the step in these rows.
+    rhs: Vec<f64>,
     norm: f64,
     norm_products: usize,
     set: ProductSet,
@@ -44,20 +50,28 @@ pub(crate) struct SmalseSolver {
 }
 
 impl SmalseSolver {
+    /// # Errors
+    /// [`ContactError::NotDetermined`] if no row stops some rigid motion. The check of equilibrium has found before
+    /// that the loads do not push along it.
     pub(crate) fn new(model: &Model, settings: &Settings) -> Result<Self, ContactError> {
         let (smalse, accuracy, one_loop) = match &settings.method {
             Method::OneLoop { smalse } => (*smalse, InnerAccuracy::Fixed, true),
             Method::SuccessiveApproximations { smalse, accuracy } => (*smalse, *accuracy, false),
             Method::ActiveSet(_) => (paper_smalse(), InnerAccuracy::default(), false),
         };
-        let rows = OrthonormalRows::new(model)?;
+        let factor = model.tfeti.coarse_factor()?;
+        let coarse = factor
+            .orthonormal()
+            .ok_or_else(|| not_determined(model, factor.free_motions()))?;
         let operator = model.tfeti.dual();
-        let projected = Projected::new(operator, &rows.coarse)?;
+        let projected = Projected::new(operator, &coarse)?;
         let estimate = norm_estimate(&projected)?;
         Ok(Self {
-            work: SmalseWorkspace::new(operator, &rows.coarse),
+            work: SmalseWorkspace::new(operator, &coarse),
             set: model.set.clone(),
-            rows,
+            scratch: factor.scratch(),
+            rhs: vec![0.0; model.tfeti.coarse().rows()],
+            coarse,
             norm: estimate.upper,
             norm_products: estimate.products,
             settings: smalse,
@@ -99,10 +113,12 @@ impl SmalseSolver {
             if all.status != StepStatus::IterationLimit {
                 return Ok(all);
             }
-            let now = self.rows.imbalance(&iterate.lambda);
+            let mut forces = vec![0.0; self.rhs.len()];
+            self.coarse.apply(&iterate.lambda, &mut forces, &mut self.scratch);
+            let now = vector::distance(&forces, &self.rhs);
             // where there are no loads, a part of what contact does tells what is small
             let contact = &iterate.lambda[task.model.contact_rows()];
-            let size = vector::norm(&self.rows.rhs).max(NEAR_BALANCE * vector::norm(contact));
+            let size = vector::norm(&self.rhs).max(NEAR_BALANCE * vector::norm(contact));
             if now <= NEAR_BALANCE * size {
                 // held: what is left needs longer solves
                 share *= 2;
@@ -124,8 +140,8 @@ impl SmalseSolver {
     }
 
     pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
-        self.rows.set_rhs(&task.problem.rhs);
-        iterate.multiplier.resize(self.rows.rhs.len(), 0.0);
+        self.coarse.rhs(&task.problem.rhs, &mut self.rhs, &mut self.scratch);
+        iterate.multiplier.resize(self.rhs.len(), 0.0);
         let mut report = StepReport::new();
         report.counters.setup_products = std::mem::take(&mut self.norm_products);
         report.counters.inequality_solves = 1;
@@ -137,8 +153,10 @@ impl SmalseSolver {
             self.fixed_point(task, iterate, &mut report)?;
         }
         iterate.known = false;
-        self.rows
-            .amplitudes(self.work.equality_multiplier(), &mut iterate.alpha);
+        iterate.alpha.resize(self.rhs.len(), 0.0);
+        let multiplier = self.work.equality_multiplier();
+        self.coarse
+            .amplitudes(multiplier, &mut iterate.alpha, &mut self.scratch);
         Ok(report)
     }
 
@@ -171,7 +189,7 @@ impl SmalseSolver {
             .limited_to(self.left);
         let cost = QuadraticCost::new(task.model.tfeti.dual(), &task.problem.linear, self.norm);
         let report = smalse(
-            &cost.with_equality(&self.rows.coarse, &self.rows.rhs),
+            &cost.with_equality(&self.coarse, &self.rhs),
             MovingSet::new(&mut self.set, hook),
             &mut iterate.lambda,
             &mut iterate.multiplier,
