@@ -3,7 +3,7 @@
 use std::fmt;
 
 /// How the solve of a step ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum StepStatus {
@@ -11,6 +11,7 @@ pub enum StepStatus {
     /// tolerance, and smaller ones did not bring the certificate below it, but to at most thirty times it.
     Converged,
     /// A limit of iterations or products was reached first; the result is the last iterate.
+    #[default]
     IterationLimit,
     /// No further progress, above the tolerance.
     Stagnated,

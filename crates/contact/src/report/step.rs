@@ -6,7 +6,7 @@ use crate::status::{Slide, StepStatus};
 use signorini_qp::{FixedPointReport, Steps};
 
 /// Report of one step's solve.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub struct StepReport {
@@ -38,21 +38,6 @@ pub struct StepReport {
 }
 
 impl StepReport {
-    pub(crate) fn new() -> Self {
-        Self {
-            status: StepStatus::IterationLimit,
-            iterations: 0,
-            counters: Counters::default(),
-            steps: Steps::default(),
-            fixed_point: None,
-            fallback: false,
-            fallback_products: 0,
-            slide: None,
-            accuracy: None,
-            unconverged_history: None,
-        }
-    }
-
     /// Takes over the outcome of a further solve of the same step, with the cost of both.
     pub(crate) fn resumed(self, mut next: Self) -> Self {
         next.counters += self.counters;

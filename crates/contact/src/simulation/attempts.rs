@@ -169,7 +169,7 @@ impl Simulation {
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, way.increment(), Acting::All)?;
         let (next, old) = solved;
         let converged = next.status.converged();
-        *report = std::mem::replace(report, StepReport::new()).resumed(next);
+        *report = std::mem::take(report).resumed(next);
         if !converged {
             self.spare = old;
             return Ok(None);

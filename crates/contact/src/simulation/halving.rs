@@ -115,7 +115,7 @@ pub(super) struct Before {
 impl Before {
     /// An increment that failed and was replaced, by halves or longer ones; `None` where its solver broke down.
     pub(super) fn enter_failed(&mut self, failed: Option<StepReport>, halved: bool) {
-        let mut report = failed.unwrap_or_else(StepReport::new);
+        let mut report = failed.unwrap_or_default();
         report.counters.halvings += usize::from(halved);
         self.enter(report);
     }

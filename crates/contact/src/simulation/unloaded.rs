@@ -44,7 +44,7 @@ impl Simulation {
         way: &Way,
         (line, attempt): (bool, Attempt),
     ) -> Result<(StepReport, Option<Recovered>, Option<Targets>), ContactError> {
-        let (model, increment, mut report) = (&self.model, way.increment(), StepReport::new());
+        let (model, increment, mut report) = (&self.model, way.increment(), StepReport::default());
         let unloaded = |start| self.problem.is_unloaded(model, start);
         let loose = model.plan.effects.history && !model.loose_motions()?.is_empty();
         if !loose || !increment.start.is_some_and(unloaded) {

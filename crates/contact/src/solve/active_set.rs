@@ -137,7 +137,7 @@ impl ActiveSetSolver {
     }
 
     pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
-        let mut report = StepReport::new();
+        let mut report = StepReport::default();
         let contact = !task.model.points.is_empty();
         report.counters.inequality_solves = usize::from(contact);
         iterate.alpha.clear();

@@ -104,7 +104,7 @@ impl SmalseSolver {
         task: Task<'_>,
         iterate: &mut Iterate,
     ) -> Result<StepReport, ContactError> {
-        let (mut all, mut left, mut share) = (StepReport::new(), limit, BALANCING);
+        let (mut all, mut left, mut share) = (StepReport::default(), limit, BALANCING);
         let (mut before, mut stalls) = ([f64::INFINITY; 2], 0);
         loop {
             let part = self.solve_within(left.min(share), task, iterate)?;
@@ -142,7 +142,7 @@ impl SmalseSolver {
     pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
         self.coarse.rhs(&task.problem.rhs, &mut self.rhs, &mut self.scratch);
         iterate.multiplier.resize(self.rhs.len(), 0.0);
-        let mut report = StepReport::new();
+        let mut report = StepReport::default();
         report.counters.setup_products = std::mem::take(&mut self.norm_products);
         report.counters.inequality_solves = 1;
         if !is_coulomb(task.model) {
