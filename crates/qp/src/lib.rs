@@ -119,7 +119,6 @@ pub use smalse::{SmalseSettings, smalse};
 /// What the crates of this workspace share beyond the interface.
 #[doc(hidden)]
 pub mod internal {
-    pub use crate::active_set::enter_active_set;
     pub use crate::fixed_point::Contraction;
     pub use crate::problem::{LineWeight, LooseMode};
 }

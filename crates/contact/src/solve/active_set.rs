@@ -22,7 +22,6 @@ use crate::tolerances::{
 };
 use signorini_fem_mesh::decomposition::is_strongly_graded;
 use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
-use signorini_qp::internal::enter_active_set;
 use signorini_qp::{
     ActiveSetSettings, EqualityProjector, MovingSet, ProductSet, QpError, Status, SymmetricOperator, active_set,
     interior_point, vector,
@@ -411,10 +410,10 @@ impl ActiveSetSolver {
             };
             let (set, known) = (MovingSet::new(&mut self.set, &mut hook), iterate.known);
             let point = ActiveSetPoint { x, ax, known };
-            let outcome = match most {
-                0 => enter_active_set(&dual, &mut self.space, set, point, &settings, &mut self.work),
-                _ => active_set(&dual, &mut self.space, set, point, &settings, &mut self.work),
-            };
+            if most == 0 {
+                self.work.enter_only();
+            }
+            let outcome = active_set(&dual, &mut self.space, set, point, &settings, &mut self.work);
             if let (Some(part), Some([x, ax])) = (part, &own) {
                 part.complete(x, &mut iterate.lambda);
                 part.complete(ax, &mut iterate.f_lambda);

@@ -35,7 +35,5 @@ pub(crate) use coupling::slope_table;
 pub use problem::{ActiveSetPoint, ActiveSetProblem};
 pub use settings::{ActiveSetReport, ActiveSetSettings};
 pub use solver::active_set;
-#[doc(hidden)]
-pub use solver::enter_active_set;
 pub use view::{ActiveSetPreconditioner, ActiveSetView, Freedom};
 pub use workspace::ActiveSetWorkspace;

@@ -50,32 +50,17 @@ pub fn active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPrecon
     settings: &ActiveSetSettings,
     work: &mut ActiveSetWorkspace<A, M>,
 ) -> Result<ActiveSetReport, QpError> {
+    let enters_only = std::mem::take(&mut work.enters_only);
     check(problem, projector, set.set, &point, (settings, work))?;
     let mut run = Run::new(problem, projector, set, point, settings, work)?;
+    if enters_only {
+        run.start()?;
+        run.enter()?;
+        run.at.report.status = Status::IterationLimit;
+        return Ok(run.at.report);
+    }
     let status = solve(&mut run)?;
     Ok(run.finish(status))
-}
-
-/// Enters the active set that a point tells, with projector and preconditioner, and solves nothing on it; the point is
-/// then not to be used.
-///
-/// # Errors
-/// As [`active_set`].
-#[doc(hidden)]
-pub fn enter_active_set<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>(
-    problem: &ActiveSetProblem<'_, A, M>,
-    projector: &mut C,
-    set: MovingSet<'_, ProductSet>,
-    point: ActiveSetPoint<'_>,
-    settings: &ActiveSetSettings,
-    work: &mut ActiveSetWorkspace<A, M>,
-) -> Result<ActiveSetReport, QpError> {
-    check(problem, projector, set.set, &point, (settings, work))?;
-    let mut run = Run::new(problem, projector, set, point, settings, work)?;
-    run.start()?;
-    run.enter()?;
-    run.at.report.status = Status::IterationLimit;
-    Ok(run.at.report)
 }
 
 /// From the start to a solution, or to where the run gives up.

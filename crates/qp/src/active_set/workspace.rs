@@ -33,6 +33,8 @@ pub struct ActiveSetWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     pub(crate) first_step: f64,
     /// Whether the start tells the first active set.
     pub(crate) told: bool,
+    /// Whether the next solve ends on the first active set.
+    pub(crate) enters_only: bool,
     pub(crate) active: ActiveSet,
     pub(crate) coupling: Coupling,
     /// Length of the last step of conjugate gradients.
@@ -67,6 +69,7 @@ impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
             known: Vec::new(),
             first_step: 0.0,
             told: false,
+            enters_only: false,
             active: ActiveSet::default(),
             coupling: Coupling::default(),
             length: 0.0,
@@ -97,6 +100,13 @@ impl<A: SymmetricOperator, M: SymmetricOperator> ActiveSetWorkspace<A, M> {
     /// but no others, as [`interior_point()`](crate::interior_point()) leaves them: its gradient is too rough to tell.
     pub fn trust_start(&mut self) {
         self.told = true;
+    }
+
+    /// Tells the next solve to enter the active set of its start, with projector and preconditioner, and to solve
+    /// nothing on it; its point is then not to be used.
+    #[doc(hidden)]
+    pub fn enter_only(&mut self) {
+        self.enters_only = true;
     }
 
     /// The shortest step of conjugate gradients in the last solve, infinite if it made none: one of that length
