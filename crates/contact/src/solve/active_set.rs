@@ -472,7 +472,7 @@ impl ActiveSetSolver {
         // other normal forces may hold a body yet that only contact holds
         let most = task.settings.max_fallback_products;
         let outcome = if self.space.loose().is_empty() {
-            paper.solve_within(most, task, iterate)
+            paper.solve(most, task, iterate)
         } else {
             paper.solve_while_balancing(most, task, iterate)
         };

@@ -77,24 +77,11 @@ impl SmalseSolver {
             settings: smalse,
             accuracy,
             one_loop,
-            left: usize::MAX,
+            left: 0,
         })
     }
 
-    /// As [`solve`](Self::solve), with at most `limit` products.
-    pub(crate) fn solve_within(
-        &mut self,
-        limit: usize,
-        task: Task<'_>,
-        iterate: &mut Iterate,
-    ) -> Result<StepReport, ContactError> {
-        self.left = limit;
-        let report = self.solve(task, iterate);
-        self.left = usize::MAX;
-        report
-    }
-
-    /// The same for bodies that friction does not seem to hold: when products no longer bring the forces nearer to
+    /// As [`solve`](Self::solve), for bodies that friction does not seem to hold: when products no longer bring the forces nearer to
     /// balance, it ends as [`StepStatus::NotHeld`] where friction within the slip bounds of the normal forces could not
     /// either, and where it could, after some such looks, as [`StepStatus::Stagnated`]. Slip bounds follow normal
     /// forces the sooner the fewer products there are between two looks.
@@ -107,7 +94,7 @@ impl SmalseSolver {
         let (mut all, mut left, mut share) = (StepReport::default(), limit, BALANCING);
         let (mut before, mut stalls) = ([f64::INFINITY; 2], 0);
         loop {
-            let part = self.solve_within(left.min(share), task, iterate)?;
+            let part = self.solve(left.min(share), task, iterate)?;
             left = left.saturating_sub(part.counters.products);
             all = all.resumed(part);
             if all.status != StepStatus::IterationLimit {
@@ -139,7 +126,14 @@ impl SmalseSolver {
         }
     }
 
-    pub(crate) fn solve(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
+    /// With at most `limit` products.
+    pub(crate) fn solve(
+        &mut self,
+        limit: usize,
+        task: Task<'_>,
+        iterate: &mut Iterate,
+    ) -> Result<StepReport, ContactError> {
+        self.left = limit;
         self.coarse.rhs(&task.problem.rhs, &mut self.rhs, &mut self.scratch);
         iterate.multiplier.resize(self.rhs.len(), 0.0);
         let mut report = StepReport::default();

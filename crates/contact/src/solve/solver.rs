@@ -68,7 +68,7 @@ impl Solver {
     fn solve_plain(&mut self, task: Task<'_>, iterate: &mut Iterate) -> Result<StepReport, ContactError> {
         match self {
             Self::ActiveSet(solver) => solver.solve(task, iterate),
-            Self::Smalse(solver) => solver.solve(task, iterate),
+            Self::Smalse(solver) => solver.solve(usize::MAX, task, iterate),
         }
     }
 }
