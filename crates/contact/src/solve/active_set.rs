@@ -65,7 +65,7 @@ impl ActiveSetSolver {
         let contact = model.contact_rows().end;
         let part = model.tfeti.part();
         let (dual, coarse) = match &part {
-            Some(part) => (part.dual(), part.coarse()),
+            Some(part) => (&part.dual, &part.coarse),
             None => (model.tfeti.dual(), model.tfeti.coarse()),
         };
         let preconditioner = SelectedPreconditioner::new(model, settings.preconditioner, part.as_ref())?;
@@ -335,7 +335,7 @@ impl ActiveSetSolver {
             return false;
         };
         std::mem::swap(&mut self.preconditioner, other);
-        let dual = self.part.as_ref().map_or(task.model.tfeti.dual(), SystemPart::dual);
+        let dual = self.part.as_ref().map_or(task.model.tfeti.dual(), |part| &part.dual);
         self.work = ActiveSetWorkspace::new(dual, &self.preconditioner);
         true
     }
@@ -365,7 +365,7 @@ impl ActiveSetSolver {
         let part = self.part.as_ref();
         let linear = part.map(|part| part.take(&problem.linear));
         let dual = ActiveSetProblem {
-            operator: part.map_or(model.tfeti.dual(), SystemPart::dual),
+            operator: part.map_or(model.tfeti.dual(), |part| &part.dual),
             preconditioner: &self.preconditioner,
             scale: &self.scale,
             linear: linear.as_ref().unwrap_or(&problem.linear),

@@ -14,8 +14,10 @@ use std::sync::Arc;
 pub struct SystemPart {
     pub(crate) rows: Arc<RowPart>,
     pub(crate) map: Arc<BoundaryMap>,
-    dual: DualOperator,
-    coarse: Coarse,
+    /// `F = B K+ B^T`.
+    pub dual: DualOperator,
+    /// `G = R^T B^T`.
+    pub coarse: Coarse,
 }
 
 impl Tfeti {
@@ -44,16 +46,6 @@ impl Tfeti {
 }
 
 impl SystemPart {
-    /// `F = B K+ B^T`.
-    pub fn dual(&self) -> &DualOperator {
-        &self.dual
-    }
-
-    /// `G = R^T B^T`.
-    pub fn coarse(&self) -> &Coarse {
-        &self.coarse
-    }
-
     /// Numbers in the part.
     pub fn rows(&self) -> usize {
         self.rows.len()

@@ -141,7 +141,7 @@ fn message(system: &Tfeti) -> u64 {
 /// exchanges of each call come along.
 fn asked(system: &Tfeti, part: Option<&SystemPart>, kind: ActiveSetFactor) -> (Vec<u64>, Vec<u64>) {
     let mut exchanges = Vec::new();
-    let (dual, coarse) = part.map_or((system.dual(), system.coarse()), |part| (part.dual(), part.coarse()));
+    let (dual, coarse) = part.map_or((system.dual(), system.coarse()), |part| (&part.dual, &part.coarse));
     let take = |whole: &[f64]| part.map_or(whole.to_vec(), |part| part.take(whole));
     let contact = system.gluing().ranges().contact().end;
     let mut space = ActiveSetProjector::with_factor(coarse, contact, None, kind).unwrap();
@@ -229,7 +229,7 @@ fn ranks_that_keep_parts_of_vectors_compute_the_same_bits() {
             let asked = KINDS.map(|kind| asked(&system, Some(&part), kind));
             let before = system.traffic().received;
             let x = vec![1.0; part.rows()];
-            part.dual().apply(&x, &mut x.clone(), &mut part.dual().scratch());
+            part.dual.apply(&x, &mut x.clone(), &mut part.dual.scratch());
             let received = system.traffic().received - before;
             (asked, part.rows(), received)
         });
