@@ -6,19 +6,10 @@
 
 use crate::element::{Block, TetNodes};
 use crate::material::Hooke;
+use crate::mesh::MeshError;
 use crate::tables::{Lists, distinct};
 use rayon::prelude::*;
 use sprs::CsMat;
-
-errors! {
-    /// A stiffness that cannot be assembled.
-    #[derive(Clone, PartialEq, Eq)]
-    AssemblyError {
-        NodeOutOfRange { tet: usize, node: u32, nodes: usize } =
-            "tetrahedron {tet} names node {node}, but there are only {nodes} nodes; give the nodes and tetrahedra of \
-            the same mesh or subdomain";
-    }
-}
 
 /// Assembles the stiffness of linear tetrahedra, given by four nodes, or of quadratic ones, given by ten.
 ///
@@ -28,19 +19,19 @@ errors! {
 /// of nodes that share a tetrahedron has a stored 3 x 3 block, zeros included.
 ///
 /// # Errors
-/// [`AssemblyError::NodeOutOfRange`] if a tetrahedron names a node that does not exist.
+/// [`MeshError::NodeOutOfRange`] if a tetrahedron names a node that does not exist.
 pub fn assemble_stiffness<'h, const N: usize>(
     points: &[[f64; 3]],
     tets: &[[u32; N]],
     hooke: impl Fn(usize) -> &'h Hooke + Sync,
-) -> Result<CsMat<f64>, AssemblyError>
+) -> Result<CsMat<f64>, MeshError>
 where
     [u32; N]: TetNodes,
 {
     let nodes = points.len();
     for (tet, t) in tets.iter().enumerate() {
         if let Some(&node) = t.iter().find(|&&n| n as usize >= nodes) {
-            return Err(AssemblyError::NodeOutOfRange { tet, node, nodes });
+            return Err(MeshError::NodeOutOfRange { tet, node, nodes });
         }
     }
     let pattern = Pattern::new(nodes, tets);

@@ -60,7 +60,7 @@
 //! # What can go wrong
 //!
 //! Every type checks its input on construction and returns a typed error that names the place and a remedy:
-//! [`MeshError`], [`brick::BrickError`], [`HookeError`], [`MaterialError`], [`AssemblyError`], [`DecompositionError`],
+//! [`MeshError`], [`brick::BrickError`], [`HookeError`], [`MaterialError`], [`DecompositionError`],
 //! [`SurfaceError`], [`LoadError`], [`HistoryError`], [`FieldError`]. `{:?}` prints the same message as `{}`, so that a
 //! `main` that returns an error shows it. Later operations rely on these checks and do not repeat them. Accessors
 //! panic if an index is out of range, like slices.
@@ -95,7 +95,7 @@ mod tolerances;
 #[doc(hidden)]
 pub mod vec3;
 
-pub use assembly::{AssemblyError, assemble_stiffness};
+pub use assembly::assemble_stiffness;
 pub use decomposition::{Decomposition, DecompositionError};
 pub use element::Element;
 pub use fields::FieldError;

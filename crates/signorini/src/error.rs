@@ -23,7 +23,6 @@ fem::errors! {
         Brick(fem::brick::BrickError),
         Hooke(fem::HookeError),
         Material(fem::MaterialError),
-        Assembly(fem::AssemblyError),
         Decomposition(fem::DecompositionError),
         History(fem::HistoryError),
         Load(fem::LoadError),

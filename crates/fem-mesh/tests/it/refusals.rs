@@ -7,9 +7,8 @@ use signorini_fem_mesh::fields::{FieldError, nodal_average, strains, stresses};
 use signorini_fem_mesh::mesh::{drop_unused_nodes, orient_tets};
 use signorini_fem_mesh::recovery::discretisation_error;
 use signorini_fem_mesh::{
-    AssemblyError, Decomposition, DecompositionError, Facet, FacetTag, History, HistoryError, Hooke, HookeError,
-    LoadDensity, LoadError, MaterialError, Materials, MeshError, Surface, SurfaceError, TetMesh, assemble_load,
-    assemble_stiffness,
+    Decomposition, DecompositionError, Facet, FacetTag, History, HistoryError, Hooke, HookeError, LoadDensity,
+    LoadError, MaterialError, Materials, MeshError, Surface, SurfaceError, TetMesh, assemble_load, assemble_stiffness,
 };
 
 const UNIT: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -264,7 +263,7 @@ fn assembly_and_fields() {
     let mesh = brick();
     let law = Hooke::isotropic(1.0, 0.3).unwrap();
     let error = assemble_stiffness(&mesh.points()[..5], mesh.tets(), |_| &law).unwrap_err();
-    assert!(matches!(error, AssemblyError::NodeOutOfRange { nodes: 5, .. }));
+    assert!(matches!(error, MeshError::NodeOutOfRange { nodes: 5, .. }));
     let small = Brick::new([1.0; 3], [1; 3]).build().unwrap();
     let rest = vec![0.0; 3 * mesh.points().len()];
     let estimate = discretisation_error(&mesh, &law.into(), &rest).unwrap();
