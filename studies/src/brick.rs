@@ -183,7 +183,7 @@ impl Block {
         let mut loads = Vec::new();
         for (tag, value, table) in [top, end] {
             if value != [0.0; 3] {
-                let density = LoadDensity::traction(tag, value.map(|v| v * self.pascal));
+                let density = LoadDensity::Traction(tag, value.map(|v| v * self.pascal));
                 loads.push((density, History::table(table.clone())?));
             }
         }

@@ -36,7 +36,7 @@
 //! let stiffness = assemble_stiffness(&first.points(&mesh), &first.tets, |_| &steel)?;
 //! assert_eq!(stiffness.shape(), (648, 648));
 //!
-//! let pressure = LoadDensity::pressure(Z_MAX, 1e6);
+//! let pressure = LoadDensity::Pressure(Z_MAX, 1e6);
 //! let forces = assemble_load(&mesh, &parts, &pressure)?;
 //! let resultant: f64 = forces.iter().flatten().sum();
 //! assert!((resultant + 3e6).abs() < 1e-6);

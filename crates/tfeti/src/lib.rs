@@ -33,7 +33,7 @@
 //! let supports = [NodeSupport::fixed(mesh.nodes_on(brick::X_MIN))];
 //! let system = TfetiBuilder::new(&mesh, &decomposition, &materials).with_supports(&supports).build()?;
 //!
-//! let load = LoadDensity::traction(brick::Z_MAX, [0.0, 0.0, -1.0e6]);
+//! let load = LoadDensity::Traction(brick::Z_MAX, [0.0, 0.0, -1.0e6]);
 //! let response = system.load_response(&assemble_load(&mesh, &decomposition, &load)?)?;
 //! let factor = system.coarse_factor()?;
 //! let mut scratch = factor.scratch();

@@ -41,7 +41,7 @@ fn pair(part: f64) -> Result<Setup, Failure> {
     let mesh = mesh.append(&other)?;
     let parts = mesh.components();
     let setup = block.setup_on(mesh, Materials::uniform(block.material()?))?;
-    let traction = |tag, value: [f64; 3]| LoadDensity::traction(own(tag), value.map(|v| part * v));
+    let traction = |tag, value: [f64; 3]| LoadDensity::Traction(own(tag), value.map(|v| part * v));
     Ok(setup
         .map(|s| s.with_parts_as_given(parts))
         .with_load(traction(brick::Z_MAX, block.top), History::table(block.top_history)?)
@@ -66,7 +66,7 @@ pub(crate) fn free() -> Vec<Case> {
         |name: &str, hard, lengths, coefficient, top| Case::brick(GROUP, name, hard, loose(lengths, coefficient, top));
     let incline = |name: &str, hard, at: [f64; 3]| {
         Case::new(GROUP, name, hard, move || {
-            let weight = LoadDensity::body([3e6, 0.0, -9e6]);
+            let weight = LoadDensity::Body([3e6, 0.0, -9e6]);
             let setup = loose(flat, 0.0, [0.0; 3]).setup()?;
             let setup = setup.with_load(weight, History::constant(1.0));
             let node = vec![node_near(&setup.scene, at)];

@@ -185,7 +185,7 @@ fn patch(shear: f64) -> Result<Setup, Failure> {
         steps: 2,
         ..Block::default()
     };
-    let side = LoadDensity::traction(brick::X_MIN, [0.0, 0.0, -shear]);
+    let side = LoadDensity::Traction(brick::X_MIN, [0.0, 0.0, -shear]);
     Ok(block.setup()?.with_load(side, History::table(RAMP.to_vec())?))
 }
 

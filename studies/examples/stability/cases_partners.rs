@@ -44,7 +44,7 @@ impl Stack {
         let materials = (0..self.blocks)
             .map(|k| Ok((k as u32, hooke(k)?)))
             .collect::<Result<Vec<_>, Error>>()?;
-        let top = LoadDensity::traction(
+        let top = LoadDensity::Traction(
             of(self.blocks - 1, brick::Z_MAX),
             [self.push * PRESSURE, 0.0, -PRESSURE],
         );

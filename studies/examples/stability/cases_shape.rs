@@ -28,11 +28,11 @@ fn plate() -> Result<Setup, Failure> {
     let mesh = Brick::new([1.0, 1.0, 0.02], [32, 32, 1]).build()?;
     let loads = vec![
         (
-            LoadDensity::traction(brick::Z_MAX, [0.0, 0.0, -1e4]),
+            LoadDensity::Traction(brick::Z_MAX, [0.0, 0.0, -1e4]),
             History::constant(1.0),
         ),
         (
-            LoadDensity::traction(brick::X_MAX, [0.0, 1e5, 0.0]),
+            LoadDensity::Traction(brick::X_MAX, [0.0, 1e5, 0.0]),
             History::ramp(1.0, 1.0)?,
         ),
     ];

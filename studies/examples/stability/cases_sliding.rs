@@ -68,14 +68,14 @@ impl Sliding {
         // low enough not to tip the upper cube, as a body force on the cube alone is
         let push = self.aside * self.coefficient * PRESSURE;
         let aside = [push * ASIDE[0], push * ASIDE[1], 0.0];
-        let aside = if self.on_cube { LoadDensity::traction(top, aside) } else { LoadDensity::body(aside) };
+        let aside = if self.on_cube { LoadDensity::Traction(top, aside) } else { LoadDensity::Body(aside) };
         let (ramp, wave) = if self.steps == 0 {
             (History::constant(1.0), History::constant(1.0))
         } else {
             let up = History::table(vec![(0.0, 0.5), (0.2, 1.0), (1.0, 1.0)])?;
             (up, History::function(|t| (6.0 * t).sin()))
         };
-        let loads = vec![(LoadDensity::traction(top, [0.0, 0.0, -PRESSURE]), ramp), (aside, wave)];
+        let loads = vec![(LoadDensity::Traction(top, [0.0, 0.0, -PRESSURE]), ramp), (aside, wave)];
         let parts = match self.cut {
             Cut::Boxes(_) => Vec::new(),
             Cut::Scattered(count) => scattered(&mesh, count)?,

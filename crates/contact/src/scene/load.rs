@@ -46,13 +46,13 @@ impl Load {
 
     /// Force per area on a tag, Pa.
     pub fn traction(tag: FacetTag, value: [f64; 3]) -> Self {
-        Self::new(LoadDensity::traction(tag, value))
+        Self::new(LoadDensity::Traction(tag, value))
     }
 
     /// A force on a tag, N, spread evenly over its facets, for instance a bolt force under its head. The sum of the
     /// load is this force to rounding, whatever the area of the facets.
     pub fn force(tag: FacetTag, value: [f64; 3]) -> Self {
-        Self::new(LoadDensity::force(tag, value))
+        Self::new(LoadDensity::Force(tag, value))
     }
 
     /// A moment on a tag, N m, for instance the torque of a shaft at its end. The traction is that of beam theory: it
@@ -72,22 +72,22 @@ impl Load {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn moment(tag: FacetTag, value: [f64; 3]) -> Self {
-        Self::new(LoadDensity::moment(tag, value))
+        Self::new(LoadDensity::Moment(tag, value))
     }
 
     /// Pressure on a tag, Pa, positive into the body.
     pub fn pressure(tag: FacetTag, value: f64) -> Self {
-        Self::new(LoadDensity::pressure(tag, value))
+        Self::new(LoadDensity::Pressure(tag, value))
     }
 
     /// Force per volume, N/m³.
     pub fn body(value: [f64; 3]) -> Self {
-        Self::new(LoadDensity::body(value))
+        Self::new(LoadDensity::Body(value))
     }
 
     /// The same in a region only: the weight of a body, say.
     pub fn body_in(region: u32, value: [f64; 3]) -> Self {
-        Self::new(LoadDensity::body_in(region, value))
+        Self::new(LoadDensity::BodyIn(region, value))
     }
 
     /// A force, N, and a moment, N m, on the reference point of a [coupling](crate::Coupling), by its number in the

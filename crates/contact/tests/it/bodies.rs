@@ -267,7 +267,7 @@ fn a_ball_joint_carries_its_share() {
     let corner = joined([1.0, 1.0, 1.0]);
     let scene = Scene::new(corner, uniform(1e6, 0.3))
         .with_support(Support::fixed(brick::X_MIN))
-        .with_load(Load::new(LoadDensity::pressure(second(brick::Z_MAX), 500.0)));
+        .with_load(Load::new(LoadDensity::Pressure(second(brick::Z_MAX), 500.0)));
     let refused = Simulation::new(scene.clone(), at(1e-9));
     assert!(matches!(refused, Err(ContactError::NotHeld { .. })));
     let held = scene

@@ -189,7 +189,7 @@ fn by_penalties(compliance: [f64; 2]) -> Vec<Vec<f64>> {
     }
     let whole = Decomposition::whole(mesh);
     let load = |tag, traction| {
-        let local = assemble_load(mesh, &whole, &LoadDensity::traction(tag, traction)).expect("load");
+        let local = assemble_load(mesh, &whole, &LoadDensity::Traction(tag, traction)).expect("load");
         DVector::from_vec(local[0].clone())
     };
     let loads = [load(brick::Z_MAX, PUSH), load(brick::X_MAX, PULL)];

@@ -42,7 +42,7 @@ fn scene(seed: u64) -> Scene {
     scene = scene.with_support(Support::partial([corner], skew).with_motion([5e-5, 0.0, 5e-5], ramp()));
     let forces = (0..4).map(|_| (node(&mut dice), vector(&mut dice).map(|c| 1e5 * c)));
     let forces = forces.collect();
-    scene = scene.with_load(Load::new(LoadDensity::nodal_forces(forces)));
+    scene = scene.with_load(Load::new(LoadDensity::NodalForces(forces)));
     if touches {
         scene = scene
             .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3)))

@@ -16,7 +16,7 @@ fn scene(mesh: TetMesh, parts: Vec<u32>, r: &Rotation, shift: [f64; 3], law: Fri
             [q[0] + shift[0], q[1] + shift[1], q[2] + shift[2]]
         })
         .expect("mesh");
-    let traction = |tag, v| Load::new(LoadDensity::traction(tag, turn(r, v)));
+    let traction = |tag, v| Load::new(LoadDensity::Traction(tag, turn(r, v)));
     Scene::new(moved, steel())
         .with_support(Support::fixed(brick::X_MIN))
         .with_load(traction(brick::Z_MAX, [0.0, 4e8, -30e8]).with_history(ramp()))

@@ -19,7 +19,7 @@ fn direct(mesh: &TetMesh) -> Vec<f64> {
     let whole = Decomposition::whole(mesh);
     let mut force = vec![0.0; 3 * mesh.points().len()];
     for (tag, traction) in [(brick::Z_MAX, [0.0, 0.0, -30e8]), (brick::X_MAX, [9e8, 0.0, -15e8])] {
-        let local = assemble_load(mesh, &whole, &LoadDensity::traction(tag, traction));
+        let local = assemble_load(mesh, &whole, &LoadDensity::Traction(tag, traction));
         for (f, l) in force.iter_mut().zip(&local.expect("load")[0]) {
             *f += l;
         }

@@ -23,7 +23,7 @@ fn loads(mesh: &TetMesh, t: f64) -> Vec<[f64; 3]> {
         (brick::Z_MAX, [0.0, 0.0, -30e8], ramp().value(t)),
         (brick::X_MAX, [9e8, 0.0, -15e8], up_down_up().value(t)),
     ] {
-        let local = assemble_load(mesh, &whole, &LoadDensity::traction(tag, traction));
+        let local = assemble_load(mesh, &whole, &LoadDensity::Traction(tag, traction));
         for (node, f) in local.expect("load")[0].chunks_exact(3).enumerate() {
             (0..3).for_each(|c| sum[node][c] += factor * f[c]);
         }

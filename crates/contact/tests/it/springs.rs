@@ -49,7 +49,7 @@ fn direct(factor: f64) -> Vec<f64> {
     let n = 3 * mesh.points().len();
     let mut force = vec![0.0; n];
     for (tag, traction) in [(brick::Z_MAX, [3e7, 1e7, -1e8]), (brick::X_MAX, [2e7, -4e7, 1e7])] {
-        let local = assemble_load(mesh, &whole, &LoadDensity::traction(tag, traction));
+        let local = assemble_load(mesh, &whole, &LoadDensity::Traction(tag, traction));
         force
             .iter_mut()
             .zip(&local.expect("load")[0])

@@ -88,7 +88,7 @@ fn with_friction_points_keep_where_they_stick() {
     for (k, forces) in forces_of[..2].iter().enumerate() {
         let at = (k + 1) as f64;
         let hat = History::table(vec![(at - 1.0, 0.0), (at, 1.0), (at + 1.0, 0.0)]).expect("table");
-        scene = scene.with_load(Load::new(LoadDensity::nodal_forces(forces.clone())).with_history(hat));
+        scene = scene.with_load(Load::new(LoadDensity::NodalForces(forces.clone())).with_history(hat));
     }
     let (simulation, loaded) = run(scene, tight());
     for k in 0..4 {

@@ -24,9 +24,9 @@ fn case(seed: u64) -> Case {
     // pushed down, except for the seeds divisible by 5
     let lift = if seed.is_multiple_of(5) { 3.0 } else { -3.0 };
     let loads = vec![
-        LoadDensity::traction(brick::Z_MAX, vector(2.0, lift)),
-        LoadDensity::traction(brick::X_MAX, vector(1.0, 0.0)),
-        LoadDensity::body(vector(1.0, 0.0)),
+        LoadDensity::Traction(brick::Z_MAX, vector(2.0, lift)),
+        LoadDensity::Traction(brick::X_MAX, vector(1.0, 0.0)),
+        LoadDensity::Body(vector(1.0, 0.0)),
     ];
     let bound = [0.0, 0.05, 0.5, 50.0][(seed % 4) as usize];
     Case {

@@ -180,7 +180,7 @@ impl Loads {
         }
         for (history, (order, forces)) in self.forces {
             let forces = forces.into_iter().collect();
-            out.push((order, Load::new(LoadDensity::nodal_forces(forces)), history));
+            out.push((order, Load::new(LoadDensity::NodalForces(forces)), history));
         }
         out.extend(
             self.bodies

@@ -157,7 +157,7 @@ impl Volume {
                         let (axis, factor) = (self.axes[axis], density * value[0]);
                         LoadDensity::body_field(move |x| scale(factor, arm(x, axis)))
                     }
-                    Kind::Force | Kind::Gravity => LoadDensity::body(value.map(|v| density * v)),
+                    Kind::Force | Kind::Gravity => LoadDensity::Body(value.map(|v| density * v)),
                 };
                 bodies.push((order, density, history));
                 continue;

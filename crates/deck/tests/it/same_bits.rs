@@ -68,7 +68,7 @@ fn two_bodies_with_friction_and_an_amplitude() {
         + "*BOUNDARY\nN5, 1, 3\n*STEP\n*STATIC\n0.25, 1.\n*DSLOAD\nS16, P, 3.\n*CLOAD, AMPLITUDE=BACK\nN12, 1, 0.02\n*END STEP\n";
     let back = vec![(0.0, 0.0), (0.5, 1.0), (1.0, -0.25)];
     let forces = mesh.nodes_on(upper(brick::X_MAX)).into_iter();
-    let pull = LoadDensity::nodal_forces(forces.map(|n| (n, [0.02, 0.0, 0.0])).collect());
+    let pull = LoadDensity::NodalForces(forces.map(|n| (n, [0.02, 0.0, 0.0])).collect());
     let program = Scene::new(mesh, steel())
         .with_support(Support::fixed(brick::Z_MIN))
         .with_load(Load::pressure(upper(brick::Z_MAX), 3.0).with_history(History::ramp(1.0, 1.0).expect("ramp")))

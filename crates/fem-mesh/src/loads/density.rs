@@ -44,29 +44,14 @@ pub enum LoadDensity {
 }
 
 impl LoadDensity {
-    /// The same force per volume everywhere.
-    pub fn body(value: [f64; 3]) -> Self {
-        Self::Body(value)
-    }
-
     /// Force per volume that depends on the point.
     pub fn body_field(value: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static) -> Self {
         Self::BodyField(Function(Arc::new(value)))
     }
 
-    /// The same force per volume in a region.
-    pub fn body_in(region: u32, value: [f64; 3]) -> Self {
-        Self::BodyIn(region, value)
-    }
-
     /// Force per volume that depends on the point, in a region.
     pub fn body_field_in(region: u32, value: impl Fn([f64; 3]) -> [f64; 3] + Send + Sync + 'static) -> Self {
         Self::BodyFieldIn(region, Function(Arc::new(value)))
-    }
-
-    /// The same force per area on all facets of a tag.
-    pub fn traction(tag: FacetTag, value: [f64; 3]) -> Self {
-        Self::Traction(tag, value)
     }
 
     /// Force per area that depends on the point and the outward unit normal.
@@ -75,21 +60,6 @@ impl LoadDensity {
         value: impl Fn([f64; 3], [f64; 3]) -> [f64; 3] + Send + Sync + 'static,
     ) -> Self {
         Self::TractionField(tag, Function(Arc::new(value)))
-    }
-
-    /// Pressure, positive into the body.
-    pub fn pressure(tag: FacetTag, value: f64) -> Self {
-        Self::Pressure(tag, value)
-    }
-
-    /// A force, spread evenly over all facets of a tag.
-    pub fn force(tag: FacetTag, value: [f64; 3]) -> Self {
-        Self::Force(tag, value)
-    }
-
-    /// A moment without a force, spread linearly over all facets of a tag.
-    pub fn moment(tag: FacetTag, value: [f64; 3]) -> Self {
-        Self::Moment(tag, value)
     }
 
     /// The facets that it acts on; `None` for volumes and nodes.
@@ -104,11 +74,6 @@ impl LoadDensity {
                 None
             }
         }
-    }
-
-    /// Forces at single nodes.
-    pub fn nodal_forces(forces: Vec<(u32, [f64; 3])>) -> Self {
-        Self::NodalForces(forces)
     }
 }
 

@@ -43,13 +43,13 @@ fn constant_loads() {
     let mesh = brick();
     for boxes in [[1, 1, 1], [3, 1, 2]] {
         // Volume 6 with centre (1.5, 0.5, 1); top of area 3 at z = 2.
-        let body = LoadDensity::body([0.0, 0.0, -2.0]);
+        let body = LoadDensity::Body([0.0, 0.0, -2.0]);
         check(resultant(&mesh, boxes, &body), [0.0, 0.0, -12.0], [-6.0, 18.0, 0.0]);
-        let top = LoadDensity::traction(Z_MAX, [1.0, 0.0, -1.0]);
+        let top = LoadDensity::Traction(Z_MAX, [1.0, 0.0, -1.0]);
         check(resultant(&mesh, boxes, &top), [3.0, 0.0, -3.0], [-1.5, 10.5, -1.5]);
-        let sum = LoadDensity::force(Z_MAX, [3.0, 0.0, -3.0]);
+        let sum = LoadDensity::Force(Z_MAX, [3.0, 0.0, -3.0]);
         check(resultant(&mesh, boxes, &sum), [3.0, 0.0, -3.0], [-1.5, 10.5, -1.5]);
-        let pressed = LoadDensity::pressure(X_MAX, 4.0);
+        let pressed = LoadDensity::Pressure(X_MAX, 4.0);
         check(resultant(&mesh, boxes, &pressed), [-8.0, 0.0, 0.0], [0.0, -8.0, 4.0]);
     }
 }
@@ -68,7 +68,7 @@ fn loads_of_regions() {
     let mesh = mesh.with_regions(regions).unwrap();
     for mesh in [mesh.clone(), mesh.raise_order().unwrap()] {
         let of = |load: LoadDensity| resultant(&mesh, [3, 1, 2], &load);
-        let own = of(LoadDensity::body_in(1, [0.0, 0.0, -2.0]));
+        let own = of(LoadDensity::BodyIn(1, [0.0, 0.0, -2.0]));
         assert_abs_diff_eq!(own.0[2], -2.0 * volume, epsilon = 1e-12);
         let field = |x: [f64; 3]| [x[0], 0.0, 0.0];
         let parts = [0, 1].map(|region| of(LoadDensity::body_field_in(region, field)).0[0]);
@@ -78,7 +78,7 @@ fn loads_of_regions() {
             epsilon = 1e-12
         );
         let parts = Decomposition::whole(&mesh);
-        let error = assemble_load(&mesh, &parts, &LoadDensity::body_in(7, [1.0; 3])).unwrap_err();
+        let error = assemble_load(&mesh, &parts, &LoadDensity::BodyIn(7, [1.0; 3])).unwrap_err();
         assert_eq!(
             error,
             LoadError::UnknownRegion {
@@ -105,7 +105,7 @@ fn varying_loads() {
     assert_abs_diff_eq!(found.0[2], 2.0, epsilon = 1e-12);
     // The same pressure as a function and as a constant.
     let by_function = LoadDensity::traction_field(Z_MIN, |_, n| n.map(|c| -7.0 * c));
-    let by_value = LoadDensity::pressure(Z_MIN, 7.0);
+    let by_value = LoadDensity::Pressure(Z_MIN, 7.0);
     let (a, b) = (
         resultant(&mesh, [1; 3], &by_function),
         resultant(&mesh, [1; 3], &by_value),
@@ -126,12 +126,12 @@ fn moments_have_no_force() {
     let moment = [0.7, -2.0, 3.0];
     for mesh in [brick(), linear, quadratic] {
         for tag in [X_MAX, Z_MIN, Z_MAX] {
-            let found = resultant(&mesh, [3, 1, 2], &LoadDensity::moment(tag, moment));
+            let found = resultant(&mesh, [3, 1, 2], &LoadDensity::Moment(tag, moment));
             check(found, [0.0; 3], moment);
         }
     }
     // pure bending of a side of 1 x 2: the tractions of the beam, M z / (b h^3 / 12) along x
-    let bending = LoadDensity::moment(X_MAX, [0.0, 4.0, 0.0]);
+    let bending = LoadDensity::Moment(X_MAX, [0.0, 4.0, 0.0]);
     let beam = LoadDensity::traction_field(X_MAX, |[_, _, z], _| [4.0 * (z - 1.0) * 1.5, 0.0, 0.0]);
     let straight = Brick::new([3.0, 1.0, 2.0], [6, 2, 4]).build().unwrap();
     let parts = Decomposition::whole(&straight);
@@ -147,9 +147,9 @@ fn nodal_forces_act_once() {
     let shared = (0..mesh.points().len() as u32).collect::<Vec<_>>();
     let forces = shared.iter().map(|&n| (n, [1.0, 2.0, 3.0])).collect();
     let n = shared.len() as f64;
-    let (force, _) = resultant(&mesh, [3, 1, 2], &LoadDensity::nodal_forces(forces));
+    let (force, _) = resultant(&mesh, [3, 1, 2], &LoadDensity::NodalForces(forces));
     assert_eq!(force, [n, 2.0 * n, 3.0 * n]);
-    let twice = LoadDensity::nodal_forces(vec![(4, [1.0; 3]), (4, [1.0; 3])]);
+    let twice = LoadDensity::NodalForces(vec![(4, [1.0; 3]), (4, [1.0; 3])]);
     assert_eq!(resultant(&mesh, [3, 1, 2], &twice).0, [2.0; 3]);
 }
 
@@ -157,7 +157,7 @@ fn nodal_forces_act_once() {
 fn a_third_of_each_triangle_goes_to_its_nodes() {
     let mesh = brick();
     let parts = Decomposition::whole(&mesh);
-    let load = &assemble_load(&mesh, &parts, &LoadDensity::pressure(Z_MIN, 1.0)).unwrap()[0];
+    let load = &assemble_load(&mesh, &parts, &LoadDensity::Pressure(Z_MIN, 1.0)).unwrap()[0];
     let surface = signorini_fem_mesh::Surface::new(&mesh, &[Z_MIN]).unwrap();
     for (&node, area) in surface.nodes().iter().zip(surface.areas()) {
         assert_abs_diff_eq!(load[3 * node as usize + 2], area, epsilon = 1e-15);

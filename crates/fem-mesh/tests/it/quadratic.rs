@@ -228,13 +228,13 @@ fn loads_do_the_work_of_quadratic_displacements() {
         (&|p: [f64; 3]| p[0] * p[1], 1.0, 1.0),
         (&|p: [f64; 3]| p[0] * p[0], 8.0 / 3.0, 8.0 / 3.0),
     ] {
-        let body = work(LoadDensity::body([1.0, 2.0, 3.0]), u);
+        let body = work(LoadDensity::Body([1.0, 2.0, 3.0]), u);
         (0..3).for_each(|c| close(body[c], (c + 1) as f64 * volume, 8.0, 1e-13));
-        let traction = work(LoadDensity::traction(Z_MAX, [1.0, 2.0, 3.0]), u);
+        let traction = work(LoadDensity::Traction(Z_MAX, [1.0, 2.0, 3.0]), u);
         (0..3).for_each(|c| close(traction[c], (c + 1) as f64 * top, 8.0, 1e-13));
-        close(work(LoadDensity::pressure(Z_MAX, 3.0), u)[2], -3.0 * top, 8.0, 1e-13);
+        close(work(LoadDensity::Pressure(Z_MAX, 3.0), u)[2], -3.0 * top, 8.0, 1e-13);
         close(
-            work(LoadDensity::force(Z_MAX, [0.0, 0.0, 5.0]), u)[2],
+            work(LoadDensity::Force(Z_MAX, [0.0, 0.0, 5.0]), u)[2],
             2.5 * top,
             8.0,
             1e-13,
@@ -249,7 +249,7 @@ fn loads_do_the_work_of_quadratic_displacements() {
         close(work(along, u)[2], top, 8.0, 1e-13);
     }
     // constant: nothing at corners
-    let force = &assemble_load(&mesh, &parts, &LoadDensity::pressure(Z_MAX, 1.0)).unwrap()[0];
+    let force = &assemble_load(&mesh, &parts, &LoadDensity::Pressure(Z_MAX, 1.0)).unwrap()[0];
     let corners: std::collections::BTreeSet<u32> = mesh.tets().iter().flatten().copied().collect();
     assert!(corners.iter().all(|&n| force[3 * n as usize + 2].abs() < 1e-16));
 }
@@ -263,7 +263,7 @@ fn pressure_on_a_closed_curved_surface_has_no_sum() {
         for (part, forces) in parts
             .subdomains()
             .iter()
-            .zip(assemble_load(&mesh, &parts, &LoadDensity::pressure(tag, 1.0)).unwrap())
+            .zip(assemble_load(&mesh, &parts, &LoadDensity::Pressure(tag, 1.0)).unwrap())
         {
             for (f, p) in forces.chunks_exact(3).zip(part.points(&mesh)) {
                 (0..3).for_each(|c| sum[c] += f[c]);
@@ -275,7 +275,7 @@ fn pressure_on_a_closed_curved_surface_has_no_sum() {
         sum.iter().all(|s| s.abs() < 1e-13) && moment.abs() < 1e-13,
         "{sum:?} {moment}"
     );
-    let force = assemble_load(&mesh, &parts, &LoadDensity::force(Z_MIN, [4.0, 0.0, 0.0])).unwrap();
+    let force = assemble_load(&mesh, &parts, &LoadDensity::Force(Z_MIN, [4.0, 0.0, 0.0])).unwrap();
     close(force.iter().flatten().sum(), 4.0, 4.0, 1e-13);
 }
 
@@ -345,7 +345,7 @@ fn means_have_the_weights_of_hat_and_dual_functions() {
             close(areas[own] * other[0], areas[(own + 1) % 3] * back, areas[own], 1e-14);
         }
     }
-    let force = assemble_load(&bent, &Decomposition::whole(&bent), &LoadDensity::pressure(Z_MIN, 1.0)).unwrap();
+    let force = assemble_load(&bent, &Decomposition::whole(&bent), &LoadDensity::Pressure(Z_MIN, 1.0)).unwrap();
     // hats sum to one: so do integrals of normals
     let sum = (0..surface.triangles().len()).flat_map(|t| (0..3).map(move |k| (t, k)));
     let normal: f64 = sum.map(|(t, k)| surface.corner_area(&bent, t, k).1[2]).sum();

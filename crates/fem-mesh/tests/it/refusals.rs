@@ -350,29 +350,29 @@ fn loads() {
     let parts = Decomposition::whole(&mesh);
     let error = |load: LoadDensity| assemble_load(&mesh, &parts, &load).unwrap_err();
     let nan = [0.0, f64::NAN, 0.0];
-    assert!(matches!(error(LoadDensity::body(nan)), LoadError::NotFinite { .. }));
+    assert!(matches!(error(LoadDensity::Body(nan)), LoadError::NotFinite { .. }));
     assert!(matches!(
-        error(LoadDensity::traction(Z_MIN, nan)),
+        error(LoadDensity::Traction(Z_MIN, nan)),
         LoadError::NotFinite { .. }
     ));
     assert!(matches!(
-        error(LoadDensity::pressure(Z_MIN, f64::INFINITY)),
+        error(LoadDensity::Pressure(Z_MIN, f64::INFINITY)),
         LoadError::NotFinite { .. }
     ));
     let pole = LoadDensity::body_field(|[x, _, _]| [if x > 1.9 { f64::NAN } else { 0.0 }; 3]);
     assert!(matches!(error(pole), LoadError::NotFinite { place, .. } if place[0] > 1.9));
     assert!(matches!(
-        error(LoadDensity::force(Z_MIN, nan)),
+        error(LoadDensity::Force(Z_MIN, nan)),
         LoadError::NotFinite { .. }
     ));
     assert!(matches!(
-        error(LoadDensity::moment(Z_MIN, nan)),
+        error(LoadDensity::Moment(Z_MIN, nan)),
         LoadError::NotFinite { .. }
     ));
     for missing in [
-        LoadDensity::traction(FacetTag(77), [1.0; 3]),
-        LoadDensity::force(FacetTag(77), [1.0; 3]),
-        LoadDensity::moment(FacetTag(77), [1.0; 3]),
+        LoadDensity::Traction(FacetTag(77), [1.0; 3]),
+        LoadDensity::Force(FacetTag(77), [1.0; 3]),
+        LoadDensity::Moment(FacetTag(77), [1.0; 3]),
     ] {
         assert!(matches!(
             error(missing),
@@ -381,16 +381,16 @@ fn loads() {
     }
     let bare = TetMesh::new(mesh.points().to_vec(), mesh.tets().to_vec(), vec![]).unwrap();
     for (mesh, tags) in [(&mesh, "the tags 1, 2, 3, 4, 5, 6"), (&bare, "no tags")] {
-        let load = LoadDensity::pressure(FacetTag(77), 1.0);
+        let load = LoadDensity::Pressure(FacetTag(77), 1.0);
         assert_eq!(
             assemble_load(mesh, &parts, &load).unwrap_err().to_string(),
             format!("a load is given on tag 77, but no facet has it; the mesh has {tags}")
         );
     }
-    let nowhere = LoadDensity::nodal_forces(vec![(99, [1.0; 3])]);
+    let nowhere = LoadDensity::NodalForces(vec![(99, [1.0; 3])]);
     assert_eq!(error(nowhere), LoadError::UnknownNode { node: 99, nodes: 12 });
     let other = Brick::new([1.0; 3], [1; 3]).build().unwrap();
-    let foreign = assemble_load(&other, &parts, &LoadDensity::body([1.0; 3])).unwrap_err();
+    let foreign = assemble_load(&other, &parts, &LoadDensity::Body([1.0; 3])).unwrap_err();
     assert_eq!(
         foreign,
         LoadError::ForeignDecomposition {

@@ -19,16 +19,16 @@ pub(crate) fn history(course: &Course) -> Result<History, Error> {
 
 fn load(density: &Density) -> Load {
     Load::new(match density.clone() {
-        Density::Body(value) => LoadDensity::body(value),
+        Density::Body(value) => LoadDensity::Body(value),
         Density::BodyField(field) => LoadDensity::body_field(move |x| field.map(|p| p.value(x))),
-        Density::Traction(tag, value) => LoadDensity::traction(tag, value),
+        Density::Traction(tag, value) => LoadDensity::Traction(tag, value),
         Density::TractionField(tag, field, pull) => LoadDensity::traction_field(tag, move |x, n: Vec3| {
             add(field.map(|p| p.value(x)), scale(pull.value(x), n))
         }),
-        Density::Pressure(tag, value) => LoadDensity::pressure(tag, value),
-        Density::Nodes(forces) => LoadDensity::nodal_forces(forces),
-        Density::Force(tag, value) => LoadDensity::force(tag, value),
-        Density::Moment(tag, value) => LoadDensity::moment(tag, value),
+        Density::Pressure(tag, value) => LoadDensity::Pressure(tag, value),
+        Density::Nodes(forces) => LoadDensity::NodalForces(forces),
+        Density::Force(tag, value) => LoadDensity::Force(tag, value),
+        Density::Moment(tag, value) => LoadDensity::Moment(tag, value),
         Density::Eigenstrain(strain, region, factors) => {
             let strain = Eigenstrain::new(strain).with_factors(factors);
             return Load::eigenstrain(match region {

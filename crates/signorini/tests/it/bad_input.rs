@@ -202,7 +202,7 @@ fn decompositions_supports_and_loads() {
             good().with_load(Load::new(LoadDensity::body_field(|x| [1.0 / (x[0] - x[0]), 0.0, 0.0])))
         ) => Error::Contact(ContactError::Load { index: 1, .. }), "load 1";
         "a force at an unknown node": attempt(
-            good().with_load(Load::new(LoadDensity::nodal_forces(vec![(77, [1.0; 3])])))
+            good().with_load(Load::new(LoadDensity::NodalForces(vec![(77, [1.0; 3])])))
         ) => Error::Contact(ContactError::Load { index: 1, source: LoadError::UnknownNode { node: 77, .. } }), "node 77";
         "a load history that is NaN": attempt(
             good().with_load(Load::body([1.0; 3]).with_history(History::function(|t| (t - 2.0).sqrt())))

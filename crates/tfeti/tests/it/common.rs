@@ -67,8 +67,8 @@ impl Brick {
     }
 
     pub(crate) fn loads(&self) -> Vec<Vec<f64>> {
-        let top = LoadDensity::traction(brick::Z_MAX, [0.0, 0.0, -3.0e7]);
-        let side = LoadDensity::traction(brick::X_MAX, [9.0e6, 1.0e6, -1.5e7]);
+        let top = LoadDensity::Traction(brick::Z_MAX, [0.0, 0.0, -3.0e7]);
+        let side = LoadDensity::Traction(brick::X_MAX, [9.0e6, 1.0e6, -1.5e7]);
         let mut loads = assemble_load(&self.mesh, &self.decomposition, &top).unwrap();
         let more = assemble_load(&self.mesh, &self.decomposition, &side).unwrap();
         for (a, b) in loads.iter_mut().zip(&more) {

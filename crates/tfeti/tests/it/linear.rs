@@ -135,7 +135,7 @@ fn direct(b: &Brick, prescribed: &dyn Fn(u32) -> Option<[f64; 3]>, loads: &LoadD
 fn tfeti_equals_a_direct_solve() {
     for n in [1, 2] {
         let b = Brick::new(n, 5);
-        let load = LoadDensity::traction(brick::Z_MAX, [1.0e6, -2.0e6, -3.0e7]);
+        let load = LoadDensity::Traction(brick::Z_MAX, [1.0e6, -2.0e6, -3.0e7]);
         let loads = assemble_load(&b.mesh, &b.decomposition, &load).unwrap();
         let reference = direct(&b, &|node| b.fixed.binary_search(&node).ok().map(|_| [0.0; 3]), &load);
         {
@@ -173,7 +173,7 @@ fn prescribed_displacement_is_reached() {
         &zero,
         &system.prescribed_offsets(Vec::new(), &[(0, 2.0)]),
     );
-    let none = LoadDensity::body([0.0; 3]);
+    let none = LoadDensity::Body([0.0; 3]);
     let value = |node: u32| {
         let moved = right.binary_search(&node).ok().map(|_| pull.map(|v| 2.0 * v));
         moved.or_else(|| b.fixed.binary_search(&node).ok().map(|_| [0.0; 3]))
