@@ -228,7 +228,8 @@ impl Plan {
         let contact = plan.normal_rows + plan.tangential_rows;
         let formed = active_sets && settings.preconditioner != Preconditioner::None;
         if formed && may_be_formed(plan.dual(), contact, subdomains) {
-            plan.formed_bytes = row_groups(scene, discrete, &points).bytes(forecast.largest_boundary());
+            let largest = forecast.classes.iter().map(|class| class.boundary).max();
+            plan.formed_bytes = row_groups(scene, discrete, &points).bytes(largest.unwrap_or(0));
         }
         let sizes = [plan.dual(), primal, plan.steps];
         let tets = elements as f64 / subdomains.max(1) as f64;

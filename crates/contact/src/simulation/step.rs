@@ -116,7 +116,7 @@ impl Simulation {
             report.slide = slide.filter(|slide| slide.force > least);
         }
         Ok(StepResult {
-            summary: summarise(model, problem, &recovered, &self.iterate.lambda, state.last_trace())?,
+            summary: summarise(model, problem, &recovered, &self.iterate.lambda, &state.trace[0])?,
             model: model.clone(),
             caches: self.caches.clone(),
             problem: problem.clone(),

@@ -127,11 +127,6 @@ impl State {
         (get(&self.trace[0]), get(&self.trace[1]))
     }
 
-    /// The last trace of all of them; empty before the start.
-    pub(crate) fn last_trace(&self) -> &[f64] {
-        &self.trace[0]
-    }
-
     /// Takes over the multipliers of a step, their products with this F, and the multiplier of the coarse equality.
     /// Returns the multipliers and products that are not needed any more, for their memory.
     pub(crate) fn push(

@@ -136,15 +136,11 @@ impl Size {
         (self.factor as f64 * per_number + self.dim as f64 * 6e-9) * self.members as f64
     }
 
-    /// Seconds to form the dense matrix besides the factor.
-    fn dense_setup(&self) -> f64 {
-        self.factor as f64 * 0.14e-9 * self.boundary as f64
-    }
-
     /// Whether a dense boundary matrix pays within so many products; `resident` tells that all of them stay in cache.
     pub(crate) fn prefers_dense(&self, products: usize, resident: bool) -> bool {
         let saved = self.sparse_product() - self.dense_product(bandwidth(resident));
-        products as f64 * saved > self.dense_setup()
+        // seconds to form the dense matrix besides the factor
+        products as f64 * saved > self.factor as f64 * 0.14e-9 * self.boundary as f64
     }
 }
 

@@ -133,12 +133,6 @@ impl<'a> Forecast<'a> {
         Ok(*self.coarse.insert(CoarseForecast { bytes, flops }))
     }
 
-    /// Most unknowns of a subdomain that rows touch.
-    #[doc(hidden)]
-    pub fn largest_boundary(&self) -> usize {
-        self.classes.iter().map(|class| class.boundary).max().unwrap_or(0)
-    }
-
     /// Operations of a product with `F`.
     pub fn product_flops(&self) -> f64 {
         self.classes.iter().map(|c| c.members as f64 * c.flops()).sum()

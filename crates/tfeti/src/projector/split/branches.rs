@@ -26,13 +26,13 @@ pub(super) enum Pass {
 /// The branches of all ranks.
 #[derive(Debug)]
 pub(crate) struct Branches {
-    exchange: Arc<Exchange>,
+    pub(super) exchange: Arc<Exchange>,
     /// The rank of each region; `None` at the top.
     ranks: Vec<Option<u32>>,
     /// By rank and place.
     all: Vec<Branch>,
     /// Parts of the ranks in messages of unknowns, and of sums and blocks of the top.
-    unknowns: Vec<Range<usize>>,
+    pub(super) unknowns: Vec<Range<usize>>,
     sums: Vec<Range<usize>>,
     /// Whether all blocks of branches belong to their ranks; then the blocks of the top, by rank.
     is_within: bool,
@@ -170,11 +170,6 @@ impl Branches {
         for (k, start) in others.flat_map(places) {
             y[start..start + 6].copy_from_slice(&message[k..k + 6]);
         }
-    }
-
-    /// Completes the unknowns of all branches.
-    pub(super) fn gather_unknowns(&self, message: &mut [f64]) {
-        self.exchange.gather(message, &self.unknowns);
     }
 
     /// Brings what the branches do to the top to all ranks, only of nodes that change if `changing`; an error of one

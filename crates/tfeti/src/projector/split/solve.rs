@@ -39,7 +39,7 @@ impl SplitBase {
         for (k, start) in branches.of(true).flat_map(places) {
             message[k].copy_from_slice(&y[start..start + 6]);
         }
-        branches.gather_unknowns(message.as_flattened_mut());
+        branches.exchange.gather(message.as_flattened_mut(), &branches.unknowns);
         for (k, start) in branches.of(false).flat_map(places) {
             y[start..start + 6].copy_from_slice(&message[k]);
         }
