@@ -184,23 +184,18 @@ fn body(
     let rule = quadrature::tetrahedron();
     let of_subdomain = |subdomain: &Subdomain| {
         let mut vector = vec![0.0; subdomain.dofs()];
-        let quadratic = subdomain.elements.iter().zip(subdomain.quadratic_tets());
-        for (&element, tet) in quadratic.filter(|(element, _)| is_inside(**element)) {
-            let points = mesh.quadratic_points(element as usize);
-            accumulate(&mut vector, &tet, density.quadratic_forces(&points, &rule)?);
-        }
-        if mesh.order() == 2 {
-            return Ok(vector);
-        }
-        let linear = subdomain.elements.iter().zip(&subdomain.tets);
-        for (&element, tet) in linear.filter(|(element, _)| is_inside(**element)) {
-            let points = mesh.tet_points(element as usize);
-            let volume = mesh.volume(element as usize);
-            accumulate(
-                &mut vector,
-                tet,
-                density.nodal_forces(&points, [0.0; 3], volume, &rule)?,
-            );
+        let quadratic = subdomain.quadratic_tets();
+        let elements = subdomain.elements.iter().enumerate();
+        for (local, &element) in elements.filter(|(_, element)| is_inside(**element)) {
+            let element = element as usize;
+            if mesh.order() == 2 {
+                let forces = density.quadratic_forces(&mesh.quadratic_points(element), &rule)?;
+                accumulate(&mut vector, &quadratic[local], forces);
+            } else {
+                let (points, volume) = (mesh.tet_points(element), mesh.volume(element));
+                let forces = density.nodal_forces(&points, [0.0; 3], volume, &rule)?;
+                accumulate(&mut vector, &subdomain.tets[local], forces);
+            }
         }
         Ok(vector)
     };
