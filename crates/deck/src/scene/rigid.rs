@@ -12,7 +12,7 @@ use signorini_fem_mesh::{FacetTag, History};
 
 use super::history::{Histories, Track};
 use super::numbers::Sets;
-use super::rigid_face::{RigidFace, triangles};
+use super::rigid_face::{RigidFace, fan, triangles};
 use super::timeline::Timeline;
 use crate::error::{DeckError, Word};
 use crate::lexer::Named;
@@ -394,10 +394,7 @@ pub(super) fn obstacle(
 
 /// A point and the outward normal of the plane of a surface, if it is flat and all places lie over it.
 fn plane(faces: &[RigidFace], over: &[Vec3]) -> Option<[Vec3; 2]> {
-    let triangles: Vec<[Vec3; 3]> = faces
-        .iter()
-        .flat_map(|face| (1..face.corners.len() - 1).map(|i| [face.corners[0], face.corners[i], face.corners[i + 1]]))
-        .collect();
+    let triangles: Vec<[Vec3; 3]> = faces.iter().flat_map(|face| fan(&face.corners)).collect();
     let largest = triangles
         .iter()
         .map(area_vector)

@@ -148,7 +148,7 @@ pub(super) fn triangles(faces: &[RigidFace]) -> Vec<[Vec3; 3]> {
 }
 
 /// Triangles between the first of some points and each two neighbours.
-fn fan(around: &[Vec3]) -> impl Iterator<Item = [Vec3; 3]> {
+pub(super) fn fan(around: &[Vec3]) -> impl Iterator<Item = [Vec3; 3]> {
     (1..around.len() - 1).map(|i| [around[0], around[i], around[i + 1]])
 }
 
