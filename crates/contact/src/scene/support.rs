@@ -164,27 +164,7 @@ impl Support {
     /// It holds at steps until a time, s, and from then on its nodes are free: a clamp is released. The reaction is
     /// gone at once, at the first step that ends later, however short that is. Between the two steps the scene is set
     /// up anew. That what is left holds the loads is checked beforehand, which takes one more set-up for each such
-    /// time.
-    ///
-    /// ```
-    /// use signorini_contact::{Analysis, Scene, Settings, Simulation, Support};
-    /// use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
-    ///
-    /// // a bar is stretched between two clamps, of which one is then released
-    /// let bar = Brick::new([0.2, 0.02, 0.02], [10, 2, 2]).build()?;
-    /// let pull = Support::fixed(brick::X_MAX).with_motion([1e-4, 0.0, 0.0], History::ramp(1.0, 1.0)?);
-    /// let scene = Scene::new(bar, Materials::uniform(Hooke::isotropic(2e11, 0.3)?))
-    ///     .with_support(Support::fixed(brick::X_MIN))
-    ///     .with_support(pull.with_end(1.0))
-    ///     .with_analysis(Analysis::quasistatic(2.0, 2));
-    /// let mut simulation = Simulation::new(scene, Settings::default())?;
-    /// let stretched = simulation.step()?;
-    /// assert!(stretched.reactions().supports[1].resultant.force[0] > 4e4);
-    /// let released = simulation.step()?;
-    /// assert_eq!(released.reactions().supports[1].resultant.force, [0.0; 3]);
-    /// assert!(released.displacement().iter().all(|u| u[0].abs() < 1e-10));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
+    /// time. The example is that of [`with_start`](Self::with_start).
     pub fn with_end(mut self, time: f64) -> Self {
         self.span.end = Some(time);
         self
@@ -200,19 +180,22 @@ impl Support {
     /// use signorini_contact::{Analysis, Load, Scene, Settings, Simulation, Support};
     /// use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
     ///
-    /// // a bar is pulled, clamped as it is, and the pull is taken away
+    /// // a bar is pulled, clamped as it is while the pull is taken away, and released
     /// let bar = Brick::new([0.2, 0.02, 0.02], [10, 2, 2]).build()?;
     /// let hat = History::table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, 0.0)])?;
     /// let scene = Scene::new(bar, Materials::uniform(Hooke::isotropic(2e11, 0.3)?))
     ///     .with_support(Support::fixed(brick::X_MIN))
-    ///     .with_support(Support::fixed(brick::X_MAX).with_start(1.0))
+    ///     .with_support(Support::fixed(brick::X_MAX).with_start(1.0).with_end(2.0))
     ///     .with_load(Load::force(brick::X_MAX, [4e4, 0.0, 0.0]).with_history(hat))
-    ///     .with_analysis(Analysis::quasistatic(2.0, 2));
+    ///     .with_analysis(Analysis::quasistatic(3.0, 3));
     /// let mut simulation = Simulation::new(scene, Settings::default())?;
     /// simulation.step()?;
     /// let clamped = simulation.step()?;
     /// // the clamp keeps the force
     /// assert!((clamped.reactions().supports[1].resultant.force[0] - 4e4).abs() < 1.0);
+    /// let released = simulation.step()?;
+    /// assert_eq!(released.reactions().supports[1].resultant.force, [0.0; 3]);
+    /// assert!(released.displacement().iter().all(|u| u[0].abs() < 1e-10));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn with_start(mut self, time: f64) -> Self {
