@@ -19,7 +19,8 @@ use sprs::CsMat;
 /// of nodes that share a tetrahedron has a stored 3 x 3 block, zeros included.
 ///
 /// # Errors
-/// [`MeshError::NodeOutOfRange`] if a tetrahedron names a node that does not exist.
+/// [`MeshError::NodeOutOfRange`] if a tetrahedron names a node that does not exist, [`MeshError::TooLarge`] for more
+/// tetrahedra than the 32-bit table of those around the nodes takes.
 pub fn assemble_stiffness<'h, const N: usize>(
     points: &[[f64; 3]],
     tets: &[[u32; N]],
@@ -28,7 +29,11 @@ pub fn assemble_stiffness<'h, const N: usize>(
 where
     [u32; N]: TetNodes,
 {
-    let nodes = points.len();
+    let (nodes, count, limit) = (points.len(), tets.len(), u32::MAX as usize / N);
+    if count > limit {
+        let what = "tetrahedra";
+        return Err(MeshError::TooLarge { what, count, limit });
+    }
     for (tet, t) in tets.iter().enumerate() {
         if let Some(&node) = t.iter().find(|&&n| n as usize >= nodes) {
             return Err(MeshError::NodeOutOfRange { tet, node, nodes });

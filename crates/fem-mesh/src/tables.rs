@@ -1,6 +1,7 @@
 //! Lists of positions by key, and sets of numbers that grow together.
 
-/// Lists one after another.
+/// Lists one after another, with less than 2^32 items in all: the checked numbers of nodes and tetrahedra bound those of
+/// meshes, the check of the entries of B those of rows.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Lists<T> {
     /// Start of each list, and the end of the last.
@@ -26,7 +27,7 @@ impl Lists<u32> {
         Self::by_key(count_of(numbers), numbers)
     }
 
-    /// The positions of `keys`, which are below `count`, in a list for each key, ascending in each.
+    /// The positions of `keys`, less than 2^32 of numbers below `count`, in a list for each key, ascending in each.
     pub fn by_key(count: usize, keys: &[u32]) -> Self {
         let mut starts = vec![0; count + 1];
         for &key in keys {

@@ -114,6 +114,7 @@ impl Division {
             }
             super::check::numbered("nodes", points.len() + out.added.count())?;
             super::check::numbered("tetrahedra", out.tets.len())?;
+            super::check::numbered("nodes around new ones", out.added.items().len())?;
         }
         let new: Vec<_> = out.added().map(|between| middle(points, between)).collect();
         points.extend(new);

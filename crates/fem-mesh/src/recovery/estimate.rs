@@ -77,14 +77,13 @@ impl StrainRecovery {
     fn linear(&self, mesh: &TetMesh, materials: &Materials, laws: &[&Hooke], strains: &[[f64; 6]]) -> Vec<[f64; 2]> {
         let at = |k: usize| {
             let mut sum = [0.0; 6];
-            for &(tet, weight) in self.patches.of(k) {
+            for &(tet, weight) in &self.patches[k] {
                 let strain = &strains[tet as usize];
                 (0..6).for_each(|i| sum[i] += weight * strain[i]);
             }
             sum
         };
-        let patches = self.patches.count();
-        let nodal: Vec<[f64; 6]> = (0..patches).into_par_iter().map(at).collect();
+        let nodal: Vec<[f64; 6]> = (0..self.patches.len()).into_par_iter().map(at).collect();
         let of_tet = |tet: usize| {
             let corners = self.corners[tet].map(|k| {
                 let recovered = &nodal[k as usize];

@@ -18,7 +18,7 @@ use super::quadratic::Fit;
 #[derive(Debug, Clone)]
 pub struct StrainRecovery {
     /// The tetrahedra of the patch of each (node, region), with their weights.
-    pub(super) patches: Lists<(u32, f64)>,
+    pub(super) patches: Vec<Vec<(u32, f64)>>,
     /// Patches of the corners of each tetrahedron.
     pub(super) corners: Vec<[u32; 4]>,
     /// The patches in a mesh of order 2, instead of their weights.
@@ -116,11 +116,8 @@ impl StrainRecovery {
                 None => with(own, mean(&cells, own)),
             }
         };
-        let found: Vec<Vec<(u32, f64)>> = (0..around.nodes.len()).into_par_iter().map(patch).collect();
-        let mut patches = Lists::default();
-        found.into_iter().for_each(|p| patches.push(p));
         Self {
-            patches,
+            patches: (0..around.nodes.len()).into_par_iter().map(patch).collect(),
             corners: around.corners(mesh),
             fits: Vec::new(),
         }
@@ -134,7 +131,7 @@ impl StrainRecovery {
             fit.unwrap_or_else(|| Fit::best(mesh, &around.wide(mesh, k), centre))
         };
         Self {
-            patches: Lists::default(),
+            patches: Vec::new(),
             corners: around.corners(mesh),
             fits: (0..around.nodes.len()).into_par_iter().map(patch).collect(),
         }
