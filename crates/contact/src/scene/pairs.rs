@@ -116,6 +116,7 @@ impl ContactPair {
             .filter(|((_, of), _)| !of.is_empty())
         {
             let body = boundary.body(facet);
+            // a mesh has fewer faces than there are tags
             let new = tags
                 .entry((body, of))
                 .or_insert_with(|| unused.next().unwrap_or_default());
