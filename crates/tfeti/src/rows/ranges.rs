@@ -19,7 +19,7 @@ pub struct RowRanges {
     pub equations: Range<usize>,
     /// Rows that hold rigid subdomains.
     pub rigid: Range<usize>,
-    /// Support rows.
+    /// Support rows, and behind them those of springs.
     pub dirichlet: Range<usize>,
 }
 
