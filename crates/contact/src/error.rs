@@ -156,7 +156,7 @@ signorini_fem_mesh::errors! {
             "contact {contact}: the tag {tag} is on both sides; give each side its own (TetMesh::map_tags before \
             append keeps those of two bodies apart, NewPhysicalGroup of Gmsh's plugin Crack those of a crack)";
         SamePair { first: usize, second: usize, tags: [u32; 2] } =
-            "contacts {first} and {second} are both between the sides with the tags {} and {}; give each pair of sides once", tags[0], tags[1];
+            "contacts {first} and {second} have, tied or not, the same sides with the tags {} and {}; give each pair of sides once", tags[0], tags[1];
         Tied { contact: usize } =
             "contact {contact} is tied: its sides move alike, and friction, gap, compliance, direction and rotation mean \
             nothing; leave them out, or use Contact::between";

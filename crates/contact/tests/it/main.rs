@@ -64,6 +64,7 @@ mod serialised;
 mod shapes;
 mod sheets;
 mod slices;
+mod soft_springs;
 mod springs;
 mod stages;
 mod stages_start;
