@@ -441,7 +441,7 @@ mod tests {
     #[test]
     fn a_mode_without_rows_slows_nothing_down() {
         let mut all = modes();
-        all.push(LooseMode::new(vec![0.0; 4], None));
+        all.push(LooseMode::new(vec![0.0; 4], &[]));
         let (y, e) = (
             [-1.0, 0.5, -2.0, 0.3, 3.0, 0.5, -0.2, 0.1, 0.6, 0.6],
             [-4.0, 2.5, 0.6, 0.2],
