@@ -399,7 +399,8 @@ impl EqualityProjector for ActiveSetProjector {
     }
 
     fn holds_without_springs(&mut self) -> bool {
-        let Some(weights) = self.active.weights().filter(|_| !self.soft.is_empty()) else {
+        let sprung = self.loose.iter().any(|mode| !mode.springs.is_empty());
+        let Some(weights) = self.active.weights().filter(|_| sprung) else {
             return true;
         };
         let mut without = weights.clone();
