@@ -24,9 +24,7 @@ impl Status {
     }
 }
 
-/// Numbers that add up, field by field; with their sum, if the word `total` follows.
-#[doc(hidden)]
-#[macro_export]
+/// Numbers that add up, field by field.
 macro_rules! counts {
     ($(#[$about:meta])* $name:ident { $($(#[$meaning:meta])* $field:ident,)* }) => {
         $(#[$about])*
@@ -36,20 +34,17 @@ macro_rules! counts {
             $($(#[$meaning])* pub $field: usize,)*
         }
 
-        impl std::ops::AddAssign for $name {
-            fn add_assign(&mut self, other: Self) {
-                $(self.$field += other.$field;)*
-            }
-        }
-    };
-    ($(#[$about:meta])* $name:ident { $($(#[$meaning:meta])* $field:ident,)* } total) => {
-        $crate::counts! { $(#[$about])* $name { $($(#[$meaning])* $field,)* } }
-
         impl $name {
             /// All together.
             #[must_use]
             pub fn total(&self) -> usize {
                 [$(self.$field),*].iter().sum()
+            }
+        }
+
+        impl std::ops::AddAssign for $name {
+            fn add_assign(&mut self, other: Self) {
+                $(self.$field += other.$field;)*
             }
         }
     };
@@ -64,7 +59,7 @@ counts! {
         expansion,
         /// Releases from the active set.
         proportioning,
-    } total
+    }
 }
 
 counts! {
@@ -84,5 +79,5 @@ counts! {
         restart,
         /// For the reference of a relative tolerance.
         reference,
-    } total
+    }
 }
