@@ -331,8 +331,11 @@ pub(crate) const MOST_STRETCH: f64 = 1e3;
 /// direction move it twice.
 pub(crate) const SHARED_ROWS: f64 = 0.5;
 
-/// Part of the largest displacement from which on an overlap at nodes of edges is told.
+/// Part of the largest displacement from which on an overlap at nodes that contacts hand on is told.
 pub(crate) const EDGE_OVERLAP: f64 = 0.01;
+
+/// Differences of gaps around a node, over the root of its area, up to which sides are flush there.
+pub(crate) const FLUSH: f64 = 1e-6;
 
 /// Part of the way by which sides have closed from which on an overlap of nodes of quadratic facets is told.
 pub(crate) const NARROW: f64 = 0.1;

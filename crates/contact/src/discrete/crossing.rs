@@ -1,39 +1,65 @@
 //! Contacts that cross: nodes of a contact between bodies that another contact has, too.
 //!
-//! With all conditions of both, rows along a surface nearly depend on one another where meshes do not match: friction of
-//! either acts along normals of the other, and active sets run in circles. So neither has friction there, on a strip
-//! that is half a facet wide.
+//! With conditions of both, rows along a surface nearly depend on one another where meshes do not match, and active
+//! sets run in circles. Flush sides hand theirs on to the neighbours (`mortar`).
 
-use super::partners::Paired;
-use crate::scene::{Contact, Scene};
+use crate::mortar::MortarNode;
+use crate::scene::{Contact, Gap, Scene};
+use crate::tolerances::FLUSH;
+use signorini_fem_mesh::{Surface, TetMesh};
 use std::collections::HashSet;
 
-/// The nodes of each contact at which it has no friction, between linear meshes. Contacts of one group go on in one
-/// another and do not cross.
-pub(super) fn crossed(scene: &Scene, paired: &[Paired], groups: &[Vec<usize>]) -> Vec<HashSet<u32>> {
-    let contacts = &scene.contacts;
-    let mut out = vec![HashSet::new(); contacts.len()];
-    let apart = |k: usize| paired[k].is_mortar() && !contacts[k].tied;
-    let is_rough = |contact: &Contact| contact.friction().is_some() && !contact.tied;
-    let may_cross = scene.mesh.order() == 1 && (0..paired.len()).any(apart) && contacts.iter().any(is_rough);
-    if contacts.len() < 2 || !may_cross {
-        return out;
+/// Nodes at which other contacts have conditions that may nearly depend on those of one between linear meshes, or of a
+/// group that goes on in one another: friction of either acts along normals of the other. Of two between bodies the
+/// first keeps its conditions.
+pub(super) fn crossing(scene: &Scene, group: &[usize]) -> HashSet<u32> {
+    let (index, own) = (group[0], &scene.contacts[group[0]]);
+    if own.tied || own.partner.is_empty() || scene.mesh.order() == 2 {
+        return HashSet::new();
     }
-    let nodes = |contact: &Contact| -> HashSet<u32> {
-        let tags = contact.tags.iter().chain(&contact.partner);
-        tags.flat_map(|tag| scene.mesh.nodes_on(*tag)).collect()
-    };
-    let nodes: Vec<HashSet<u32>> = contacts.iter().map(nodes).collect();
     let times = scene.analysis.times();
-    let go_on = |a: usize, b: usize| groups.iter().any(|group| group.contains(&a) && group.contains(&b));
-    for a in (0..paired.len()).filter(|&k| apart(k)) {
-        for b in (0..contacts.len()).filter(|&k| k != a) {
-            let rough = is_rough(&contacts[a]) || is_rough(&contacts[b]);
-            let meet = !contacts[b].tied && contacts[a].span.meets(&contacts[b].span, times);
-            if rough && meet && !go_on(a, b) {
-                let common: Vec<u32> = nodes[a].intersection(&nodes[b]).copied().collect();
-                out[a].extend(&common);
-                out[b].extend(common);
+    let crosses = |(other, contact): &(usize, &Contact)| {
+        let keeps = !group.contains(other) && (contact.partner.is_empty() || *other < index);
+        let is_rough = |k: &usize| scene.contacts[*k].friction().is_some();
+        let rough = group.iter().any(is_rough) || contact.friction().is_some();
+        keeps && rough && !contact.tied && own.span.meets(&contact.span, times)
+    };
+    let others = scene.contacts.iter().enumerate().filter(crosses);
+    let tags = others.flat_map(|(_, contact)| contact.tags.iter().chain(&contact.partner));
+    tags.flat_map(|tag| scene.mesh.nodes_on(*tag)).collect()
+}
+
+/// Those of these nodes around which the gap is the same: where sides open from an edge on, that edge alone may touch.
+pub(super) fn flush(
+    mesh: &TetMesh,
+    contact: &Contact,
+    surface: &Surface,
+    seen: &[Option<MortarNode>],
+    nodes: &HashSet<u32>,
+) -> HashSet<u32> {
+    let mut out = match contact.gap {
+        Gap::None | Gap::Constant(_) | Gap::Measured => nodes.clone(),
+        Gap::Field(_) | Gap::Obstacle => HashSet::new(),
+    };
+    let gap = |local: usize| {
+        let seen = seen[local].as_ref()?;
+        let from = mesh.points()[surface.nodes()[local] as usize];
+        match contact.gap {
+            Gap::Measured => Some(seen.gap(mesh, from, &seen.frame.normal)),
+            _ => Some(0.0),
+        }
+    };
+    for triangle in surface.triangles() {
+        let corners = triangle.map(|local| local as usize);
+        if !corners.iter().any(|&local| out.contains(&surface.nodes()[local])) {
+            continue;
+        }
+        let gaps = corners.map(gap);
+        for (local, own) in corners.into_iter().zip(gaps) {
+            let within = FLUSH * surface.areas()[local].sqrt();
+            let same = |other: &Option<f64>| other.zip(own).is_some_and(|(a, b)| (a - b).abs() <= within);
+            if !gaps.iter().all(same) {
+                out.remove(&surface.nodes()[local]);
             }
         }
     }

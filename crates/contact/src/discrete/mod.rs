@@ -3,8 +3,8 @@
 //! A node of a contact surface becomes a contact point for each direction in which it meets an obstacle (`points`,
 //! `creases`, `normals`; the scene says the gap) or a node of another body (`partners`, with the gap, together for
 //! contacts that go on in one another: `united`); in a mesh of order 2 it is a mean around the node (`means`); bodies
-//! that overlap only because their facets are straight touch (`faceted`), and where contacts cross they have no friction
-//! (`crossing`). Scenes that make no sense are refused here, before any stiffness is assembled
+//! that overlap only because their facets are straight touch (`faceted`), and where contacts cross one of them may hand
+//! its conditions on (`crossing`). Scenes that make no sense are refused here, before any stiffness is assembled
 //! (`scene`, `overflow`, `penetration`, `turn`). `side` has the nodes and weights of a contact point.
 //!
 //! Rigid couplings are subdomains of their own (`couplings`); `equations` may have some that are points.

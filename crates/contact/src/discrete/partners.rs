@@ -6,6 +6,7 @@
 //! on the same normal.
 
 use super::chords::arcs;
+use super::crossing::flush;
 use super::normals::{differ, fixed_frame};
 use crate::error::ContactError;
 use crate::mortar::{Arcs, MortarNode, Rim, mortar_nodes};
@@ -43,8 +44,6 @@ pub(super) struct Paired {
     pub(super) partners: Partners,
     /// Whether the scene names the other side first.
     pub(super) swapped: bool,
-    /// Nodes without friction, as another contact crosses this one there.
-    pub(super) crossed: HashSet<u32>,
 }
 
 /// What is known of a contact once matching meshes are found.
@@ -84,7 +83,6 @@ impl Paired {
             fixed,
             partners,
             swapped: false,
-            crossed: HashSet::new(),
         };
         if contact.partner.is_empty() {
             return Ok(Found::Paired(paired(surface, Partners::Obstacle)));
@@ -113,10 +111,12 @@ impl Paired {
         (mesh, materials): (&TetMesh, &Materials),
         (index, contact): (usize, &Contact),
         [surface, other]: [Surface; 2],
+        crossing: &HashSet<u32>,
     ) -> Result<Self, ContactError> {
         let fixed = fixed_frame(index, contact, &surface)?;
         let facet = |s: &Surface| s.total_area() / s.triangles().len() as f64;
         let [own, others] = [facet(&surface), facet(&other)];
+        let flush = |from: &Surface, seen: &[Option<MortarNode>]| flush(mesh, contact, from, seen, crossing);
         // told gaps are meant, and quadratic facets have their own curves
         let measured = !contact.tied && matches!(contact.gap, Gap::Measured);
         let mut curves = Arcs::new();
@@ -131,7 +131,9 @@ impl Paired {
         let seen = |from: &Surface, to: &Surface| {
             let rim = (measured && mesh.order() == 2).then(|| Rim::new(mesh, from, contact.crease));
             let choices = (contact.tied, contact.crease);
-            mortar_nodes(mesh, from, to, choices, (rim.as_ref(), &curves))
+            mortar_nodes(mesh, from, to, choices, (rim.as_ref(), &curves), |seen| {
+                flush(from, seen)
+            })
         };
         let there = || seen(&surface, &other);
         let back = || seen(&other, &surface);
@@ -177,7 +179,6 @@ impl Paired {
             fixed,
             partners: Partners::Mortar(mortar),
             swapped,
-            crossed: HashSet::new(),
         })
     }
 }

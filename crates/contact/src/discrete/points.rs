@@ -48,8 +48,6 @@ pub(crate) struct ContactPoint {
     pub(crate) closed: f64,
     /// Friction along the second tangent over that along the first.
     pub(crate) stretch: f64,
-    /// Whether it has no friction, as another contact crosses its own there.
-    pub(crate) crossed: bool,
     /// How far it gives way along the normal and along the surface, m/Pa.
     pub(crate) compliance: [f64; 2],
 }
@@ -58,11 +56,6 @@ impl ContactPoint {
     /// The node that names it.
     pub(crate) fn node(&self) -> u32 {
         self.sides.node()
-    }
-
-    /// Whether it has tangential rows, unless supports fix them.
-    pub(crate) fn is_rough(&self, scene: &Scene) -> bool {
-        !self.crossed && scene.contacts[self.surface].friction().is_some()
     }
 
     /// The gap, m, that the obstacle has brought by moving along the surface, without what it opens.
@@ -169,7 +162,6 @@ pub(super) fn conditions(
                     to_curve: facing.to_curve,
                     closed: 0.0,
                     stretch: contact.friction_axis.map_or(1.0, |(_, ratio)| ratio),
-                    crossed: paired.crossed.contains(&node),
                     compliance: contact.compliance,
                 });
             }
@@ -193,7 +185,7 @@ struct Facing {
 }
 
 impl Facing {
-    /// `None` where a node has no condition: it is on both sides, or sees nothing.
+    /// `None` where a node has no condition: it is on both sides, sees nothing, or has handed it on.
     fn new(
         scene: &Scene,
         index: usize,
@@ -226,7 +218,7 @@ impl Facing {
                 out.sides.partner = Some(Side::node(partners[local].node));
             }
             Partners::Mortar(nodes) => {
-                let Some(seen) = &nodes[local] else {
+                let Some(seen) = nodes[local].as_ref().filter(|seen| !seen.is_handed_on) else {
                     return Ok(None);
                 };
                 (out.surface.frame, out.surface.area) = (seen.frame, seen.area);
@@ -252,6 +244,37 @@ impl Facing {
         }
         Ok(Some(out))
     }
+}
+
+/// A node without a condition because another contact has one, and what it faces.
+#[derive(Debug)]
+pub(crate) struct HandedOn {
+    /// Position of its contact in the scene.
+    pub(crate) contact: usize,
+    pub(crate) sides: Sides,
+    pub(crate) normal: [f64; 3],
+}
+
+/// Those of all contacts.
+pub(super) fn handed_on(paired: &[Paired]) -> Vec<HandedOn> {
+    let mut out = Vec::new();
+    for (contact, paired) in paired.iter().enumerate() {
+        let Partners::Mortar(nodes) = &paired.partners else {
+            continue;
+        };
+        let nodes = paired.surface.nodes().iter().zip(nodes);
+        let own = nodes.filter_map(|(node, seen)| Some((*node, seen.as_ref().filter(|s| s.is_handed_on)?)));
+        out.extend(own.map(|(node, seen)| HandedOn {
+            contact,
+            sides: Sides {
+                own: Side::node(node),
+                partner: Some(Side::new(seen.partner.clone())),
+                swapped: paired.swapped,
+            },
+            normal: paired.fixed.unwrap_or(seen.frame).normal,
+        }));
+    }
+    out
 }
 
 /// The tie of a mid-node. Normal and area are those of the ends of its edge, in the mean.
@@ -280,7 +303,6 @@ fn tied_mid(
         to_curve: false,
         closed: 0.0,
         stretch: 1.0,
-        crossed: false,
         compliance: [0.0; 2],
     }
 }

@@ -5,7 +5,7 @@ use super::equations::equations;
 use super::faceted::{FacetedOverlaps, close_faceted};
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
 use super::penetration::check_penetration;
-use super::points::{ContactPoint, conditions, of_contact, points};
+use super::points::{ContactPoint, HandedOn, conditions, handed_on, of_contact, points};
 use super::springs::Springs;
 use super::supports::Supports;
 use super::turn::check_turn;
@@ -51,6 +51,8 @@ pub(crate) struct DiscreteScene {
     pub(crate) rounding: f64,
     /// Contacts whose meshes do not match, and whether the other side than the scene names first has the points.
     pub(crate) apart: Vec<(usize, bool)>,
+    /// Nodes of theirs that other contacts cross.
+    pub(crate) handed_on: Vec<HandedOn>,
     /// Their overlaps about as deep as facets are beside their curve.
     pub(crate) faceted: FacetedOverlaps,
     /// How long it took to find the sides of the contacts.
@@ -89,6 +91,7 @@ impl DiscreteScene {
             conditions.retain(|c| c.sides.partner.is_none() || !bonded.contains(&c.node()));
         }
         let faceted = close_faceted(scene, &paired, &mut conditions, rounding)?;
+        let handed_on = handed_on(&paired);
         let surfaces: Vec<Surface> = paired.into_iter().map(|p| p.surface).collect();
         for (index, own) in surfaces.iter().enumerate() {
             let own_conditions = &conditions[of_contact(&conditions, index)];
@@ -129,6 +132,7 @@ impl DiscreteScene {
             equations,
             equation_rows,
             surfaces,
+            handed_on,
             conditions,
             points,
             has_rows,
@@ -161,7 +165,7 @@ fn constraints(
         let contact = &scene.contacts[p.surface];
         ContactConstraint {
             partner: p.sides.partner.clone(),
-            friction: p.is_rough(scene),
+            friction: contact.friction().is_some(),
             moving: contact.moves() && !contact.tied,
             tied: contact.tied,
             relative: couplings

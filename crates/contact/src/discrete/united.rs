@@ -1,6 +1,6 @@
 //! Contacts that go on smoothly in one another, as patches do into which a curve is cut, have their sides found as one.
 
-use super::crossing::crossed;
+use super::crossing::crossing;
 use super::means::opened;
 use super::partners::{Found, Paired, Partners};
 use crate::error::ContactError;
@@ -26,11 +26,12 @@ pub(super) fn pair(scene: &Scene, rounding: f64) -> Result<Vec<Paired>, ContactE
             }
         });
     }
-    let mut united = Vec::new();
     for mut group in groups(scene, apart) {
         let members: Vec<usize> = group.iter().map(|(index, _)| *index).collect();
         let (index, first) = (members[0], &scene.contacts[members[0]]);
-        let found = |contact: &Contact, sides| Paired::mortar((mesh, &scene.materials), (index, contact), sides);
+        let crossing = crossing(scene, &members);
+        let found =
+            |contact: &Contact, sides| Paired::mortar((mesh, &scene.materials), (index, contact), sides, &crossing);
         if group.len() == 1 {
             out[index] = group.pop().map(|(_, sides)| found(first, sides)).transpose()?;
             continue;
@@ -45,14 +46,8 @@ pub(super) fn pair(scene: &Scene, rounding: f64) -> Result<Vec<Paired>, ContactE
         for (index, part) in share_out(scene, group, whole) {
             out[index] = Some(part);
         }
-        united.push(members);
     }
-    let mut out: Vec<Paired> = out.into_iter().flatten().collect();
-    let crossed = crossed(scene, &out, &united);
-    for (paired, crossed) in out.iter_mut().zip(crossed) {
-        paired.crossed = crossed;
-    }
-    Ok(out)
+    Ok(out.into_iter().flatten().collect())
 }
 
 /// A contact whose meshes do not match, with its sides.
@@ -93,7 +88,6 @@ fn share_out(scene: &Scene, group: Vec<Apart>, whole: Paired) -> Vec<(usize, Pai
             fixed: whole.fixed,
             partners: Partners::Mortar(nodes),
             swapped: whole.swapped,
-            crossed: HashSet::new(),
         };
         (index, part)
     };

@@ -8,7 +8,7 @@ use signorini_fem_mesh::internal::Lists;
 use signorini_fem_mesh::vec3::{add, area_vector, scale, sub};
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use signorini_qp::vector;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 
 /// What a node of the first side sees of the other one.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,6 +30,8 @@ pub(crate) struct MortarNode {
     /// Normal of the covered facets, out of the first side, and tangents: of curved ones the mean that displacements of
     /// its side have.
     pub(crate) frame: SurfaceFrame,
+    /// Whether it has no condition, because another contact has one, and other nodes have its shape function.
+    pub(crate) is_handed_on: bool,
 }
 
 impl MortarNode {
@@ -44,8 +46,36 @@ impl MortarNode {
     }
 }
 
+/// Of the nodes of a surface that other contacts `cross` those without a condition of this one, as at crosspoints of
+/// mortar methods: with conditions of both, rows along a surface nearly depend on one another, and active sets run in
+/// circles. The corners that have their shape functions instead must have facets of their own, else forces in a narrow
+/// strip would have no moment.
+fn handed_on(surface: &Surface, other: &Surface, crossing: &HashSet<u32>) -> HashSet<u32> {
+    let nodes = |triangle: &[u32; 3]| triangle.map(|local| surface.nodes()[local as usize]);
+    let mut out: HashSet<u32> = surface
+        .nodes()
+        .iter()
+        .copied()
+        .filter(|n| crossing.contains(n))
+        .collect();
+    if out.is_empty() {
+        return out;
+    }
+    let is_without = |node: &u32| crossing.contains(node) || other.local(*node).is_some();
+    let facets = || surface.triangles().iter().map(nodes);
+    let own: HashSet<u32> = facets().filter(|f| !f.iter().any(is_without)).flatten().collect();
+    for facet in facets() {
+        let mut others = facet.iter().filter(|node| !is_without(node)).peekable();
+        if others.peek().is_none() || others.any(|node| !own.contains(node)) {
+            facet.iter().for_each(|node| _ = out.remove(node));
+        }
+    }
+    out
+}
+
 /// For each node of a surface what it sees of the other one; `None` where that is nothing, and at nodes on both sides,
-/// as the tip of a crack: their shape functions are shared out to the other corners of each facet.
+/// as the tip of a crack: their shape functions are shared out to the other corners of each facet. So are, as far as
+/// [they may be](handed_on), those of the nodes that `crossing` tells from what all see.
 ///
 /// Where sides that are `tied` are apart, as facets of curved sides are, displacements of the other side go on to the
 /// first one as in the tetrahedra behind it: linear ones, rotations among them, are the same on both sides, and what
@@ -59,6 +89,7 @@ pub(crate) fn mortar_nodes(
     other: &Surface,
     (tied, crease): (bool, f64),
     bends: Bends<'_>,
+    crossing: impl Fn(&[Option<MortarNode>]) -> HashSet<u32>,
 ) -> Vec<Option<MortarNode>> {
     let triangles = in_order(mesh, surface);
     let covers = covers(mesh, &triangles, other, tied, bends);
@@ -67,8 +98,8 @@ pub(crate) fn mortar_nodes(
     // tied sides need no normal, and means of displacements have their own
     let may_bend = !tied && mesh.order() == 1;
     let crease = crease.to_radians().cos();
-    let is_tip = |node: u32| other.local(node).is_some();
-    let node = |(local, &own): (usize, &u32)| {
+    let node = |(local, &own): (usize, &u32), shared: &HashSet<u32>| {
+        let is_tip = |node: u32| other.local(node).is_some() || shared.contains(&node);
         if is_tip(own) {
             return None;
         }
@@ -92,7 +123,21 @@ pub(crate) fn mortar_nodes(
         };
         sums.node(own, frame)
     };
-    surface.nodes().par_iter().enumerate().map(node).collect()
+    let nodes = || surface.nodes().par_iter().enumerate();
+    let none = HashSet::new();
+    let mut out: Vec<Option<MortarNode>> = nodes().map(|own| node(own, &none)).collect();
+    let shared = handed_on(surface, other, &crossing(&out));
+    if shared.is_empty() {
+        return out;
+    }
+    let again: Vec<_> = nodes().map(|own| node(own, &shared)).collect();
+    for ((own, seen), again) in surface.nodes().iter().zip(&mut out).zip(again) {
+        match seen {
+            Some(seen) if shared.contains(own) => seen.is_handed_on = true,
+            _ => *seen = again,
+        }
+    }
+    out
 }
 
 /// The share of a corner of a facet in what the corners have: its own, and a part of what the tips hand on.
@@ -186,6 +231,7 @@ impl Sums {
             curve: (self.curve[1] > 0.0).then(|| self.curve[0] / self.curve[1]),
             area: self.area,
             frame,
+            is_handed_on: false,
         })
     }
 }

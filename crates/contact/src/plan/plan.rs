@@ -158,7 +158,7 @@ impl Plan {
         let fixed = &discrete.supports.merged;
         let free = |point: &ContactPoint| free_directions(point, &discrete.supports);
         let points: Vec<&ContactPoint> = discrete.with_rows().collect();
-        let rough = |p: &&&ContactPoint| p.is_rough(scene);
+        let rough = |p: &&&ContactPoint| scene.contacts[p.surface].friction().is_some();
         let gap = |range: Option<[f64; 2]>, p: &&ContactPoint| {
             let [low, high] = range.unwrap_or([p.gap; 2]);
             Some([p.gap.min(low), p.gap.max(high)])
@@ -244,7 +244,8 @@ fn row_groups(scene: &Scene, discrete: &DiscreteScene, points: &[&ContactPoint])
     let mut groups = RowGroups::of_interface(decomposition);
     let near = |node: u32| decomposition.copies(node as usize).iter().map(|copy| copy.subdomain);
     for point in points {
-        let rows = if point.is_rough(scene) { free_directions(point, supports) } else { 1 };
+        let rough = scene.contacts[point.surface].friction().is_some();
+        let rows = if rough { free_directions(point, supports) } else { 1 };
         groups.add(true, rows, point.sides.nodes().flat_map(|n| near(n.0)));
     }
     for tie in &discrete.ties {

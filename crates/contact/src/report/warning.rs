@@ -44,6 +44,11 @@ signorini_fem_mesh::errors! {
             "step {step}: node {node} of contact {contact} at {} slides by {slip:.3e}, its facets are {edge:.3e} long; \
             it keeps the normal and the partner that it began with: take smaller steps, and where the other side is not \
             plane a shorter way", told(place);
+        EdgeOverlap { step: usize, contact: usize, node: u32, place: [f64; 3], overlap: f64, largest: f64 } =
+            "step {step}: the sides of contact {contact} are {overlap:.3e} inside each other at node {node}, {}, where \
+            another contact has a condition and this one, between meshes that do not match, has none (displacements are up \
+            to {largest:.3e}): take smaller facets there, or meshes that match, or name this contact before the other one if it \
+            is the one that presses there", told(place);
         TurnedNormal { step: usize, contact: usize, node: u32, place: [f64; 3], turn: f64 } =
             "step {step}: node {node} of contact {contact} at {} is displaced to where the normal of its obstacle is \
             another one by {turn:.1} degrees; it keeps the one that it began with, so forces are missing or \
@@ -127,6 +132,9 @@ impl Warning {
             Self::LongSlip {
                 step, contact, node, ..
             }
+            | Self::EdgeOverlap {
+                step, contact, node, ..
+            }
             | Self::NarrowContact {
                 step, contact, node, ..
             }
@@ -157,6 +165,7 @@ impl Warning {
             Self::LargeRotation { turn, .. } => format!("rotation by {turn:.1} degrees"),
             Self::LargeStrain { strain, .. } => format!("strain of {:.1} %", 100.0 * strain),
             Self::LongSlip { slip, .. } => format!("slip of {slip:.1e}"),
+            Self::EdgeOverlap { overlap, .. } => format!("overlap of {overlap:.1e}"),
             Self::NarrowContact { overlap, .. } => format!("overlap at an edge of {overlap:.1e}"),
             Self::HeldByTilt { share, .. } => format!("{:.0} % held by the tilt of facets", 100.0 * share),
             Self::TurnedNormal { turn, .. } => format!("normal turned by {turn:.1} degrees"),

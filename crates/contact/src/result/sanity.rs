@@ -12,14 +12,15 @@ use crate::report::Warning;
 use crate::scene::ContactNormal;
 use crate::step::StepProblem;
 use crate::tolerances::{
-    COARSE_MESH, LARGE_DISPLACEMENT, LARGE_STRAIN, LARGE_TURN, LONG_SLIP, REST, RIGID_STRAIN, TURN,
+    COARSE_MESH, EDGE_OVERLAP, LARGE_DISPLACEMENT, LARGE_STRAIN, LARGE_TURN, LONG_SLIP, REST, RIGID_STRAIN, TURN,
 };
-use crate::vec3::norm;
+use crate::vec3::{dot, norm};
 use nalgebra::{Matrix3, Vector3};
 use signorini_fem_mesh::recovery::DiscretisationError;
 use signorini_fem_mesh::vec3::centroid;
 use signorini_fem_mesh::{Element, TetMesh, fields};
 use std::cell::LazyCell;
+use std::collections::HashMap;
 
 /// Lengths of a mesh that results are compared with.
 #[derive(Debug)]
@@ -116,6 +117,9 @@ pub(crate) fn warnings(
     });
     look(|w| matches!(w, Warning::LongSlip { .. }), &|| {
         long_slip(model, lengths, recovered, step)
+    });
+    look(|w| matches!(w, Warning::EdgeOverlap { .. }), &|| {
+        edge_overlap(model, recovered, &u, step)
     });
     look(|w| matches!(w, Warning::TurnedNormal { .. }), &|| {
         turned_normal(model, recovered, &u, step)
@@ -218,6 +222,37 @@ fn long_slip(model: &Model, lengths: &Lengths, recovered: &Recovered, step: usiz
         place: model.scene.mesh.points()[point.node as usize],
         slip,
         edge,
+    })
+}
+
+/// Looked at where contacts have handed conditions on: from a point that has them on, gaps are as displacements make
+/// them.
+fn edge_overlap(model: &Model, recovered: &Recovered, u: &[f64], step: usize) -> Option<Warning> {
+    let (scene, discrete) = (&model.scene, &model.discrete);
+    if discrete.handed_on.is_empty() {
+        return None;
+    }
+    let mut heirs = HashMap::new();
+    for (point, state) in model.points.iter().zip(&recovered.points) {
+        for (node, _) in point.contact.sides.own.nodes() {
+            heirs.entry((point.surface(), *node)).or_insert((point, state));
+        }
+    }
+    let along = |node: u32, direction: &[f64; 3]| dot(&u[3 * node as usize..][..3], direction);
+    let overlaps = discrete.handed_on.iter().filter_map(|own| {
+        let (point, state) = heirs.get(&(own.contact, own.sides.node()))?;
+        let [way, heir] = [&own.sides, &point.contact.sides].map(|sides| sides.way(&own.normal, along));
+        Some((own, way - heir - state.gap))
+    });
+    let (own, overlap) = worst(overlaps)?;
+    let largest = u.chunks_exact(3).map(norm).fold(0.0, f64::max);
+    (overlap > EDGE_OVERLAP * largest).then(|| Warning::EdgeOverlap {
+        step,
+        contact: own.contact,
+        node: own.sides.node(),
+        place: scene.mesh.points()[own.sides.node() as usize],
+        overlap,
+        largest,
     })
 }
 

@@ -64,7 +64,7 @@ fn meshes_apart_tend_to_what_matching_ones_do() {
     };
     let (exact, force) = last([12, 12]);
     let mut before = f64::INFINITY;
-    for (cells, within) in [([4, 5], 0.03), ([8, 9], 0.015)] {
+    for (cells, within) in [([4, 5], 0.03), ([8, 9], 0.01)] {
         let (u, through) = last(cells);
         let off = distance(&u, &exact);
         assert!(off < within && off < before, "{cells:?}: {off:e}");
@@ -104,9 +104,27 @@ fn an_edge_that_alone_touches_keeps_its_conditions() {
     );
 }
 
-/// Nodes of the floor have the pressure of the joint, too.
+/// Where a joint opens from the floor on as it is loaded, its edge is inside the other side between meshes apart: told.
 #[test]
-fn nodes_of_the_floor_have_the_pressure_of_the_joint() {
+fn an_overlap_where_conditions_were_handed_on_is_told() {
+    let warned = |cells: [usize; 2]| {
+        let scene = squeezed(cells, 1e-5, 0.0, 3e7);
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        let warnings = simulation.step().expect("step").warnings();
+        warnings.into_iter().find(|w| matches!(w, Warning::EdgeOverlap { .. }))
+    };
+    let told = warned([4, 5]).expect("a warning");
+    assert!(
+        told.to_string()
+            .contains("take smaller facets there, or meshes that match"),
+        "{told}"
+    );
+    assert_eq!(warned([4, 4]), None);
+}
+
+/// The pressure of a joint goes on to where the floor has the nodes.
+#[test]
+fn pressure_goes_on_to_nodes_of_the_floor() {
     let [left, right] = [4, 5].map(|n| block([1.0; 3], [n; 3]));
     let right = right.map_points(|[x, y, z]| [x + 1.0, y, z]).expect("moved");
     let smooth = |contact: Contact| contact.with_friction(Friction::coulomb(1e-6));
@@ -125,61 +143,14 @@ fn nodes_of_the_floor_have_the_pressure_of_the_joint() {
     assert!(pressure.iter().all(|p| (p / 1e7 - 1.0).abs() < 1e-4), "{pressure:?}");
     let force: f64 = pressure.iter().zip(areas).map(|(p, a)| p * a).sum();
     assert!((force / 1e7 - 1.0).abs() < 1e-4, "{force:e}");
-    assert_eq!(
-        result.points().iter().filter(|p| p.surface == 2).count(),
-        pressure.len()
-    );
-}
-
-/// A key of so many cells an edge between three blocks that are held, pressed down, to a side and along; its contacts in
-/// this order.
-fn key(cells: usize, others: usize, order: [usize; 3]) -> Scene {
-    let mut mesh = block([1.0; 3], [cells; 3]);
-    let beside = block([1.0, 1.0, 1.5], [others, others, others]);
-    let offsets = [[-1.0, 0.0, -0.5], [1.0, 0.0, -0.5], [0.0, 0.0, -1.5]];
-    let far = [brick::X_MIN, brick::X_MAX, brick::Z_MIN];
-    let sides = [
-        (brick::X_MIN, brick::X_MAX),
-        (brick::X_MAX, brick::X_MIN),
-        (brick::Z_MIN, brick::Z_MAX),
-    ];
-    let tag = |k: usize, tag: FacetTag| FacetTag(100 * (k as u32 + 1) + tag.0);
-    for (k, offset) in offsets.into_iter().enumerate() {
-        let moved = beside
-            .map_points(|x| [0, 1, 2].map(|c| x[c] + offset[c]))
-            .expect("moved");
-        mesh = mesh.append(&moved.map_tags(|t| tag(k, t))).expect("appended");
-    }
-    let load = Load::traction(brick::Z_MAX, [6e6, 1e6, -1e7]).with_history(ramp());
-    let scene = Scene::new(mesh, uniform(2.1e11, 0.3)).with_load(load);
-    let scene = (0..3).fold(scene, |scene, k| scene.with_support(Support::fixed(tag(k, far[k]))));
-    let contact = |k: usize| Contact::between(sides[k].0, tag(k, sides[k].1)).with_friction(Friction::coulomb(0.3));
-    let scene = order.into_iter().fold(scene, |scene, k| scene.with_contact(contact(k)));
-    scene.with_analysis(Analysis::quasistatic(1.0, 2))
-}
-
-/// The contact named first kept the edges: energies of a key in its groove differed by a sixth.
-#[test]
-fn the_order_of_contacts_does_not_matter() {
-    let last = |cells: [usize; 2], order: [usize; 3]| {
-        let (_, mut results) = run(key(cells[0], cells[1], order), Settings::default());
-        for result in &results {
-            assert_certified(result, &format!("{cells:?} {order:?}"));
-            assert!(result.report.counters.products <= 60, "{order:?}");
-        }
-        results.pop().expect("steps").displacement
-    };
-    let one = last([4, 3], [0, 1, 2]);
-    for order in [[2, 1, 0], [1, 2, 0]] {
-        let off = distance(&last([4, 3], order), &one);
-        assert!(off < 1e-5, "{order:?}: {off:e}");
-    }
+    assert!(result.points().iter().filter(|p| p.surface == 2).count() < pressure.len());
 }
 
 /// Positions at which friction sticks came from rows that hold to the tolerance only: where they depend on one another
 /// no displacement was in all of them, the estimate had a floor, and a step took 42,000 products.
 #[test]
 fn estimates_see_no_contradiction_between_contacts() {
+    // in a narrow strip nothing is handed on
     let flat = || block([1.0, 1.0, 0.25], [4, 4, 1]);
     let scene = of_blocks([flat(), flat()], [0.6, 0.6]);
     for target in [1e-3, 1e-5] {
