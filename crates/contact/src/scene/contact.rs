@@ -264,8 +264,8 @@ impl Contact {
 
     /// The angle between the normals of adjacent facets, in degrees, from which on their common edge is a crease (60 by
     /// default; in (0, 180], 180 for none). At a crease a node has one contact point for each side, so that an edge can
-    /// touch both floor and wall; elsewhere it has one point with the mean normal. Between bodies it has one
-    /// everywhere. Put flat sides that meet at a smaller angle, or between bodies, into separate contacts. No effect with
+    /// touch both floor and wall; elsewhere, and between bodies, it has one point with the mean normal. Put flat sides
+    /// that meet at a smaller angle, or between bodies, into separate contacts. No effect with
     /// [`with_normal`](Self::with_normal).
     pub fn with_crease(mut self, degrees: f64) -> Self {
         self.crease = degrees;

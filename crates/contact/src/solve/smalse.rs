@@ -81,10 +81,10 @@ impl SmalseSolver {
         })
     }
 
-    /// As [`solve`](Self::solve), for bodies that friction does not seem to hold: when products no longer bring the forces nearer to
-    /// balance, it ends as [`StepStatus::NotHeld`] where friction within the slip bounds of the normal forces could not
-    /// either, and where it could, after some such looks, as [`StepStatus::Stagnated`]. Slip bounds follow normal
-    /// forces the sooner the fewer products there are between two looks.
+    /// As [`solve`](Self::solve), for bodies that friction does not seem to hold: when products no longer bring the
+    /// forces nearer to balance, it ends as [`StepStatus::NotHeld`] where friction within the slip bounds of the normal
+    /// forces could not either, and where it could, after some such looks, as [`StepStatus::Stagnated`]. Slip bounds
+    /// follow normal forces the sooner the fewer products there are between two looks.
     pub(crate) fn solve_while_balancing(
         &mut self,
         limit: usize,
