@@ -187,6 +187,7 @@ pub(crate) struct Amplitude {
 
 #[derive(Debug, Clone)]
 pub(crate) struct Interaction {
+    pub(crate) location: Location,
     pub(crate) behavior: Option<Location>,
     pub(crate) friction: Option<f64>,
     /// The word that ties all pairs with it.

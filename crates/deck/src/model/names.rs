@@ -2,17 +2,13 @@
 
 use std::collections::HashMap;
 
-use super::property::twice;
-use crate::error::{DeckError, Fault, Location, Word};
-use crate::lexer::Card;
+use crate::error::{DeckError, Fault, Word};
 
 /// A table of named things.
 #[derive(Debug, Clone)]
 pub(crate) struct Names<T> {
     list: Vec<(String, T)>,
     places: HashMap<String, usize>,
-    /// Where those are given that have one card each.
-    given: HashMap<String, Location>,
 }
 
 impl<T> Default for Names<T> {
@@ -20,7 +16,6 @@ impl<T> Default for Names<T> {
         Self {
             list: Vec::new(),
             places: HashMap::new(),
-            given: HashMap::new(),
         }
     }
 }
@@ -54,15 +49,6 @@ impl<T> Names<T> {
     pub(crate) fn add(&mut self, name: String, thing: T) {
         self.places.insert(name.clone(), self.list.len());
         self.list.push((name, thing));
-    }
-
-    /// Adds what a card gives, and no other card of this name.
-    pub(crate) fn add_once(&mut self, card: &Card, name: String, thing: T) -> Result<(), DeckError> {
-        match self.given.insert(name.clone(), card.word.location.clone()) {
-            Some(first) => return Err(twice(card, &first)),
-            None => self.add(name, thing),
-        }
-        Ok(())
     }
 
     /// The position of a name, or what an error at `word` says.

@@ -45,9 +45,15 @@ pub(super) fn orientation(model: &mut Model, card: &Card) -> Result<(), DeckErro
         axes[second] = add(scale(cosine, v), scale(-sine, u));
     }
     let name = card.need("NAME")?.name;
+    if model.orientations.position(&name).is_some() {
+        return Err(card
+            .word
+            .cannot("an orientation of this name is there already; keep one of them"));
+    }
     let word = card.word.clone();
     let axes = (!cylindrical).then_some(axes);
-    model.orientations.add_once(card, name, Orientation { word, axes })
+    model.orientations.add(name, Orientation { word, axes });
+    Ok(())
 }
 
 impl Model {

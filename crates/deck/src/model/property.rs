@@ -35,13 +35,17 @@ pub(super) fn material(model: &mut Model, card: &Card) -> Result<(), DeckError> 
     card.allow(&["NAME"])?;
     card.lines_at_most(0, "no data; *ELASTIC follows as a keyword of its own")?;
     let name = card.need("NAME")?.name;
+    if let Some(at) = model.materials.position(&name) {
+        return Err(twice(card, &model.materials.at(at).location));
+    }
     let material = Material {
         location: card.word.location.clone(),
         elastic: None,
         density: None,
         expansion: None,
     };
-    model.materials.add_once(card, name, material)
+    model.materials.add(name, material);
+    Ok(())
 }
 
 pub(super) fn density(model: &mut Model, card: &Card) -> Result<(), DeckError> {
@@ -89,6 +93,10 @@ pub(super) fn amplitude(model: &mut Model, card: &Card) -> Result<(), DeckError>
     )?;
     let times = ["STEPTIME", "TOTALTIME"];
     let total = card.choice("TIME", &times, "TIME=STEP TIME or TIME=TOTAL TIME")? == Some(1);
+    if model.amplitudes.position(&amplitude).is_some() {
+        let why = "an amplitude of this name is there already; give all its points at once";
+        return Err(card.word.cannot(why));
+    }
     let mut numbers = Vec::new();
     for line in &card.lines {
         let fields = line.fields();
@@ -102,7 +110,8 @@ pub(super) fn amplitude(model: &mut Model, card: &Card) -> Result<(), DeckError>
     let points: Vec<(f64, f64)> = numbers.chunks_exact(2).map(|p| (p[0], p[1])).collect();
     let history = History::table(points.clone()).map_err(|e| card.word.fault(Fault::History(e)))?;
     let new = Amplitude { history, points, total };
-    model.amplitudes.add_once(card, amplitude, new)
+    model.amplitudes.add(amplitude, new);
+    Ok(())
 }
 
 pub(super) fn interaction(model: &mut Model, card: &Card) -> Result<(), DeckError> {
@@ -115,13 +124,18 @@ pub(super) fn interaction(model: &mut Model, card: &Card) -> Result<(), DeckErro
         let why = "a thickness has a meaning in plane models only";
         model.ignored.push(Ignored::new(line, why));
     }
+    if let Some(at) = model.interactions.position(&name) {
+        return Err(twice(card, &model.interactions.at(at).location));
+    }
     let interaction = Interaction {
+        location: card.word.location.clone(),
         behavior: None,
         friction: None,
         tied: None,
         compliance: [0.0; 2],
     };
-    model.interactions.add_once(card, name, interaction)
+    model.interactions.add(name, interaction);
+    Ok(())
 }
 
 pub(super) fn behavior(model: &mut Model, card: &Card) -> Result<(), DeckError> {

@@ -127,7 +127,7 @@ fn what_is_refused() {
         "SYSTEM=CYLINDRICAL",
     );
     let both = format!("{card}\n1., 0., 0., 0., 1., 0.\n{card}\n0., 1., 0., 0., 0., 1.\n");
-    refused(&both, card, "*ORIENTATION", "defined a second time, first in ");
+    refused(&both, card, "*ORIENTATION", "there already");
 }
 
 /// Axes of a material that is not isotropic would turn with an instance.
