@@ -28,12 +28,11 @@ pub(super) fn certify(m: &Measured<'_>, sizes: &[Sizes]) -> Certificate {
         c.equilibrium.worsen(own.residual, own.forces);
     }
     let gluing = model.tfeti.gluing();
-    let springs = gluing.springs();
     for row in ranges.interface.start..ranges.total() {
         let own = &sizes[model.bodies.of_row(row)];
         let jump = (m.rows[row] - problem.offset[row]).abs() / gluing.length(row);
         // of a soft spring the force counts: against the way on which it takes all
-        let spring = (row + springs.len()).checked_sub(ranges.total()).map(|k| &springs[k]);
+        let spring = gluing.spring(row);
         let whole = spring.map_or(0.0, |spring| own.forces * spring.compliance / spring.scale.powi(2));
         c.continuity.worsen(jump, own.displacement.max(whole));
     }

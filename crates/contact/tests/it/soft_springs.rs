@@ -135,3 +135,22 @@ fn certificates_of_soft_springs_are_ways() {
     assert!(largest > 1e-12, "{largest:e} {told:?}");
     assert!(told.relative() >= 0.999 * largest, "{largest:e} {told:?}");
 }
+
+/// Springs along one direction leave others free: what rounding makes of these does not count.
+#[test]
+fn springs_of_one_direction_leave_the_others_free() {
+    for exponent in [0, -4, -8, -12] {
+        for friction in [Friction::None, Friction::coulomb(0.3)] {
+            let scene = Scene::new(block([1.0; 3], [3; 3]), uniform(YOUNG, 0.3))
+                .with_contact(Contact::rigid(brick::Z_MIN).with_friction(friction))
+                .with_spring(Spring::normal(brick::Z_MAX, 10f64.powi(exponent) * YOUNG))
+                .with_load(Load::body([0.0, 0.0, -PRESSURE]))
+                .with_boxes([2, 1, 1]);
+            let result = solve(scene, Settings::default());
+            let products = result.report.counters.products;
+            assert_certified(&result, &format!("1e{exponent}"));
+            println!("1e{exponent}: {products}");
+            assert!(products <= 100, "1e{exponent}: {products}");
+        }
+    }
+}

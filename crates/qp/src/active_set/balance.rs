@@ -8,10 +8,9 @@
 //! x(b) = P(y - a c b),     cᵀ x(b) = f
 //! ```
 //!
-//! `P` projects on the set, `a >= 0` are lengths of steps; bounded components of length zero stay. Springs are components
-//! without bounds. `f - cᵀ x(b)` is
-//! the gradient of a convex function of `b`, whose minimum Newton's method with a line search finds without operator
-//! products.
+//! `P` projects on the set, `a >= 0` are lengths of steps; bounded components of length zero stay. Springs are
+//! components without bounds. `f - cᵀ x(b)` is the gradient of a convex function of `b`, whose minimum Newton's method
+//! with a line search finds without operator products.
 //!
 //! A contact touches few of many bodies: rows of modes are lists of what is not zero, and so is what modes make of a
 //! constrained block.
@@ -384,27 +383,23 @@ mod tests {
         let set = ProductSet::new(vec![Segment::upper(vec![0.0; 3]), Segment::discs(vec![1.0])]).expect("a set");
         let modes = [LooseMode::new(vec![1.0], &[1.0, 1.0, 1.0, 0.0, 0.0])];
         // gaps 1, 2 and 4: two springs carry 1 at a depth of 2
-        let (x, balances, _) = Search::new(
-            &modes,
-            &set,
-            (&[-1.0], &[]),
-            (&[1.0, 2.0, 4.0, 0.0, 0.0], &[1.0; 5]),
-            false,
-        )
-        .run();
+        let search = |e: f64| {
+            Search::new(
+                &modes,
+                &set,
+                (&[e], &[]),
+                (&[1.0, 2.0, 4.0, 0.0, 0.0], &[1.0; 5]),
+                false,
+            )
+            .run()
+        };
+        let (x, balances, _) = search(-1.0);
         let off = x
             .iter()
             .zip([-1.0, 0.0, 0.0, 0.0, 0.0])
             .map(|(x, y): (&f64, f64)| (x - y).abs());
         assert!(balances && off.fold(0.0, f64::max) < 1e-12, "{x:?}");
-        let (x, balances, _) = Search::new(
-            &modes,
-            &set,
-            (&[-4.0], &[]),
-            (&[1.0, 2.0, 4.0, 0.0, 0.0], &[1.0; 5]),
-            false,
-        )
-        .run();
+        let (x, balances, _) = search(-4.0);
         let off = x
             .iter()
             .zip([-2.5, -1.5, 0.0, 0.0, 0.0])

@@ -253,8 +253,11 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
     /// [`project_start`](Iterate::project_start), and where that moves nothing [`project`](Iterate::project) with the
     /// set of the start: the projector may still have that of another solve.
     pub(crate) fn begin(&mut self) -> Result<(), QpError> {
+        if self.project_start() {
+            return Ok(());
+        }
         let from = self.x[..self.constrained()].to_vec();
-        if self.project_start() || self.approach(&from, false) {
+        if self.approach(&from, false) {
             return Ok(());
         }
         if self.set_weights()?.is_none() {

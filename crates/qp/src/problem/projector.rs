@@ -106,8 +106,8 @@ pub trait EqualityProjector {
 
     // Modes that no unconstrained component stops.
 
-    /// These modes: [`repair`](Self::repair) leaves them as they are but for springs, and constrained components have
-    /// to balance them with these.
+    /// These modes: [`repair`](Self::repair) leaves them as they are, and constrained components have to balance them,
+    /// with their springs where they cannot alone.
     #[doc(hidden)]
     fn loose(&self) -> &[LooseMode] {
         &[]

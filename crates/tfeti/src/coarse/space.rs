@@ -10,7 +10,7 @@ use crate::linalg::sparse::{MemoryNeed, SolveMemory, Symbolic};
 use crate::linalg::tiles::Digits;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::matrices::Subdomains;
-use crate::tolerances::SUPPORTED;
+use crate::tolerances::{MOVING, SUPPORTED};
 use signorini_qp::internal::LooseMode;
 use std::sync::{Arc, OnceLock};
 
@@ -172,16 +172,16 @@ impl Coarse {
         self.0.product_transpose(y, out, &mut vec![[0.0; 6]; self.rows() / 6]);
     }
 
-    /// A motion of bodies as a mode of the leading `contact` rows.
-    pub(crate) fn loose_mode(&self, amplitudes: &[f64], contact: usize) -> LooseMode {
+    /// A motion of bodies as a mode of the leading `contact` rows, with those of these `springs` that it stretches.
+    pub(crate) fn loose_mode(&self, amplitudes: &[f64], contact: usize, springs: &[usize]) -> LooseMode {
         let mut row = vec![0.0; self.dim()];
         self.transpose_times(amplitudes, &mut row);
         let mut mode = LooseMode::new(amplitudes.to_vec(), &row[..contact]);
-        let first = row.len() - self.0.gluing.springs().len();
-        let springs = (first..)
-            .zip(self.0.gluing.springs())
-            .map(|(i, s)| (i, row[i], s.compliance.recip()));
-        mode.springs = springs.filter(|s| s.1 != 0.0).collect();
+        let stretched = |&i: &usize| {
+            let spring = self.0.gluing.spring(i)?;
+            (row[i].abs() > MOVING * spring.scale).then(|| (i, row[i], spring.compliance.recip()))
+        };
+        mode.springs = springs.iter().filter_map(stretched).collect();
         mode
     }
 

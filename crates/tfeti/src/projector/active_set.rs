@@ -41,7 +41,7 @@ pub struct ActiveSetProjector {
     always: CoarseFactor,
     /// What these do not hold.
     loose: Vec<LooseMode>,
-    /// Rows of springs that are too soft to hold.
+    /// Rows of springs that are too soft to hold; none where others hold what they do.
     soft: Vec<usize>,
     /// Factor of the last active set.
     active: CoarseFactor,
@@ -126,20 +126,25 @@ impl ActiveSetProjector {
             fronts: Vec::new(),
             contact: ContactWeights::default(),
         };
-        let mut always = row_weights(coarse, &weights, metric.as_deref());
-        let soft = soft_springs(coarse, contact_rows, metric.as_deref());
-        soft.iter().for_each(|&row| always.diagonal[row] = 0.0);
-        let sprung = !soft.is_empty() && !coarse.0.free_motions(Some(&always)).is_empty();
-        let factor = match &parts.basis {
+        let always = row_weights(coarse, &weights, metric.as_deref());
+        let mut soft = soft_springs(coarse, contact_rows, metric.as_deref());
+        // unless others hold what they do
+        let leaves_free = |weights: &RowWeights| !coarse.0.free_motions(Some(weights)).is_empty();
+        let unsprung = (!soft.is_empty()).then(|| without(&always, &soft));
+        let factor = if let Some(unsprung) = unsprung.filter(leaves_free) {
             // soft springs would take what contact balances, and throw the body far off
-            _ if sprung => coarse.factor_weighted(always)?,
-            Some(Basis::Model(_, always)) => always.clone(),
-            _ => parts.factor(coarse, row_weights(coarse, &weights, metric.as_deref()), None)?,
+            coarse.factor_weighted(unsprung)?
+        } else {
+            soft.clear();
+            match &parts.basis {
+                Some(Basis::Model(_, always)) => always.clone(),
+                _ => parts.factor(coarse, always, None)?,
+            }
         };
         let mut scratch = factor.scratch();
         let motions = factor.free_motions().iter();
         let mut loose: Vec<_> = motions
-            .map(|motion| coarse.loose_mode(&motion.amplitudes, contact_rows))
+            .map(|motion| coarse.loose_mode(&motion.amplitudes, contact_rows, &soft))
             .collect();
         // a motion that no contact row holds must not ask for a balance by what rounding leaves of its row; rows are of
         // length one, and displacements of a motion, too
@@ -156,10 +161,10 @@ impl ActiveSetProjector {
             coarse: coarse.clone(),
             always: factor.clone(),
             loose,
-            soft,
             active: factor,
             // the first set has springs
-            weights: if sprung { Vec::new() } else { weights },
+            weights: if soft.is_empty() { weights } else { Vec::new() },
+            soft,
             lines: Vec::new(),
             parts,
             spare: None,
@@ -225,13 +230,19 @@ impl ActiveSetProjector {
 
 /// Rows of springs that are soft beside the stiffest rows, where contact may hold what they do.
 fn soft_springs(coarse: &Coarse, contact_rows: usize, metric: Option<&[f64]>) -> Vec<usize> {
-    let springs = coarse.0.gluing.springs();
-    let Some(metric) = metric.filter(|_| contact_rows > 0) else {
-        return Vec::new();
+    let weighted = metric.filter(|_| contact_rows > 0).into_iter().flatten().enumerate();
+    let is_soft = |(row, weight): (usize, &f64)| {
+        let spring = coarse.0.gluing.spring(row)?;
+        (weight * spring.scale.powi(2) < SOFT_SPRING).then_some(row)
     };
-    let rows = (metric.len() - springs.len()..).zip(springs);
-    let soft = rows.filter(|(row, spring)| metric[*row] * spring.scale.powi(2) < SOFT_SPRING);
-    soft.map(|(row, _)| row).collect()
+    weighted.filter_map(is_soft).collect()
+}
+
+/// Weights of which these rows have none.
+fn without(weights: &RowWeights, rows: &[usize]) -> RowWeights {
+    let mut out = weights.clone();
+    rows.iter().for_each(|&row| out.diagonal[row] = 0.0);
+    out
 }
 
 impl SplitParts {
@@ -399,13 +410,12 @@ impl EqualityProjector for ActiveSetProjector {
     }
 
     fn holds_without_springs(&mut self) -> bool {
-        let sprung = self.loose.iter().any(|mode| !mode.springs.is_empty());
-        let Some(weights) = self.active.weights().filter(|_| sprung) else {
-            return true;
-        };
-        let mut without = weights.clone();
-        self.soft.iter().for_each(|&row| without.diagonal[row] = 0.0);
-        self.coarse.0.free_motions(Some(&without)).is_empty()
+        let weights = self.active.weights().filter(|_| !self.soft.is_empty());
+        weights.is_none_or(|weights| {
+            let unsprung = without(weights, &self.soft);
+            // beside what springs leave free as well
+            self.coarse.0.free_motions(Some(&unsprung)).len() == self.active.free_motions().len()
+        })
     }
 
     fn balance(&mut self, x: &mut [f64], e: &[f64]) {

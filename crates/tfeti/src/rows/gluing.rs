@@ -208,12 +208,16 @@ impl Gluing {
         &self.springs
     }
 
+    /// The spring of a row; `None` if it is another one.
+    pub fn spring(&self, row: usize) -> Option<&SpringRow> {
+        let first = self.ranges.total() - self.springs.len();
+        row.checked_sub(first).and_then(|spring| self.springs.get(spring))
+    }
+
     /// Length of a row that is no contact row: those that hold rigid subdomains are longer than one, those of springs
     /// may be shorter.
     pub fn length(&self, row: usize) -> f64 {
-        let springs = self.ranges.total() - self.springs.len();
-        let spring = row.checked_sub(springs).and_then(|spring| self.springs.get(spring));
-        match spring {
+        match self.spring(row) {
             Some(spring) => spring.scale,
             None if self.ranges.rigid.contains(&row) => RIGID.sqrt(),
             None => 1.0,
