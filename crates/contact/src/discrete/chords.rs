@@ -2,7 +2,7 @@
 
 use crate::tolerances::{BENT, FLAT_ARC, KINK};
 use signorini_fem_mesh::internal::ascending;
-use signorini_fem_mesh::vec3::{add, cross, dot, norm, scale, sub, unit};
+use signorini_fem_mesh::vec3::{add, dot, norm, scale, sub};
 use signorini_fem_mesh::{Surface, TetMesh};
 use std::collections::HashMap;
 
@@ -10,7 +10,7 @@ use std::collections::HashMap;
 /// that have one, m. Edges that turn by much may be those of a prism, so that theirs are not a number; those at kinks
 /// between flat sides are flat.
 pub(super) fn arcs(mesh: &TetMesh, surface: &Surface) -> HashMap<[u32; 2], f64> {
-    let chords = Chords::new(mesh, surface, smooth_normals(mesh, surface));
+    let chords = Chords::new(mesh, surface);
     let all = || surface.triangles().iter().flat_map(|t| edges(*t));
     let length = |edge: [u32; 2]| norm(sub(chords.place(edge[1]), chords.place(edge[0])));
     // a kink turns towards a flat side as much as anywhere
@@ -38,26 +38,6 @@ pub(super) fn arcs(mesh: &TetMesh, surface: &Surface) -> HashMap<[u32; 2], f64> 
     all().filter_map(arc).collect()
 }
 
-/// Normals of nodes that are exact on spheres, and nearly so on other curves, however uneven the facets (N. Max, J.
-/// Graphics Tools 4, 1999): each facet counts by the sine of its angle over the lengths of both edges.
-fn smooth_normals(mesh: &TetMesh, surface: &Surface) -> Vec<[f64; 3]> {
-    let place = |node: u32| mesh.points()[surface.nodes()[node as usize] as usize];
-    let mut sums = vec![[0.0; 3]; surface.nodes().len()];
-    for triangle in surface.triangles() {
-        for k in 0..3 {
-            let [own, next, last] = [0, 1, 2].map(|c| triangle[(k + c) % 3]);
-            let [u, v] = [next, last].map(|end| sub(place(end), place(own)));
-            let sum = &mut sums[own as usize];
-            *sum = add(*sum, scale(1.0 / (dot(u, u) * dot(v, v)), cross(u, v)));
-        }
-    }
-    let frames = surface.frames().iter().map(|frame| frame.normal);
-    let normals = sums.into_iter().zip(frames);
-    normals
-        .map(|(sum, frame)| if norm(sum) > 0.0 { unit(sum) } else { frame })
-        .collect()
-}
-
 /// The edges 01, 12, 20 with their ends ascending.
 pub(super) fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
     [[a, b], [b, c], [c, a]].map(ascending)
@@ -67,8 +47,6 @@ pub(super) fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
 pub(super) struct Chords<'a> {
     mesh: &'a TetMesh,
     surface: &'a Surface,
-    /// Of its nodes.
-    normals: Vec<[f64; 3]>,
     /// Nodes at a rim, whose normals are those of facets on one side of them.
     at_rim: Vec<bool>,
     /// Ends of edges that are bent.
@@ -76,14 +54,13 @@ pub(super) struct Chords<'a> {
 }
 
 impl<'a> Chords<'a> {
-    pub(super) fn new(mesh: &'a TetMesh, surface: &'a Surface, normals: Vec<[f64; 3]>) -> Self {
+    pub(super) fn new(mesh: &'a TetMesh, surface: &'a Surface) -> Self {
         let mut edges: Vec<[u32; 2]> = surface.triangles().iter().flat_map(|t| edges(*t)).collect();
         edges.sort_unstable();
         let count = surface.nodes().len();
         let mut out = Self {
             mesh,
             surface,
-            normals,
             at_rim: vec![false; count],
             on_arc: vec![false; count],
         };
@@ -102,7 +79,7 @@ impl<'a> Chords<'a> {
     }
 
     fn normal(&self, node: u32) -> [f64; 3] {
-        self.normals[node as usize]
+        self.surface.frames()[node as usize].normal
     }
 
     /// How far the normals of the ends of an edge tilt outward over its length, m.

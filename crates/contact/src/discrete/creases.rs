@@ -1,7 +1,7 @@
 //! Sides of a surface that meet at creases.
 
 use crate::vec3::edge_cosine;
-use signorini_fem_mesh::vec3::{self, norm};
+use signorini_fem_mesh::vec3;
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
 use std::collections::HashMap;
 
@@ -36,10 +36,7 @@ pub(super) fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap
             let mut sum = [0.0; 3];
             let mut area = 0.0;
             for &t in &triangles {
-                let (own, normal) = match mesh.order() {
-                    1 => (norm(vectors[t as usize]) / 3.0, vectors[t as usize]),
-                    _ => corner_area(mesh, surface, t as usize, node),
-                };
+                let (own, normal) = corner_of(mesh, surface, t as usize, node);
                 area += own;
                 (0..3).for_each(|c| sum[c] += normal[c]);
             }
@@ -50,10 +47,10 @@ pub(super) fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap
     out
 }
 
-fn corner_area(mesh: &TetMesh, surface: &Surface, triangle: usize, node: usize) -> (f64, [f64; 3]) {
+fn corner_of(mesh: &TetMesh, surface: &Surface, triangle: usize, node: usize) -> (f64, [f64; 3]) {
     let corners = surface.triangles()[triangle];
     let corner = corners.iter().position(|&n| n as usize == node).unwrap_or(0);
-    surface.corner_area(mesh, triangle, corner)
+    surface.corner(mesh, triangle, corner)
 }
 
 /// Triangles around a node, grouped: those that share an edge and are not separated by a crease are of one side.

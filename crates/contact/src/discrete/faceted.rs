@@ -242,8 +242,7 @@ impl BentSide {
 
 /// How far the facets of a surface are from the curve at its nodes.
 fn bends(mesh: &TetMesh, surface: &Surface) -> HashMap<u32, Bend> {
-    let normals = surface.frames().iter().map(|frame| frame.normal);
-    let chords = Chords::new(mesh, surface, normals.collect());
+    let chords = Chords::new(mesh, surface);
     let mut corners = vec![Bend::default(); surface.nodes().len()];
     let mut areas = vec![0.0; corners.len()];
     let mut mids = Vec::new();

@@ -35,7 +35,7 @@ fn spread(mesh: &TetMesh, surface: &Surface) -> Vec<Matrix3<f64>> {
     let mut sums = vec![(0.0, Matrix3::zeros()); surface.nodes().len()];
     for (t, corners) in surface.triangles().iter().enumerate() {
         for (k, node) in corners.iter().map(|n| *n as usize).enumerate() {
-            let (area, normal) = surface.corner_area(mesh, t, k);
+            let (area, normal) = surface.corner(mesh, t, k);
             let normal = Vector3::from(normal).try_normalize(0.0).unwrap_or_default();
             let more = normal - Vector3::from(surface.frames()[node].normal);
             sums[node].0 += area;

@@ -9,7 +9,11 @@ const YOUNG: f64 = 1e3;
 
 /// A ring about the z axis from a brick of radius, angle and height, closed where its ends meet.
 pub(crate) fn ring(radii: [f64; 2], cells: [usize; 3], phase: f64, order: usize) -> TetMesh {
-    let mesh = block([1.0; 3], cells);
+    closed(block([1.0; 3], cells), radii, phase, order)
+}
+
+/// A unit cube that is bent to a ring.
+pub(crate) fn closed(mesh: TetMesh, radii: [f64; 2], phase: f64, order: usize) -> TetMesh {
     let mesh = match order {
         2 => mesh.raise_order().expect("order 2"),
         _ => mesh,

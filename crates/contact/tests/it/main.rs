@@ -35,6 +35,7 @@ mod groups;
 mod halving;
 mod idle;
 mod invariance;
+mod journal;
 mod levels;
 mod locks;
 mod manufactured;

@@ -310,7 +310,7 @@ fn means_have_the_weights_of_hat_and_dual_functions() {
             };
             let area = 3.0
                 * surface
-                    .corner_area(&mesh, all().find(|&t| surface.facets()[t] == facet).unwrap(), own)
+                    .corner(&mesh, all().find(|&t| surface.facets()[t] == facet).unwrap(), own)
                     .0;
             let nodes = mesh.facets()[facet as usize].nodes;
             let mids = mesh.facet_mids(facet as usize);
@@ -330,7 +330,7 @@ fn means_have_the_weights_of_hat_and_dual_functions() {
     for (t, triangle) in surface.triangles().iter().enumerate() {
         let facet = surface.facets()[t] as usize;
         let (nodes, mids) = (bent.facets()[facet].nodes, bent.facet_mids(facet));
-        let areas = [0, 1, 2].map(|corner| surface.corner_area(&bent, t, corner).0);
+        let areas = [0, 1, 2].map(|corner| surface.corner(&bent, t, corner).0);
         for own in 0..3 {
             let mean = surface.mean(triangle[own] as usize, std::iter::once(t));
             let at = |node: u32| mean.iter().filter(|m| m.0 == node).map(|m| m.1).sum::<f64>();
@@ -348,7 +348,7 @@ fn means_have_the_weights_of_hat_and_dual_functions() {
     let force = assemble_load(&bent, &Decomposition::whole(&bent), &LoadDensity::Pressure(Z_MIN, 1.0)).unwrap();
     // hats sum to one: so do integrals of normals
     let sum = (0..surface.triangles().len()).flat_map(|t| (0..3).map(move |k| (t, k)));
-    let normal: f64 = sum.map(|(t, k)| surface.corner_area(&bent, t, k).1[2]).sum();
+    let normal: f64 = sum.map(|(t, k)| surface.corner(&bent, t, k).1[2]).sum();
     let total: f64 = force[0].chunks_exact(3).map(|f| f[2]).sum();
     close(-normal, total, total, 1e-13);
 }

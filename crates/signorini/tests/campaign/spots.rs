@@ -39,7 +39,7 @@ pub(crate) fn spots(recipe: &Recipe, mechanics: &Mechanics) -> Vec<Spot> {
                 touch.direction.is_some() || touch.partner.is_some() || matches!(touch.distance, Distance::Plane(..));
             let parts = if whole { vec![facets] } else { split(mechanics, &facets) };
             for part in parts {
-                let sum = (part.iter()).fold([0.0; 3], |v, k| add(v, mechanics.sides[*k].vector));
+                let sum = (part.iter()).fold([0.0; 3], |v, k| add(v, weighted(mechanics, *k, node)));
                 let area = part.iter().map(|k| norm(mechanics.sides[*k].vector)).sum::<f64>() / 3.0;
                 let normal = match (touch.direction, &touch.distance) {
                     (Some(direction), _) => direction,
@@ -62,6 +62,19 @@ pub(crate) fn spots(recipe: &Recipe, mechanics: &Mechanics) -> Vec<Spot> {
         }
     }
     out
+}
+
+/// The normal of a facet, as long as the sine of its angle at a node over the lengths of both edges there, but for a
+/// factor that all facets have.
+fn weighted(mechanics: &Mechanics, facet: usize, node: u32) -> Vec3 {
+    let side = &mechanics.sides[facet];
+    let place = |n: u32| mechanics.points[n as usize];
+    let edges = side
+        .nodes
+        .iter()
+        .filter(|n| **n != node)
+        .map(|n| sub(place(*n), place(node)));
+    edges.fold(side.vector, |v, edge| scale(1.0 / dot(edge, edge), v))
 }
 
 fn gap(touch: &Touch, x: Vec3, measured: f64) -> f64 {
