@@ -7,15 +7,15 @@ use std::collections::HashMap;
 
 /// A side of a surface at a node: all of it, or that on one side of a crease.
 #[derive(Debug, Clone)]
-pub(super) struct SurfaceSide {
-    pub(super) frame: SurfaceFrame,
-    pub(super) area: f64,
+pub(crate) struct SurfaceSide {
+    pub(crate) frame: SurfaceFrame,
+    pub(crate) area: f64,
     /// Triangles around the node, as far as they are needed.
-    pub(super) triangles: Vec<u32>,
+    pub(crate) triangles: Vec<u32>,
 }
 
 /// The sides that meet at each node of a crease; keys are places in the surface.
-pub(super) fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap<u32, Vec<SurfaceSide>> {
+pub(crate) fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap<u32, Vec<SurfaceSide>> {
     let mut out = HashMap::new();
     if crease >= 180.0 {
         return out;

@@ -33,7 +33,7 @@ mod turn;
 mod united;
 
 pub(crate) use couplings::Couplings;
-pub(crate) use creases::area_vector;
+pub(crate) use creases::{SurfaceSide, area_vector, creases};
 pub(crate) use extents::Extents;
 pub(crate) use faceted::FacetedOverlaps;
 pub(crate) use points::{ContactPoint, of_contact};

@@ -2,11 +2,12 @@
 
 use super::never;
 use super::unmerged::unmerged;
-use crate::discrete::{ContactPoint, DiscreteScene, Extents, FacetedOverlaps};
+use crate::discrete::{ContactPoint, DiscreteScene, Extents, FacetedOverlaps, SurfaceSide, creases, of_contact};
 use crate::report::Warning;
-use crate::scene::{Coupling, Equation, Friction, Load, Scene, Support};
+use crate::scene::{Contact, ContactNormal, Coupling, Equation, Friction, Load, Scene, Support};
 use crate::tolerances::{LARGE_COEFFICIENT, LARGE_GAP, LOCKING};
 use signorini_fem_mesh::History;
+use std::collections::HashSet;
 
 /// Warnings of a scene, each kind once. One pass over the contact points; bodies are measured only where a contact
 /// begins nowhere near its obstacle.
@@ -26,6 +27,7 @@ pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> 
         large_gap(scene, discrete),
         closed,
         pressing,
+        crease_between(scene, discrete),
         large_coefficient(scene, points),
     ];
     found.into_iter().flatten().collect()
@@ -146,6 +148,37 @@ fn faceted_overlaps(discrete: &DiscreteScene) -> [Option<Warning>; 2] {
         sagitta: deepest.sagitta,
     });
     [closed, pressing]
+}
+
+/// The first crease of a side before another body that has points on both sides of it.
+fn crease_between(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
+    let meets = |contact: &Contact| !contact.partner.is_empty() && contact.normal() == ContactNormal::Body;
+    let mut between = scene.contacts.iter().enumerate().filter(|(_, contact)| meets(contact));
+    between.find_map(|(index, contact)| {
+        let surface = &discrete.surfaces[index];
+        let creases = creases(&scene.mesh, surface, contact.crease);
+        let points = &discrete.points[of_contact(&discrete.points, index)];
+        let touching: HashSet<u32> = points.iter().map(ContactPoint::node).collect();
+        let touches = |local: u32| touching.contains(&surface.nodes()[local as usize]);
+        let has_points = |side: &&SurfaceSide| {
+            let mut triangles = side.triangles.iter().map(|t| surface.triangles()[*t as usize]);
+            triangles.any(|t| t.iter().any(|&n| touches(n) && !creases.contains_key(&n)))
+        };
+        let meet = |(&local, sides): (&u32, &Vec<SurfaceSide>)| {
+            let mut sides = sides.iter().filter(has_points).filter(|_| touches(local));
+            let [one, other] = [sides.next()?, sides.next()?].map(|side| side.frame);
+            Some((local, one.normal_part(other.normal).clamp(-1.0, 1.0).acos()))
+        };
+        // the first node, whatever the order of the table
+        let (local, angle) = creases.iter().filter_map(meet).min_by_key(|found| found.0)?;
+        let node = surface.nodes()[local as usize];
+        Some(Warning::CreaseBetween {
+            contact: index,
+            node,
+            place: scene.mesh.points()[node as usize],
+            angle: angle.to_degrees(),
+        })
+    })
 }
 
 /// The largest coefficient, if it is too large, at whatever slip rate where that is known and else at rest.

@@ -16,7 +16,7 @@ signorini_fem_mesh::errors! {
     /// [plain](Self::plain) one.
     ///
     /// The thresholds are a tenth of the body for displacements, 0.05 for its rotation, 5 % for strains, an edge of a
-    /// facet for slips, 0.1 for the turn of normals, a fifth of the loads for what tilted facets hold, the body for gaps,
+    /// facet for slips, 0.1 for the turn of normals, the angle of a crease, a fifth of the loads for what tilted facets hold, the body for gaps,
     /// a tenth of an overlap for the distance of facets from their curve, 3 for coefficients, 0.45 for Poisson's ratios
     /// of linear tetrahedra and 10 % for the error of the mesh. A body is as long as the longest side of the box around
     /// it; its rotation is that which fits the displacements of its nodes best. Strain is measured per tetrahedron by
@@ -80,6 +80,10 @@ signorini_fem_mesh::errors! {
             contact {contact}, {}, because straight facets stand for a hollow side; in the mean the sides touch, and so \
             do these points: to press, tell the gap (with_gap, negative), or take Contact::with_measured_overlaps",
             told(place);
+        CreaseBetween { contact: usize, node: u32, place: [f64; 3], angle: f64 } =
+            "contact {contact}: flat sides meet at {angle:.0} degrees at node {node}, {}, and the other body is before both; \
+            between bodies a node has one normal, there the mean of theirs, so that edges slide and press \
+            along neither side: give each side a contact of its own", told(place);
         LargeCoefficient { contact: usize, node: u32, place: [f64; 3], coefficient: f64 } =
             "friction of contact {contact}: the coefficient at node {node}, {0}, is {1}; hardly any pair of \
             materials has so much: {1} in per cent is {2}",
@@ -146,6 +150,7 @@ impl Warning {
             Self::LargeGap { contact, node, .. }
             | Self::FacetedOverlap { contact, node, .. }
             | Self::ClosedOverlaps { contact, node, .. }
+            | Self::CreaseBetween { contact, node, .. }
             | Self::LargeCoefficient { contact, node, .. } => {
                 vec![Part::Contact(*contact), Part::Node(*node)]
             }

@@ -279,3 +279,40 @@ fn a_block_on_a_coarse_plate_tips_over_its_own_edge() {
         }
     }
 }
+
+/// A roof on a roof: one contact of both sides acts at the ridge along neither, which is told; two contacts do not.
+#[test]
+fn creases_between_bodies_are_told() {
+    let roof = |below: f64, slope: f64| {
+        let slope = slope.to_radians().tan();
+        kinked(0.0)
+            .map_points(|[x, y, z]| [x, y, z - below - slope * (x - 1.0).abs()])
+            .expect("roof")
+    };
+    let told = |slope: f64, contacts: &[Contact]| {
+        let mesh = with_second(&roof(0.0, slope), &roof(1.0, slope));
+        let scene = Scene::new(mesh, uniform(1e9, 0.3))
+            .with_support(Support::fixed(second(brick::Z_MIN)))
+            .with_support(Support::fixed(second(RIGHT)))
+            .with_load(Load::body([0.0, 0.0, -1e6]));
+        let scene = contacts
+            .iter()
+            .fold(scene, |scene, contact| scene.with_contact(contact.clone()));
+        let plan = Plan::new(&scene, &Settings::default()).expect("plan");
+        let found = plan.warnings().iter().filter_map(|w| match w {
+            Warning::CreaseBetween { place, angle, .. } => Some((*place, *angle)),
+            _ => None,
+        });
+        found.collect::<Vec<_>>()
+    };
+    let whole = Contact::between(brick::Z_MIN, second(brick::Z_MAX)).with_tag(RIGHT);
+    let found = told(40.0, std::slice::from_ref(&whole));
+    assert!(
+        matches!(found[..], [([x, _, z], angle)] if x == 1.0 && z == 0.0 && (angle - 80.0).abs() < 1e-9),
+        "{found:?}"
+    );
+    assert!(told(20.0, std::slice::from_ref(&whole)).is_empty());
+    assert!(told(40.0, &[whole.with_crease(180.0)]).is_empty());
+    let halves = [brick::Z_MIN, RIGHT].map(|side| Contact::between(side, second(brick::Z_MAX)));
+    assert!(told(40.0, &halves).is_empty());
+}
