@@ -1,8 +1,9 @@
-//! Friction of a journal on facets whose diagonals run one way.
+//! Journals and press fits on uneven linear facets.
 
 use crate::common::*;
 use crate::curved_sides::closed;
 use signorini_fem_mesh::vec3::add;
+use std::f64::consts::TAU;
 
 /// A unit cube of cells that are cut alike into six tetrahedra, so that all its diagonals run one way.
 fn cut_alike(cells: [usize; 3]) -> TetMesh {
@@ -82,4 +83,45 @@ fn a_turning_shaft_is_held_by_the_torque_of_friction() {
             assert!((ratio - 1.0).abs() < 2e-4, "{cells:?}, {turn}: {ratio}");
         }
     }
+}
+
+/// A ring whose nodes are moved along its curved sides by up to so much of a cell, at random.
+fn uneven(radii: [f64; 2], cells: [usize; 3], phase: f64, amount: f64) -> TetMesh {
+    let moved = |[x, y, z]: [f64; 3]| {
+        let (radius, angle) = (x.hypot(y), y.atan2(x));
+        let random = |k: f64| (((angle * 917.3 + z * 331.7 + k) * 12.9898).sin() * 43758.5453) % 1.0;
+        let turned = angle + amount * random(0.0) * TAU / cells[1] as f64;
+        let at_rim = !(1e-9..8.0 - 1e-9).contains(&z);
+        let lifted = if at_rim { z } else { z + amount * random(3.0) * 8.0 / cells[2] as f64 };
+        [radius * turned.cos(), radius * turned.sin(), lifted]
+    };
+    closed(cut_alike(cells), radii, phase, 1)
+        .map_points(moved)
+        .expect("ring")
+}
+
+/// Uneven facets know the curve between them: an interference of a seventeenth of their distance from it presses everywhere,
+/// where points had pressed between not at all and 4.5 times the mean.
+#[test]
+fn uneven_facets_of_a_press_fit_press_everywhere() {
+    let mesh = with_second(
+        &uneven([4.0, 10.005], [2, 24, 2], 0.0, 0.3),
+        &uneven([10.0, 14.0], [2, 36, 3], 0.1, 0.3),
+    );
+    let fit = Contact::between(brick::X_MAX, second(brick::X_MIN)).with_measured_overlaps();
+    let scene = Scene::new(mesh, uniform(1e3, 0.3))
+        .with_support(Support::fixed(second(brick::X_MAX)))
+        .with_support(Support::components(brick::Z_MIN, [false, false, true]))
+        .with_contact(fit.with_friction(Friction::coulomb(0.2)));
+    let result = solve(scene, Settings::default());
+    let pressures: Vec<f64> = result.points.iter().map(|p| -p.normal_force / p.area).collect();
+    let mean = pressures.iter().sum::<f64>() / pressures.len() as f64;
+    let (least, most) = (
+        pressures.iter().copied().fold(f64::MAX, f64::min),
+        pressures.iter().copied().fold(0.0, f64::max),
+    );
+    assert!(
+        least > 0.5 * mean && most < 1.5 * mean,
+        "{least} to {most} about {mean}"
+    );
 }
