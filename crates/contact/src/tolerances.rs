@@ -440,6 +440,8 @@ pub(crate) const FLAT_ARC: f64 = 0.075;
 pub(crate) const ARC_ERROR: f64 = 0.1;
 /// Tilt of the normal at one end of an edge over that at the other end, below which the edge is between flat sides.
 pub(crate) const KINK: f64 = 0.3;
+/// Square of what a coefficient of a paraboloid adds to the others, over all that it is, above which nodes tell it.
+pub(crate) const TOLD: f64 = 1e-3;
 
 /// Poisson's ratio above which linear tetrahedra lock: at 0.45 a clamped brick of four cells across has lost a tenth of
 /// its deflection. Also that of rubber, which gives way along the surface between points on another side.

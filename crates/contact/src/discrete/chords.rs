@@ -1,6 +1,6 @@
 //! Edges of straight facets as chords of the curve that they stand for.
 
-use crate::tolerances::{BENT, FLAT_ARC, KINK};
+use crate::tolerances::{BENT, FLAT_ARC, KINK, TOLD};
 use nalgebra::{SMatrix, SVector};
 use rayon::prelude::*;
 use signorini_fem_mesh::internal::{ascending, distinct};
@@ -12,9 +12,10 @@ use std::collections::HashMap;
 /// that have one, m. Edges that turn by much may be those of a prism, so that theirs are not a number; those at kinks
 /// between flat sides are flat.
 pub(super) fn arcs(mesh: &TetMesh, surface: &Surface) -> HashMap<[u32; 2], f64> {
+    let surface = &fitted(mesh, surface.clone());
     let chords = Chords::new(mesh, surface);
     let all = || surface.triangles().iter().flat_map(|t| edges(*t));
-    let length = |edge: [u32; 2]| norm(sub(chords.place(edge[1]), chords.place(edge[0])));
+    let length = |edge: [u32; 2]| norm(along(mesh, surface, edge));
     // a kink turns towards a flat side as much as anywhere
     let (mut most, mut flat) = (
         vec![0.0_f64; surface.nodes().len()],
@@ -49,8 +50,6 @@ pub(super) fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
 pub(super) struct Chords<'a> {
     mesh: &'a TetMesh,
     surface: &'a Surface,
-    /// Of its nodes, in a mesh of order 1 better ones than the mean of facets.
-    normals: Vec<[f64; 3]>,
     /// Nodes at a rim, whose normals are those of facets on one side of them.
     at_rim: Vec<bool>,
     /// Ends of edges that are bent.
@@ -65,15 +64,9 @@ impl<'a> Chords<'a> {
         let mut out = Self {
             mesh,
             surface,
-            normals: surface.frames().iter().map(|frame| frame.normal).collect(),
             at_rim: vec![false; count],
             on_arc: vec![false; count],
         };
-        if mesh.order() == 1 {
-            let mut distinct = edges.clone();
-            distinct.dedup();
-            out.normals = out.fitted(&distinct);
-        }
         for same in edges.chunk_by(|a, b| a == b) {
             let bent = are_bent(out.tilts(same[0]));
             for node in same[0].map(|n| n as usize) {
@@ -84,61 +77,9 @@ impl<'a> Chords<'a> {
         out
     }
 
-    /// The normals of paraboloids through the nodes that are next to those on the two rings around them: means of uneven
-    /// facets of cylinders have errors, which falsify arcs. What is behind a kink does not count.
-    fn fitted(&self, edges: &[[u32; 2]]) -> Vec<[f64; 3]> {
-        let turn = |edge: [u32; 2]| {
-            let length = norm(sub(self.place(edge[1]), self.place(edge[0])));
-            self.tilts(edge).map(f64::abs).into_iter().fold(0.0, f64::max) / length
-        };
-        let mut most = vec![0.0_f64; self.normals.len()];
-        for (edge, n) in edges.iter().flat_map(|edge| edge.map(|n| (*edge, n as usize))) {
-            most[n] = most[n].max(turn(edge));
-        }
-        let mut ring = vec![Vec::new(); self.normals.len()];
-        for &[a, b] in edges {
-            if are_bent(self.tilts([a, b])) || turn([a, b]) <= KINK * most[a as usize].max(most[b as usize]) {
-                ring[a as usize].push(b);
-                ring[b as usize].push(a);
-            }
-        }
-        let fitted = |(node, frame): (usize, &SurfaceFrame)| {
-            let next = ring[node].iter().flat_map(|n| &ring[*n as usize]).chain(&ring[node]);
-            let near = distinct(next.copied().filter(|n| *n as usize != node));
-            let ways = || near.iter().map(|n| sub(self.place(*n), self.place(node as u32)));
-            let size = ways().map(|way| dot(way, way)).fold(0.0, f64::max).sqrt();
-            let (mut matrix, mut right) = (SMatrix::<f64, 5, 5>::zeros(), SVector::<f64, 5>::zeros());
-            for way in ways() {
-                let [x, y, z] = [frame.tangents[0], frame.tangents[1], frame.normal].map(|axis| dot(way, axis) / size);
-                let row = SVector::from([x, y, x * x, x * y, y * y]) / (x * x + y * y);
-                matrix += row * row.transpose();
-                right += row * (z / (x * x + y * y));
-            }
-            match matrix.cholesky().filter(|_| most[node] >= BENT) {
-                Some(factor) => {
-                    let slopes = factor.solve(&right);
-                    let tilt = add(scale(slopes[0], frame.tangents[0]), scale(slopes[1], frame.tangents[1]));
-                    unit(sub(frame.normal, tilt))
-                }
-                // too few nodes around it
-                None => frame.normal,
-            }
-        };
-        self.surface.frames().par_iter().enumerate().map(fitted).collect()
-    }
-
-    fn place(&self, node: u32) -> [f64; 3] {
-        self.mesh.points()[self.surface.nodes()[node as usize] as usize]
-    }
-
-    fn normal(&self, node: u32) -> [f64; 3] {
-        self.normals[node as usize]
-    }
-
     /// How far the normals of the ends of an edge tilt outward over its length, m.
-    fn tilts(&self, [a, b]: [u32; 2]) -> [f64; 2] {
-        let along = sub(self.place(b), self.place(a));
-        [-dot(along, self.normal(a)), dot(along, self.normal(b))]
+    fn tilts(&self, edge: [u32; 2]) -> [f64; 2] {
+        tilts(self.mesh, self.surface, edge)
     }
 
     /// Height of the arc over an edge, m, positive if it is convex; none over edges with a mid-node on the arc.
@@ -153,15 +94,84 @@ impl<'a> Chords<'a> {
             (false, false, false) => 0.0,
         };
         // of a circle
-        let length = norm(sub(self.place(edge[1]), self.place(edge[0])));
-        let cosine = (1.0 - (tilt / length).powi(2)).max(0.0).sqrt();
+        let sine = tilt / norm(along(self.mesh, self.surface, edge));
+        let cosine = (1.0 - sine * sine).max(0.0).sqrt();
         let arc = 0.5 * tilt / (1.0 + cosine);
         let Some(mid) = mid else { return arc };
-        let chord = scale(0.5, add(self.place(edge[0]), self.place(edge[1])));
-        let outward = add(self.normal(edge[0]), self.normal(edge[1]));
-        let off = 0.5 * dot(sub(self.mesh.points()[mid as usize], chord), outward);
+        let place = |local: u32| self.mesh.points()[self.surface.nodes()[local as usize] as usize];
+        let chord = scale(0.5, add(place(edge[0]), place(edge[1])));
+        let outward = edge.map(|end| self.surface.frames()[end as usize].normal);
+        let way = sub(self.mesh.points()[mid as usize], chord);
+        let off = 0.5 * dot(way, add(outward[0], outward[1]));
         if off * arc.signum() > 0.5 * arc.abs() { 0.0 } else { arc }
     }
+}
+
+/// From one end of an edge to the other, m.
+fn along(mesh: &TetMesh, surface: &Surface, edge: [u32; 2]) -> [f64; 3] {
+    let [from, to] = edge.map(|end| mesh.points()[surface.nodes()[end as usize] as usize]);
+    sub(to, from)
+}
+
+/// How far the normals of the ends of an edge tilt outward over its length, m.
+fn tilts(mesh: &TetMesh, surface: &Surface, edge: [u32; 2]) -> [f64; 2] {
+    let along = along(mesh, surface, edge);
+    let [a, b] = edge.map(|end| dot(along, surface.frames()[end as usize].normal));
+    [-a, b]
+}
+
+/// A surface in a mesh of order 1 with the normals of paraboloids through the nodes that are next to those on the two
+/// rings around them: means of uneven facets of a cylinder are off by some hundredths, and arcs with them. What is
+/// behind a kink does not count. They are no normals of contact, as their rounding would hold what slides along a curve.
+fn fitted(mesh: &TetMesh, surface: Surface) -> Surface {
+    let edges = distinct(surface.triangles().iter().flat_map(|t| edges(*t)));
+    let count = surface.nodes().len();
+    let turn = |edge: [u32; 2]| {
+        let tilts = tilts(mesh, &surface, edge).map(f64::abs);
+        tilts[0].max(tilts[1]) / norm(along(mesh, &surface, edge))
+    };
+    let mut most = vec![0.0_f64; count];
+    for (edge, n) in edges.iter().flat_map(|edge| edge.map(|n| (*edge, n as usize))) {
+        most[n] = most[n].max(turn(edge));
+    }
+    let mut ring = vec![Vec::new(); count];
+    for [a, b] in edges {
+        let most = most[a as usize].max(most[b as usize]);
+        if are_bent(tilts(mesh, &surface, [a, b])) || turn([a, b]) <= KINK * most {
+            ring[a as usize].push(b);
+            ring[b as usize].push(a);
+        }
+    }
+    let normal = |node: usize, frame: &SurfaceFrame| {
+        let next = ring[node].iter().flat_map(|n| &ring[*n as usize]).chain(&ring[node]);
+        let near = distinct(next.copied().filter(|n| *n as usize != node));
+        let ways = || near.iter().map(|n| along(mesh, &surface, [node as u32, *n]));
+        let size = ways().map(|way| dot(way, way)).fold(0.0, f64::max).sqrt();
+        let (mut matrix, mut right) = (SMatrix::<f64, 5, 5>::zeros(), SVector::<f64, 5>::zeros());
+        for way in ways() {
+            let [x, y, z] = [frame.tangents[0], frame.tangents[1], frame.normal].map(|axis| dot(way, axis) / size);
+            let row = SVector::from([x, y, x * x, x * y, y * y]) / (x * x + y * y);
+            matrix += row * row.transpose();
+            right += row * (z / (x * x + y * y));
+        }
+        let roots = matrix.diagonal().map(f64::sqrt);
+        matrix.component_div_assign(&(roots * roots.transpose()));
+        // nodes in a row, or too few, tell nothing
+        let factor = matrix.cholesky()?;
+        let roots_left = factor.l_dirty().diagonal();
+        roots_left.iter().all(|l| l * l > TOLD).then_some(())?;
+        let slopes = factor.solve(&right.component_div(&roots)).component_div(&roots);
+        let tilt = add(scale(slopes[0], frame.tangents[0]), scale(slopes[1], frame.tangents[1]));
+        Some(unit(sub(frame.normal, tilt)))
+    };
+    let all = surface.frames().par_iter().enumerate();
+    let bent = all.map(|(node, frame)| {
+        normal(node, frame)
+            .filter(|_| most[node] >= BENT)
+            .unwrap_or(frame.normal)
+    });
+    let normals: Vec<[f64; 3]> = bent.collect();
+    surface.with_normals(&normals)
 }
 
 /// Whether an edge is the chord of an arc, which bends at both ends. One between flat sides bends at one end.
