@@ -146,6 +146,9 @@ pub(crate) const LINEAR: f64 = 0.05;
 /// Second moment of a covered part below which it has no extent, over that along it.
 pub(crate) const NO_EXTENT: f64 = 1e-13;
 
+/// Distance from the border of what covers a facet, over the length of the way there, up to which a place is on it.
+pub(crate) const AT_BORDER: f64 = 1e-9;
+
 /// Distance of a mid-node from the middle of its edge, over the size of the facet, from which on the edge is bent.
 pub(crate) const BENT: f64 = 1e-9;
 

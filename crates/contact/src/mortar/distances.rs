@@ -1,6 +1,6 @@
 //! Distances of the nodes of a facet from what covers it.
 
-use super::cover::{Flat, Laid, Piece, Point, area, barycentric, mean};
+use super::pieces::{Flat, Laid, Piece, Point, area, barycentric, mean};
 use crate::tolerances::OVERLAP;
 
 /// The distances of the corners of a facet from the curve that pieces stand for, m, if they or the facet itself are

@@ -1,10 +1,11 @@
 //! Mortar coupling of two surfaces whose meshes do not match.
 //!
-//! Facets of both sides are intersected in the plane of a facet of the first side (`search`), distances measured at its
-//! nodes (`distances`), and integrals taken over the covered part of that facet (`cover`). With dual shape functions
-//! each node of the first side has one point, whose other side is a list of nodes with weights (`nodes`); on quadratic
-//! facets they are blended with hat functions, but where a gap opens from the rim (`opening`). Across a distance, tied
-//! sides extrapolate displacements from the tetrahedra behind, others rotate (`discrete::side`).
+//! Facets of both sides are intersected in the plane of a facet of the first side (`search`, `pieces`), distances
+//! measured at its nodes (`distances`), and integrals taken over the covered part of that facet (`cover`). With dual
+//! shape functions each node of the first side has one point, whose other side is a list of nodes with weights
+//! (`nodes`); on quadratic facets they are blended with hat functions, but where a gap opens from the rim (`opening`).
+//! Across a distance, tied sides extrapolate displacements from the tetrahedra behind, others rotate
+//! (`discrete::side`).
 //!
 //! Uses: nothing of this crate but `tolerances`. In: two surfaces. Out: a [`MortarNode`] for each node that the other
 //! side faces.
@@ -13,6 +14,7 @@ mod cover;
 mod distances;
 mod nodes;
 mod opening;
+mod pieces;
 mod search;
 
 pub(crate) use nodes::{MortarNode, mortar_nodes};

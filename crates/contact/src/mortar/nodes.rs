@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, HashSet};
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct MortarNode {
     /// Nodes of its own side with weights that sum to one, the node itself first if it has a weight: between tips in a
-    /// mesh of order 2 it has none. In a mesh of order 1 nothing else.
+    /// mesh of order 2 it has none. In a mesh of order 1 nothing else, unless the cover ends beside it.
     pub(crate) own: Vec<(u32, f64)>,
     /// Nodes of the other side with weights that sum to one, the largest first; of a tied one that is apart also nodes
     /// behind it.
@@ -92,12 +92,28 @@ pub(crate) fn mortar_nodes(
     crossing: impl Fn(&[Option<MortarNode>]) -> HashSet<u32>,
 ) -> Vec<Option<MortarNode>> {
     let triangles = in_order(mesh, surface);
-    let covers = covers(mesh, &triangles, other, tied, bends);
     let corners: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.nodes).collect();
     let around = Lists::by_key(mesh.points().len(), corners.as_flattened());
-    // tied sides need no normal, and means of displacements have their own
-    let may_bend = !tied && mesh.order() == 1;
     let crease = crease.to_radians().cos();
+    let is_bent = |node: u32| {
+        let facets: Vec<&[u32; 3]> = around
+            .of(node as usize)
+            .iter()
+            .map(|k| &corners[*k as usize / 3])
+            .collect();
+        is_bent(mesh, &facets, crease)
+    };
+    // tied sides need no normal, and means of displacements have their own
+    let may_part = !tied && mesh.order() == 1;
+    let bent: HashSet<u32> = surface
+        .nodes()
+        .par_iter()
+        .copied()
+        .filter(|n| may_part && is_bent(*n))
+        .collect();
+    // around a curve a place has another normal than its node
+    let within = |nodes: [u32; 3]| may_part && !nodes.iter().any(|n| bent.contains(n));
+    let covers = covers(mesh, &triangles, other, (tied, &within), bends);
     let node = |(local, &own): (usize, &u32), shared: &HashSet<u32>| {
         let is_tip = |node: u32| other.local(node).is_some() || shared.contains(&node);
         if is_tip(own) {
@@ -115,8 +131,7 @@ pub(crate) fn mortar_nodes(
         if sums.area <= COVERED * surface.areas()[local] {
             return None;
         }
-        let facets: Vec<&[u32; 3]> = places().map(|place| &corners[place / 3]).collect();
-        let frame = if may_bend && is_bent(mesh, &facets, crease) {
+        let frame = if bent.contains(&own) {
             surface.frames()[local]
         } else {
             SurfaceFrame::from_normal(sums.normal)?

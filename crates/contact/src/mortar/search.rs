@@ -1,8 +1,9 @@
 //! Which facets of the other side cover a facet.
 
-use super::cover::{Cover, Flat, Laid, Piece, Way, barycentric};
+use super::cover::Cover;
 use super::distances::{curve, gaps};
 use super::opening::Rim;
+use super::pieces::{Flat, Laid, Piece, Way, barycentric};
 use crate::tolerances::{BENT, FACING, LAYERS, OVERLAP};
 use rayon::prelude::*;
 use rstar::primitives::{GeomWithData, Rectangle};
@@ -161,12 +162,13 @@ pub(super) struct Seen {
 ///
 /// What is farther away than four times the largest distance found anywhere is not looked for, unless nothing is found.
 /// Displacements of the other side are those where they are, or [on the facet](Way) if it is `tied`. Facets on which a
-/// gap opens from the `rim` have dual functions; facets of the other side are chords of `arcs`.
+/// gap opens from the `rim` have dual functions, multipliers of those `within` stay within their cover; facets of the
+/// other side are chords of `arcs`.
 pub(super) fn covers(
     mesh: &TetMesh,
     triangles: &[Triangle],
     other: &Surface,
-    tied: bool,
+    (tied, within): (bool, &(dyn Fn([u32; 3]) -> bool + Sync)),
     (rim, arcs): Bends<'_>,
 ) -> Vec<Option<Seen>> {
     let other = OtherSide::new(mesh, other, arcs);
@@ -188,7 +190,8 @@ pub(super) fn covers(
                 let farthest = pieces.iter().map(|p| p.1.abs()).fold(0.0, f64::max);
                 let pieces: Vec<Piece> = pieces.into_iter().map(|p| p.0).collect();
                 let opens = |rim: &Rim<'_>| Some(rim.opens(own.nodes?, || gaps(&own, &pieces)));
-                let cover = Cover::new(&own, &pieces, rim.and_then(opens) == Some(true));
+                let within = Some(triangles[k].nodes).filter(|nodes| within(*nodes));
+                let cover = Cover::new(&own, &pieces, rim.and_then(opens) == Some(true), within);
                 let seen = cover.map(|cover| Seen {
                     cover,
                     normals: triangles[k].normals(mesh, plane),

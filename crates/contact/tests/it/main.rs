@@ -45,6 +45,7 @@ mod moving_field;
 mod moving_obstacle;
 mod never;
 mod orthotropic;
+mod overhang;
 mod pairs;
 mod pairs_cost;
 mod pairs_found;

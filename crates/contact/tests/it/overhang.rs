@@ -1,0 +1,87 @@
+//! Bodies that reach beyond what they stand on, on meshes that do not match: they topple where they must, whichever
+//! side is named first.
+
+use crate::common::*;
+
+/// A plank of 1 N and length 1 that reaches beyond a fixed block of the same length by `over`.
+fn overhangs(cells: [usize; 3], over: f64, swap: bool) -> bool {
+    let lower = block([1.0, 0.5, 0.25], [cells[0], cells[2], 1]);
+    let upper = block([1.0, 0.5, 0.25], [cells[1], cells[2], 1])
+        .map_points(|[x, y, z]| [x + over, y, z + 0.25])
+        .expect("moved");
+    let (under, top) = (second(brick::Z_MIN), brick::Z_MAX);
+    let [first, other] = if swap { [top, under] } else { [under, top] };
+    let scene = Scene::new(with_second(&lower, &upper), uniform(2e11, 0.3))
+        .with_support(Support::fixed(brick::Z_MIN))
+        .with_contact(Contact::between(first, other).with_friction(Friction::coulomb(0.5)))
+        .with_load(Load::body([0.0, 0.0, -8.0]));
+    let result = Simulation::new(scene, Settings::default()).and_then(|mut s| s.step());
+    match result {
+        Ok(result) => result.report().status.converged(),
+        Err(ContactError::NotHeld { .. }) => false,
+        Err(error) => panic!("{cells:?} {over} {swap}: {error}"),
+    }
+}
+
+/// Points at nodes beyond the block had levers that it does not have: planks stood that reach beyond by up to 0.95, and
+/// pulled its edge up.
+#[test]
+fn planks_topple_beyond_their_middle() {
+    for cells in [
+        [3, 3, 2],
+        [4, 4, 1],
+        [7, 7, 2],
+        [1, 1, 1],
+        [3, 4, 2],
+        [5, 1, 2],
+        [8, 2, 2],
+    ] {
+        for swap in [false, true] {
+            for (over, stands) in [(0.4, true), (0.499, true), (0.501, false), (0.53, false), (0.9, false)] {
+                assert_eq!(overhangs(cells, over, swap), stands, "{cells:?}, {over}, {swap}");
+            }
+        }
+    }
+}
+
+/// A plank on two narrow supports: each has half of it; one had up to 0.55.
+#[test]
+fn supports_of_a_plank_are_pressed_alike() {
+    for (cells, under) in [(4, 4), (8, 8), (4, 5), (10, 3)] {
+        for swap in [false, true] {
+            let foot = |from: f64| {
+                block([0.2, 0.5, 0.25], [under, 2, 1])
+                    .map_points(|[x, y, z]| [x + from, y, z])
+                    .expect("moved")
+            };
+            let plank = block([1.0, 0.5, 0.25], [cells, 2, 1])
+                .map_points(|[x, y, z]| [x, y, z + 0.25])
+                .expect("moved");
+            let mesh = foot(-0.1)
+                .append(&foot(0.9).map_tags(|t| FacetTag(t.0 + 200)))
+                .expect("feet");
+            let top = [brick::Z_MAX, FacetTag(brick::Z_MAX.0 + 200)];
+            let mut scene = Scene::new(with_second(&mesh, &plank), uniform(2e11, 0.3))
+                .with_support(Support::fixed(brick::Z_MIN))
+                .with_support(Support::fixed(FacetTag(brick::Z_MIN.0 + 200)))
+                .with_load(Load::body([0.0, 0.0, -8.0]));
+            for top in top {
+                let under = second(brick::Z_MIN);
+                let [first, other] = if swap { [top, under] } else { [under, top] };
+                scene = scene.with_contact(Contact::between(first, other).with_friction(Friction::coulomb(0.5)));
+            }
+            let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+            let result = simulation.step().expect("step");
+            let forces: Vec<f64> = result
+                .reactions()
+                .contacts
+                .iter()
+                .map(|contact| contact.force[2].abs())
+                .collect();
+            assert!(
+                forces.iter().all(|f| (f - 0.5).abs() < 0.03),
+                "{cells} {under} {swap}: {forces:?}"
+            );
+        }
+    }
+}
