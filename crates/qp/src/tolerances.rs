@@ -160,7 +160,7 @@ pub(crate) const BEHIND_PATH: f64 = 0.01;
 
 // Active set: without progress
 
-/// Sets without a better error after which every move has to descend.
+/// Sets without a better error after which predictions run in circles: another path is tried, or the solve ends.
 pub(crate) const PATIENCE: usize = 12;
 /// Sets without progress after which the solved set tells what is active next, not the point moved to.
 pub(crate) const UNSURE: usize = 4;
@@ -173,19 +173,8 @@ pub(crate) const SWINGING_ROUNDS: usize = 8;
 pub(crate) const LEAST_PART: f64 = 0.1;
 /// Factor on `PATIENCE` for moves in a row that find no balance, from which on there seems to be none.
 pub(crate) const UNBALANCED: usize = 2;
-/// With the safeguard: factor on `PATIENCE` and sets.
+/// Factor on the most active sets once a path has led to another set.
 pub(crate) const LONGER: usize = 5;
-/// With the safeguard: part of the last move of the set to which its problem is solved before it follows again.
-pub(crate) const FOLLOW: f64 = 0.1;
-/// Share of the decrease on the active set that a move has to keep.
-pub(crate) const KEPT_DECREASE: f64 = 1e-2;
-/// Part of its length below which a step is held up by blocks at their boundary, and the shortest that is tried.
-pub(crate) const SHORT: f64 = 0.3;
-pub(crate) const SHORTEST: f64 = 1e-3;
-/// Part of the error without blocked blocks to which the problem with them is solved before they are released.
-pub(crate) const RELEASE: f64 = 0.01;
-/// Distance from the set over `|x|` up to which a point is feasible.
-pub(crate) const INSIDE: f64 = 1e-11;
 
 // Active set: the start of bodies that constraints alone hold
 

@@ -18,8 +18,6 @@ pub(crate) struct ActiveSet {
     pub(crate) free: Vec<bool>,
     /// For every disc, in order.
     pub(crate) discs: Vec<Disc>,
-    /// Blocks that stopped a step at their boundary, bounds first, then discs; empty for none. They stay there.
-    pub(crate) blocked: Vec<bool>,
     /// Bounds that are active in the next classification, then discs that slide, see [`foresee`](Self::foresee);
     /// empty where its own residual tells.
     pub(crate) foreseen: Vec<bool>,
@@ -43,7 +41,6 @@ impl ActiveSet {
         self.free.resize(bounds, false);
         self.discs.clear();
         self.discs.resize(discs, Disc::Fixed);
-        self.blocked.clear();
         self.foreseen.clear();
         self.changed = bounds;
         self.freed = 0;
@@ -116,23 +113,6 @@ impl ActiveSet {
             self.discs[k] = Disc::Free;
         }
         !sliding.is_empty()
-    }
-
-    /// Keeps the blocks where they are that stand at their boundary in `x` and that `step` takes across it. Whether there
-    /// are more than before.
-    pub(crate) fn block(&mut self, set: &ProductSet, x: &[f64], step: &[f64]) -> bool {
-        let (bounds, discs) = (self.free.len(), self.discs.len());
-        let blocked = &mut self.blocked;
-        blocked.resize(bounds + discs, false);
-        let before = blocked.iter().filter(|b| **b).count();
-        for_bounds(set, |i, k, lo, hi| {
-            blocked[k] |= (x[i] <= lo && step[i] < 0.0) || (x[i] >= hi && step[i] > 0.0);
-        });
-        for_discs(set, |i, k, radius| {
-            let outward = x[i] * step[i] + x[i + 1] * step[i + 1];
-            blocked[bounds + k] |= x[i].hypot(x[i + 1]) >= radius * (1.0 - MAY_SLIDE) && outward > 0.0;
-        });
-        blocked.iter().filter(|b| **b).count() > before
     }
 
     /// Of the constrained components: 1 on those that may move in both directions, 0 on others (the one direction of

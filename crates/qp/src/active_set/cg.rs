@@ -34,9 +34,8 @@ pub(crate) struct Goal {
     pub(crate) limits: Lengths,
     /// No more products than that in the whole solve.
     pub(crate) max_products: usize,
-    /// Whether to go on as long as the natural map leaves the active set as it is, and `|x|` has not outgrown its value
-    /// at the start, `size`, by which the limits were set.
-    pub(crate) goes_on: bool,
+    /// It goes on as long as the natural map leaves the active set as it is, and `|x|` has not outgrown its value at the
+    /// start, `size`, by which the limits were set.
     pub(crate) size: f64,
 }
 
@@ -86,7 +85,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
             if errors.within(enough) {
                 let more = !errors.within(goal.limits);
                 let exact = errors.all > digits * first.all;
-                if more && exact && goal.goes_on && self.stays(goal) {
+                if more && exact && self.stays(goal) {
                     enough = fallen(errors);
                     continue;
                 }

@@ -1,7 +1,7 @@
 //! The iterate on its present active set: what conjugate gradients, and the moves between sets, work on.
 
 use crate::error::QpError;
-use crate::problem::{Constrained, ConvexSet, EqualityProjector, ProductSet, SymmetricOperator, for_constrained};
+use crate::problem::{Constrained, EqualityProjector, ProductSet, SymmetricOperator, for_constrained};
 use crate::tolerances::SLID;
 use crate::vector;
 
@@ -201,24 +201,6 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Ite
         residual[..constrained].copy_from_slice(saved);
         *z_norm = square.sqrt();
         (rho, other)
-    }
-
-    /// Brings `x`, moved from the mark, back to set and equality; the product follows. Returns how far constrained
-    /// components have moved; where set and equality do not meet, this does not fall.
-    pub(crate) fn restore(&mut self) -> f64 {
-        let (rhs, constrained) = (self.problem.rhs, self.constrained());
-        if self.projector.loose().is_empty() {
-            self.set.project(self.x);
-            self.projector.balance(self.x, rhs);
-            self.set.project(self.x);
-        } else {
-            self.project();
-        }
-        self.projector.repair(self.x, rhs);
-        let moved = vector::distance(&self.x[..constrained], &self.work.t[..constrained]);
-        let jump = moved.max(self.set.violation(self.x));
-        self.correct(0.0);
-        jump
     }
 
     /// Moves `x` to the point of the set next to it whose constrained components balance what nothing else does, in

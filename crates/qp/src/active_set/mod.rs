@@ -2,8 +2,8 @@
 //! predicts the next choice.
 //!
 //! From above: `solver` (the loop), `start`, `moves` and `run` (what happens between one active set and the next),
-//! `descent` (safeguard against cycles of predictions), `path` and `compliance` (springs that lead to another set),
-//! `cg` and `weights` (the linear problem), `iterate` (the point), `balance` (modes that constraints alone stop),
+//! `path` and `compliance` (springs that lead to another set), `cg` and `weights` (the linear problem), `iterate` (the
+//! point), `balance` (modes that constraints alone stop),
 //! `coupling` (radii that depend on the solution), `natural_map`, `blocks` and `disc` (states); `problem`, `settings`,
 //! `view`.
 //!
@@ -15,7 +15,6 @@ mod blocks;
 mod cg;
 mod compliance;
 mod coupling;
-mod descent;
 mod disc;
 mod iterate;
 mod moves;

@@ -2,9 +2,7 @@
 
 use crate::error::QpError;
 use crate::problem::{EqualityProjector, SymmetricOperator};
-use crate::tolerances::{
-    BALANCE_ROUNDS, LEAST_PART, NEGLIGIBLE, SETTLED, SHORT, SHORTEST, SWING, SWINGING_ROUNDS, UNSURE,
-};
+use crate::tolerances::{BALANCE_ROUNDS, LEAST_PART, NEGLIGIBLE, SETTLED, SWING, SWINGING_ROUNDS, UNSURE};
 use crate::vector;
 
 use super::blocks::ActiveSet;
@@ -15,8 +13,7 @@ use super::view::ActiveSetPreconditioner;
 
 impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, A, C, M> {
     /// Moves `x` to the next active set, with the next step of conjugate gradients, of this `length`, on top. The set
-    /// follows where the active set has settled. Then set, equality and product are in order again, and a safeguard
-    /// has its say.
+    /// follows where the active set has settled. Then set, equality and product are in order again.
     pub(crate) fn move_on(&mut self, length: f64, place: &Place) -> Result<(), QpError> {
         let constrained = self.at.constrained();
         self.at.mark();
@@ -26,7 +23,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         if self.repairs_suffice && unsure {
             at.tell_map(ActiveSet::foresee);
         }
-        self.moved.followed = (self.safeguard.is_none() || place.solved) && self.has_settled();
+        self.moved.followed = self.has_settled();
         if self.repairs_suffice {
             self.settle()?;
         } else {
@@ -38,14 +35,13 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         let at = &mut self.at;
         self.moved.jump = vector::distance(&at.x[..constrained], &at.work.before);
         self.balance(joint, place);
-        self.descend();
         Ok(())
     }
 
     /// Whether the solved set is to tell what is active next, not the point moved to: on bodies that bend easily forces
     /// that pull, and are cut off, come back there.
     fn is_unsure(&self) -> bool {
-        self.safeguard.is_none() && (self.is_near_path() || self.progress.waited >= UNSURE)
+        self.is_near_path() || self.progress.waited >= UNSURE
     }
 
     /// Moves `x` into the set as the natural map says, and lets the set follow.
@@ -103,10 +99,10 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
     }
 
     /// The next step of conjugate gradients, which shares its product with the move: without constraints there is no
-    /// move, and with a safeguard only what descends is taken. Whether there is one.
+    /// move. Whether there is one.
     fn joint_step(&mut self, length: f64) -> bool {
         let at = &mut self.at;
-        if at.constrained() == 0 || self.safeguard.is_some() {
+        if at.constrained() == 0 {
             return false;
         }
         if length > 0.0 {
@@ -132,9 +128,6 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
     /// the solve goes on.
     fn balance(&mut self, joint: bool, place: &Place) {
         let at = &mut self.at;
-        if let Some(safeguard) = &mut self.safeguard {
-            safeguard.current = self.moved.followed;
-        }
         if self.moved.jump > 0.0 || joint && self.moved.drifted {
             at.projector.repair_step(at.x, at.problem.rhs);
             self.moved.drifted = false;
@@ -148,41 +141,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
     /// Whether the problem on the set is solved, and the move to the next one next to nothing.
     fn may_end(&self, place: &Place) -> bool {
         let short = self.moved.jump <= NEGLIGIBLE * place.limits.constrained;
-        self.at.compliance.c == 0.0
-            && short
-            && self.moved.followed
-            && self.left.within(place.limits)
-            && self.safeguard.is_none()
-    }
-
-    /// With a safeguard, where the set stayed: shortens the move until the cost falls, and holds blocks that stop it.
-    fn descend(&mut self) {
-        let at = &mut self.at;
-        let Some(safeguard) = &mut self.safeguard else {
-            return;
-        };
-        if safeguard.current {
-            safeguard.drift = self.moved.jump;
-            return;
-        }
-        let mut t = 1.0;
-        while t > SHORTEST && !safeguard.descends(at.problem.operator, (at.x, at.ax), t) {
-            safeguard.shorten(t, at.x, at.ax);
-            at.mark();
-            self.moved.jump = at.restore();
-            t *= 0.5;
-        }
-        let rises = safeguard.judge(at.problem.operator, at.set, (at.x, at.ax), t);
-        if t >= SHORT {
-            at.work.active.blocked.clear();
-            return;
-        }
-        let (from, step) = safeguard.path();
-        let more = at.work.active.block(at.set, from, step);
-        if rises && more {
-            safeguard.back(at.x, at.ax);
-            self.moved.jump = f64::INFINITY;
-        }
+        self.at.compliance.c == 0.0 && short && self.moved.followed && self.left.within(place.limits)
     }
 }
 

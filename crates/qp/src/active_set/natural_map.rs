@@ -39,19 +39,14 @@ impl ActiveSet {
     /// Classifies every block at the feasible point `x`; as [foreseen](Self::foresee), if it was.
     pub(crate) fn classify(&mut self, set: &ProductSet, x: &[f64], map: &NaturalMap<'_>) {
         let Self {
-            free,
-            discs,
-            blocked,
-            foreseen,
-            ..
+            free, discs, foreseen, ..
         } = self;
         let bounds = free.len();
-        let stays = |k: usize| blocked.get(k).is_some_and(|b| *b);
         let (mut changed, mut freed, mut free_bounds, mut crossing) = (0, 0, 0, 0.0_f64);
         for_bounds(set, |i, k, lo, hi| {
             let s = map.of(x, i);
             // a component is active only if it also is at its bound
-            let agrees = |beyond: bool| foreseen.get(k).copied().unwrap_or(beyond || stays(k));
+            let agrees = |beyond: bool| foreseen.get(k).copied().unwrap_or(beyond);
             let active = lo >= hi || (x[i] <= lo && agrees(s <= lo)) || (x[i] >= hi && agrees(s >= hi));
             changed += usize::from(free[k] == active);
             freed += usize::from(!free[k] && !active);
@@ -69,7 +64,6 @@ impl ActiveSet {
             discs[k] = match (foreseen.get(bounds + k), state) {
                 (Some(true), Disc::Free) => along_circle(at, radius),
                 (Some(false), Disc::Sliding { .. }) => Disc::Free,
-                (None, Disc::Free) if stays(bounds + k) => along_circle(at, radius),
                 _ => state,
             };
         });
@@ -211,32 +205,27 @@ mod tests {
         f(&set, &NaturalMap { gradient, scale, step })
     }
 
-    fn active_set(set: &ProductSet, blocked: &[bool]) -> ActiveSet {
+    fn active_set(set: &ProductSet) -> ActiveSet {
         let mut own = ActiveSet::default();
         own.resize(set);
-        own.blocked = blocked.to_vec();
         own
     }
 
     #[test]
     fn components_are_active_where_they_are_and_would_be_so() {
-        // x, gradient, blocked: free?
-        for (x, g, blocked, free) in [
-            (0.0, 0.5, false, false),
-            (0.0, -0.5, false, true),
-            (1.0, -0.5, false, false),
-            (1.0, 0.5, false, true),
+        // x, gradient: free?
+        for (x, g, free) in [
+            (0.0, 0.5, false),
+            (0.0, -0.5, true),
+            (1.0, -0.5, false),
+            (1.0, 0.5, true),
             // predicted to be active, but not there
-            (0.5, 2.0, false, true),
-            (0.5, -2.0, false, true),
-            // a step was stopped there
-            (0.0, -0.5, true, false),
-            (1.0, 0.5, true, false),
-            (0.5, 0.1, true, true),
+            (0.5, 2.0, true),
+            (0.5, -2.0, true),
         ] {
-            let what = format!("{x} {g} {blocked}");
+            let what = format!("{x} {g}");
             with(Segment::bounds(vec![0.0], vec![1.0]), &[g], |set, map| {
-                let mut own = active_set(set, &[blocked]);
+                let mut own = active_set(set);
                 own.classify(set, &[x], map);
                 assert_eq!(own.free, [free], "{what}");
                 let count = usize::from(free);
@@ -248,7 +237,7 @@ mod tests {
             });
         }
         with(Segment::bounds(vec![1.0], vec![1.0]), &[-3.0], |set, map| {
-            let mut own = active_set(set, &[]);
+            let mut own = active_set(set);
             own.classify(set, &[1.0], map);
             assert_eq!(own.free, [false]);
         });
@@ -265,13 +254,13 @@ mod tests {
             (0.0, -0.05, false, false),
         ] {
             with(Segment::bounds(vec![0.0], vec![1.0]), &[g], |set, map| {
-                let mut own = active_set(set, &[]);
+                let mut own = active_set(set);
                 own.free = vec![free];
                 assert_eq!(own.contradicted(set, &[x], map, 0.1), expected, "{x} {g}");
             });
         }
         with(Segment::bounds(vec![1.0], vec![1.0]), &[-3.0], |set, map| {
-            assert!(!active_set(set, &[]).contradicted(set, &[1.0], map, 0.1));
+            assert!(!active_set(set).contradicted(set, &[1.0], map, 0.1));
         });
     }
 
@@ -287,7 +276,7 @@ mod tests {
             (0.0, -0.5, false, false),
         ] {
             with(Segment::bounds(vec![0.0], vec![1.0]), &[g], |set, map| {
-                let mut own = active_set(set, &[]);
+                let mut own = active_set(set);
                 own.free = vec![free];
                 assert_eq!(own.stays(set, &[x], map), stays, "{x} {g} {free}");
             });
@@ -300,7 +289,7 @@ mod tests {
             (sliding, [2.0, 0.0], [-1.0, 0.0], false),
         ] {
             with(Segment::discs(vec![2.0]), &g, |set, map| {
-                let mut own = active_set(set, &[]);
+                let mut own = active_set(set);
                 own.discs = vec![state];
                 assert_eq!(own.stays(set, &x, map), stays, "{state:?} {x:?} {g:?}");
             });
@@ -320,13 +309,13 @@ mod tests {
             let what = format!("{x} {before} {free} {after}");
             let segment = || Segment::bounds(vec![0.0], vec![1.0]);
             let own = with(segment(), &[before], |set, map| {
-                let mut own = active_set(set, &[]);
+                let mut own = active_set(set);
                 own.free = vec![free];
                 own.foresee_moved(set, &[x], map);
                 own.foreseen
             });
             with(segment(), &[after], |set, map| {
-                let mut next = active_set(set, &[]);
+                let mut next = active_set(set);
                 next.foreseen.clone_from(&own);
                 next.classify(set, &[x], map);
                 assert_eq!(next.free, [expected], "{what}");
@@ -340,7 +329,7 @@ mod tests {
             (sliding, [2.0, 0.0], [1.0, 0.0], false),
         ] {
             with(Segment::discs(vec![2.0]), &g, |set, map| {
-                let mut own = active_set(set, &[]);
+                let mut own = active_set(set);
                 own.discs = vec![state];
                 own.foresee_moved(set, &x, map);
                 assert_eq!(own.foreseen, [expected], "{state:?} {x:?} {g:?}");
@@ -369,21 +358,21 @@ mod tests {
     fn discs_stick_inside_and_slide_on_the_circle() {
         let (n, radius) = ([0.6, 0.8], 2.0);
         let on = n.map(|c| radius * c);
-        let state = |radius: f64, x: [f64; 2], g: [f64; 2], blocked: bool| {
+        let state = |radius: f64, x: [f64; 2], g: [f64; 2]| {
             with(Segment::discs(vec![radius]), &g, |set, map| {
-                let mut own = active_set(set, &[blocked]);
+                let mut own = active_set(set);
                 own.classify(set, &x, map);
                 own.discs[0]
             })
         };
-        assert_eq!(state(0.0, [0.0; 2], [1.0; 2], false), Disc::Fixed);
-        assert_eq!(state(radius, [0.6, 0.8], [-6.0, -8.0], false), Disc::Free);
+        assert_eq!(state(0.0, [0.0; 2], [1.0; 2]), Disc::Fixed);
+        assert_eq!(state(radius, [0.6, 0.8], [-6.0, -8.0]), Disc::Free);
         // drawn inward
-        assert_eq!(state(radius, on, [0.6, 0.8], false), Disc::Free);
+        assert_eq!(state(radius, on, [0.6, 0.8]), Disc::Free);
         // far beyond the other side: held for the move across, once
         let far = n.map(|c| 4.0 * ACROSS * radius * c);
         with(Segment::discs(vec![radius]), &far, |set, map| {
-            let mut own = active_set(set, &[]);
+            let mut own = active_set(set);
             own.discs = vec![Disc::Free];
             for (expected, crossing) in [(Disc::Fixed, radius), (Disc::Free, 0.0), (Disc::Fixed, radius)] {
                 own.classify(set, &on, map);
@@ -395,7 +384,7 @@ mod tests {
             assert!((x[0] + on[0]).abs() + (x[1] + on[1]).abs() < 1e-14, "{x:?}");
         });
         // pushed out with 3 N: curvature 3 / 2, scale 2
-        let pushed = state(radius, on, [-1.8, -2.4], false);
+        let pushed = state(radius, on, [-1.8, -2.4]);
         let Disc::Sliding {
             tau,
             kappa,
@@ -413,20 +402,6 @@ mod tests {
         near(kappa, 1.5);
         near(damp, 0.25);
         near(own, 1.5 * (2.0 * 0.25_f64).powi(2));
-        // stopped there: along the circle without curvature
-        for (x, slides) in [(on, true), ([0.6, 0.8], false)] {
-            let state = state(radius, x, [0.6, 0.8], true);
-            match state {
-                Disc::Sliding {
-                    tau, kappa, own, slip, ..
-                } if slides => {
-                    assert!((tau[0] + 0.8).abs() < 1e-14 && (tau[1] - 0.6).abs() < 1e-14);
-                    assert_eq!([kappa, own, slip], [0.0; 3]);
-                }
-                Disc::Free if !slides => {}
-                other => panic!("{x:?}: {other:?}"),
-            }
-        }
     }
 
     #[test]
@@ -444,7 +419,7 @@ mod tests {
             (Disc::Fixed, [3.0, 4.0], [1.0, 1.0], 0.0, [0.0, 0.0]),
         ] {
             with(Segment::discs(vec![radius]), &g, |set, map| {
-                let mut own = active_set(set, &[]);
+                let mut own = active_set(set);
                 own.discs = vec![state];
                 let mut v = x;
                 own.settle_discs(set, &mut v, map);

@@ -26,7 +26,7 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         let stays_away = self.repairs_suffice && self.path.away >= AWAY_SETS;
         let far = self.path.begun == 0 && (over > LED_AWAY || stays_away);
         let lost = self.path.unknown && far || self.in_circles(PATIENCE);
-        lost && self.path.begun < PATHS && self.safeguard.is_none()
+        lost && self.path.begun < PATHS
     }
 
     /// Begins the path, or one of more compliance, from no forces.

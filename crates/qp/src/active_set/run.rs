@@ -6,15 +6,14 @@ use crate::error::{QpError, SetError};
 use crate::problem::{ConvexSet, EqualityProjector, Hook, MovingSet, ProductSet, Segment, SymmetricOperator};
 use crate::report::Status;
 use crate::tolerances::{
-    BEHIND_PATH, FOLLOW, LONGER, MAGNIFIED, NATURAL_STEP, NEGLIGIBLE, ON_PATH, PASSING_PART, PATIENCE, PROGRESS,
-    ROUNDED, RUNAWAY, SHRUNK, SMALL_PART, UNBALANCED,
+    BEHIND_PATH, LONGER, MAGNIFIED, NATURAL_STEP, NEGLIGIBLE, ON_PATH, PASSING_PART, PATIENCE, PROGRESS, ROUNDED,
+    RUNAWAY, SHRUNK, SMALL_PART, UNBALANCED,
 };
 use crate::vector;
 
 use super::blocks::ActiveSet;
 use super::cg::Goal;
 use super::compliance::{Compliance, Path};
-use super::descent::DescentSafeguard;
 use super::iterate::{Iterate, Lengths, Wanted, natural_map};
 use super::problem::{ActiveSetPoint, ActiveSetProblem};
 use super::settings::{ActiveSetReport, ActiveSetSettings};
@@ -32,8 +31,6 @@ pub(crate) struct Place {
     x_norm: f64,
     /// Whether the constrained part is so small that directions in it mean nothing.
     vanishes: bool,
-    /// Whether the problem with the present set is solved, as far as the set moves.
-    pub(crate) solved: bool,
 }
 
 /// What the last move from one active set to the next did.
@@ -59,17 +56,15 @@ impl LastMove {
     }
 }
 
-/// The error, relative to its limit: the smallest so far, the last one, and active sets since the smallest.
+/// The error, relative to its limit: the smallest so far, and active sets since.
 pub(crate) struct Progress {
     best: f64,
-    last: f64,
     pub(crate) waited: usize,
 }
 
 impl Progress {
     pub(crate) const NONE: Self = Self {
         best: f64::INFINITY,
-        last: f64::INFINITY,
         waited: 0,
     };
 }
@@ -99,8 +94,6 @@ pub(crate) struct Run<'s, A: SymmetricOperator, C, M: SymmetricOperator> {
     pub(crate) first_error: f64,
     pub(crate) least_error: f64,
     pub(crate) path: Path,
-    /// Once predictions ran in circles.
-    pub(crate) safeguard: Option<DescentSafeguard>,
 }
 
 impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'s, A, C, M> {
@@ -149,7 +142,6 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
             first_error: f64::INFINITY,
             least_error: f64::INFINITY,
             path: Path::default(),
-            safeguard: None,
             at: Iterate {
                 problem,
                 projector,
@@ -220,14 +212,12 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         if !(errors.all.is_finite() && x_norm.is_finite()) {
             return Err(at.not_finite("the error estimate"));
         }
-        let drift = self.safeguard.as_ref().map_or(f64::INFINITY, |g| g.drift);
         Ok(Some(Place {
             rho,
             errors,
             limits,
             x_norm,
             vanishes,
-            solved: errors.constrained <= (FOLLOW * drift).max(limits.constrained),
         }))
     }
 
@@ -244,28 +234,13 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         stale
     }
 
-    /// With a safeguard: releases blocked blocks once the problem with them is solved.
-    pub(crate) fn releases(&mut self, place: &Place) -> bool {
-        let blocked = &mut self.at.work.active.blocked;
-        let (error, limit) = (place.errors.constrained, place.limits.constrained);
-        let releases = self
-            .safeguard
-            .as_mut()
-            .is_some_and(|safeguard| safeguard.releases(!blocked.is_empty(), place.solved, error, limit));
-        if releases {
-            blocked.clear();
-        }
-        releases
-    }
-
     /// Whether `x` solves the problem with the present set: errors, last move, violation and circles to be crossed are
     /// small, and active bounds, judged by the residual on this set, which the last classification did not have, stay
     /// active.
     pub(crate) fn is_solved(&self, place: &Place) -> bool {
         let (at, limit) = (&self.at, place.limits.constrained);
-        let current = self.safeguard.as_ref().is_none_or(|safeguard| safeguard.current);
         let moved = self.moved.length();
-        let settled = at.report.active_sets == 0 || current && moved <= limit.max(f64::MIN_POSITIVE);
+        let settled = at.report.active_sets == 0 || moved <= limit.max(f64::MIN_POSITIVE);
         let map = natural_map(at.problem, &at.work.residual, at.step);
         at.compliance.c == 0.0
             && place.errors.within(place.limits)
@@ -349,27 +324,19 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         let moved = self.moved.length();
         let constrained = errors.constrained.max(moved.min(f64::MAX));
         let progress = &mut self.progress;
-        progress.last = (errors.all / limits.all).max(constrained / limits.constrained);
-        if progress.last < PROGRESS * progress.best {
-            progress.best = progress.last;
+        let last = (errors.all / limits.all).max(constrained / limits.constrained);
+        if last < PROGRESS * progress.best {
+            progress.best = last;
             progress.waited = 0;
         } else if self.at.report.active_sets > 0 {
             progress.waited += 1;
         }
     }
 
-    /// Whether predictions without a safeguard have made no progress on so many sets.
+    /// Whether predictions have made no progress on so many sets.
     pub(crate) fn in_circles(&self, patience: usize) -> bool {
         let on_path = self.at.compliance.c > 0.0;
-        let waited = self.progress.waited >= patience || on_path && self.moved.unbalanced >= patience;
-        waited && self.safeguard.is_none()
-    }
-
-    /// From now on moves have to descend.
-    pub(crate) fn start_safeguard(&mut self) {
-        self.safeguard = Some(DescentSafeguard::new(self.at.x.len()));
-        self.progress.best = self.progress.last;
-        self.progress.waited = 0;
+        self.progress.waited >= patience || on_path && self.moved.unbalanced >= patience
     }
 
     /// Why the solve ends without a solution, if it does.
@@ -378,10 +345,7 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         if self.moved.unbalanced >= PATIENCE * UNBALANCED {
             return Some(Status::Infeasible);
         }
-        if self.progress.waited >= PATIENCE * LONGER {
-            return Some(Status::Stagnated);
-        }
-        let longer = if self.safeguard.is_some() || self.path.begun > 0 { LONGER } else { 1 };
+        let longer = if self.path.begun > 0 { LONGER } else { 1 };
         let most = settings.max_active_sets.saturating_mul(longer);
         let limit = report.active_sets >= most || report.products() >= settings.max_products;
         limit.then_some(Status::IterationLimit)
@@ -392,10 +356,7 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
     pub(crate) fn solve_on_set(&mut self, place: &Place) -> Result<f64, QpError> {
         let (settled, near_path) = (self.has_settled(), self.is_near_path());
         let at = &mut self.at;
-        if let Some(safeguard) = &mut self.safeguard {
-            safeguard.enter(at.x, at.ax, &at.work.residual);
-        }
-        let steady = self.safeguard.is_none() && self.moved.unbalanced == 0;
+        let steady = self.moved.unbalanced == 0;
         let free = self.moved.followed && steady && !place.vanishes;
         let error = at.report.constrained_error;
         at.work.coupling.begin(free, error, self.progress.waited);
@@ -417,7 +378,6 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
             },
             limits: place.limits,
             max_products: self.settings.max_products,
-            goes_on: self.safeguard.is_none(),
             size: place.x_norm.max(self.settings.error_floor),
         };
         self.first_error = place.errors.constrained;
@@ -428,11 +388,6 @@ impl<'s, A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         self.moved.drifted = at.projector.rounds_steps();
         self.left = at.errors();
         at.report.active_sets += 1;
-        if let Some(safeguard) = &mut self.safeguard
-            && safeguard.leave(at.problem.operator, (at.x, at.ax))
-        {
-            self.progress.waited = 0;
-        }
         Ok(length)
     }
 

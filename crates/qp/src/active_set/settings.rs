@@ -16,10 +16,10 @@ settings! {
         contact_error_floor, with_contact_error_floor: f64 = 0.0, in "[0, inf)";
         /// Decrease of the error on one active set before the set is looked at again.
         forcing, with_forcing: f64 = 0.4, in "(0, 1)";
-        /// Active sets without a better error after which it ends as [`Status::Stagnated`]. Beyond twelve, other ways
-        /// are tried instead.
+        /// Active sets without a better error after which it ends as [`Status::Stagnated`]. Beyond twelve, paths to
+        /// other sets are tried first.
         patience, with_patience: usize = usize::MAX, in "[1, inf)";
-        /// Most active sets; five times as many once descent is enforced, or a path has led to another set.
+        /// Most active sets; five times as many once a path has led to another set.
         max_active_sets, with_max_active_sets: usize = 100, in "[1, inf)";
         /// Most operator products.
         max_products, with_max_products: usize = 10_000, in "[1, inf)";

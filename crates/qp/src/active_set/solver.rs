@@ -11,10 +11,9 @@
 //! Where predictions run in circles, or away from a start that told nothing, a path of compliant constraints leads to
 //! another set ([`path`](super::path)).
 //!
-//! The error is the length of the preconditioned residual. After `PATIENCE` sets without progress every move has to
-//! lower the cost, and the set follows the solution only where the problem with the present set is solved.
-//! [`Status::Stagnated`] tells that this did not help either; [`smalse`](crate::smalse()) lowers a cost in every step,
-//! and is proved to converge with [`Expansion::FixedStep`](crate::Expansion).
+//! The error is the length of the preconditioned residual. [`Status::Stagnated`] tells that `PATIENCE` sets have made no
+//! progress behind the last path either; [`smalse`](crate::smalse()) lowers a cost in every step, and is proved to
+//! converge with [`Expansion::FixedStep`](crate::Expansion).
 //!
 //! | local | meaning |
 //! |---|---|
@@ -73,7 +72,7 @@ fn solve<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
         let Some(place) = run.enter()? else {
             return Ok(Status::Stagnated);
         };
-        if run.refreshes(&place) || run.releases(&place) {
+        if run.refreshes(&place) {
             continue;
         }
         if run.sets_out(&place)? {
@@ -100,11 +99,10 @@ fn solve<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner>
             continue;
         }
         if run.in_circles(PATIENCE) {
-            let anew = run.leave_path();
-            run.start_safeguard();
-            if anew {
+            if run.leave_path() {
                 continue;
             }
+            return Ok(Status::Stagnated);
         }
         if let Some(status) = run.gives_up() {
             return Ok(status);
