@@ -75,31 +75,75 @@ impl Observer for Arc<AtomicBool> {
     }
 }
 
-/// Both are called, the first one first. If either fails, the run fails; otherwise, if either stops, it stops.
-impl<A: Observer, B: Observer> Observer for (A, B) {
+/// All are called, in their order. If any fails, the run fails; otherwise, if any stops, it stops. With `&mut dyn` an
+/// observer can be asked after the run what it has seen:
+///
+/// ```
+/// use signorini_contact::{Flow, Observer, Silent, StepResult};
+///
+/// let mut steps = Vec::new();
+/// let mut count = |result: &StepResult| {
+///     steps.push(result.step());
+///     Flow::Continue
+/// };
+/// let mut all: Vec<&mut dyn Observer> = vec![&mut count, &mut Silent];
+/// // simulation.run(&mut all)?
+/// # all.finished(0);
+/// ```
+impl<O: Observer> Observer for [O] {
     fn started(&mut self, plan: &Plan, steps: usize) {
-        self.0.started(plan, steps);
-        self.1.started(plan, steps);
+        self.iter_mut().for_each(|observer| observer.started(plan, steps));
     }
 
     fn warning(&mut self, warning: &Warning) {
-        self.0.warning(warning);
-        self.1.warning(warning);
+        self.iter_mut().for_each(|observer| observer.warning(warning));
     }
 
     fn step(&mut self, result: &StepResult) -> Flow {
-        match (self.0.step(result), self.1.step(result)) {
+        let flows = self.iter_mut().map(|observer| observer.step(result));
+        flows.fold(Flow::Continue, |before, flow| match (before, flow) {
             (Flow::Fail(error), _) | (_, Flow::Fail(error)) => Flow::Fail(error),
             (Flow::Stop, _) | (_, Flow::Stop) => Flow::Stop,
             _ => Flow::Continue,
-        }
+        })
     }
 
     fn finished(&mut self, steps: usize) {
-        self.0.finished(steps);
-        self.1.finished(steps);
+        self.iter_mut().for_each(|observer| observer.finished(steps));
     }
 }
+
+/// An observer that hands all on to others.
+macro_rules! hands_on {
+    ($(#[$about:meta])* [$($bounded:tt)*] $observer:ty, $own:ident => $others:expr) => {
+        $(#[$about])*
+        impl $($bounded)* Observer for $observer {
+            fn started(&mut $own, plan: &Plan, steps: usize) {
+                $others.started(plan, steps);
+            }
+
+            fn warning(&mut $own, warning: &Warning) {
+                $others.warning(warning);
+            }
+
+            fn step(&mut $own, result: &StepResult) -> Flow {
+                $others.step(result)
+            }
+
+            fn finished(&mut $own, steps: usize) {
+                $others.finished(steps);
+            }
+        }
+    };
+}
+
+hands_on!([<O: Observer>] Vec<O>, self => self[..]);
+hands_on!([] &mut (dyn Observer + '_), self => (**self));
+hands_on!([] Box<dyn Observer + '_>, self => (**self));
+hands_on!(
+    /// As a list of both.
+    [<A: Observer, B: Observer>] (A, B), self => [&mut self.0 as &mut dyn Observer, &mut self.1][..]
+);
 
 /// Observes nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

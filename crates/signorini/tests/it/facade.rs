@@ -75,6 +75,27 @@ fn a_closure_is_an_observer() -> Result<(), Error> {
 }
 
 #[test]
+/// Lists and pairs of observers, owned or lent, are observers: all are told, and one that stops is enough.
+#[test]
+fn observers_compose() -> Result<(), Error> {
+    let mut simulation = Simulation::new(scene(3)?, Settings::default())?;
+    let (mut first, mut second) = (0, 0);
+    let mut stop = |result: &StepResult| {
+        first += 1;
+        if result.step() == 1 { Flow::Stop } else { Flow::Continue }
+    };
+    let mut count = |_: &StepResult| {
+        second += 1;
+        Flow::Continue
+    };
+    let owned: Box<dyn Observer> = Box::new(Silent);
+    let lent: Vec<&mut dyn Observer> = vec![&mut stop, &mut count];
+    let report = simulation.run(&mut (owned, lent))?;
+    assert!(report.stopped && report.steps == 2);
+    assert_eq!((first, second), (2, 2));
+    Ok(())
+}
+
 fn an_observer_that_fails_ends_the_run_with_its_error() -> Result<(), Error> {
     let mut simulation = Simulation::new(scene(3)?, Settings::default())?;
     let mut room = 1;
