@@ -1,6 +1,7 @@
 //! A small dense equality `G x = e` for the active-set method.
 
 use crate::error::{QpError, expect_finite, expect_length};
+use crate::settings::expect_setting;
 use crate::tolerances::SINGULAR_PIVOT;
 
 use super::dense::solve_cholesky;
@@ -34,14 +35,31 @@ pub struct DenseProjector {
     small: Vec<f64>,
 }
 
+/// A row that depends on those before it.
+fn deficient(row: usize) -> QpError {
+    QpError::CoarseDeficient {
+        motion: format!("row {row} of G"),
+    }
+}
+
 impl DenseProjector {
     /// From the rows of `G`, one after another; all weights are one.
     ///
     /// # Errors
-    /// [`QpError::Length`], [`QpError::Input`] for NaN, [`QpError::CoarseDeficient`] for dependent rows.
+    /// [`QpError::Length`], [`QpError::Input`] for NaN, [`QpError::CoarseDeficient`] for dependent rows,
+    /// [`QpError::Setting`] for a dimension that is too large, and later for negative weights.
     pub fn new(rows: usize, dim: usize, g: Vec<f64>) -> Result<Self, QpError> {
         expect_length("the matrix G", g.len(), rows.saturating_mul(dim))?;
         expect_finite("the matrix G", &g)?;
+        if dim < rows {
+            return Err(deficient(dim));
+        }
+        let mut ones = Vec::new();
+        if ones.try_reserve_exact(dim).is_err() {
+            let (name, value, range) = ("dimension", dim as f64, "of vectors that fit into the memory");
+            return Err(QpError::Setting { name, value, range });
+        }
+        ones.resize(dim, 1.0);
         let mut own = Self {
             rows,
             dim,
@@ -50,7 +68,7 @@ impl DenseProjector {
             factor: vec![0.0; rows * rows],
             small: vec![0.0; rows],
         };
-        own.set_weights(&vec![1.0; dim])?;
+        own.set_weights(&ones)?;
         Ok(own)
     }
 
@@ -96,6 +114,8 @@ impl EqualityProjector for DenseProjector {
     fn set_weights(&mut self, w: &[f64]) -> Result<bool, QpError> {
         expect_length("the weights", w.len(), self.dim)?;
         expect_finite("the weights", w)?;
+        let least = w.iter().copied().fold(0.0, f64::min);
+        expect_setting("weight", least, "[0, inf)")?;
         if self.w == w {
             return Ok(false);
         }
@@ -112,9 +132,7 @@ impl EqualityProjector for DenseProjector {
                     let pivot = value - known;
                     if pivot <= SINGULAR_PIVOT * largest {
                         self.w.clear();
-                        return Err(QpError::CoarseDeficient {
-                            motion: format!("row {i} of G"),
-                        });
+                        return Err(deficient(i));
                     }
                     self.factor[i * n + i] = pivot.sqrt();
                 } else {

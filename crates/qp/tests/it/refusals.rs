@@ -3,8 +3,8 @@
 use signorini_qp::kprgp::KprgpWorkspace;
 use signorini_qp::smalse::SmalseWorkspace;
 use signorini_qp::{
-    DenseEquality, DenseOperator, KprgpSettings, MovingSet, ProductSet, QpError, QuadraticCost, Segment, SetError,
-    SmalseSettings, Status, kprgp, smalse,
+    DenseEquality, DenseOperator, DenseProjector, EqualityProjector, KprgpSettings, MovingSet, ProductSet, QpError,
+    QuadraticCost, Segment, SetError, SmalseSettings, Status, kprgp, smalse,
 };
 
 use crate::common::{pair, run};
@@ -158,4 +158,17 @@ fn dependent_rows_are_named() {
         DenseEquality::orthonormal(1, 2, &[0.0, 0.0]),
         Err(QpError::DependentRow { row: 0, .. })
     ));
+}
+
+#[test]
+fn wrong_dimensions_and_weights_of_a_projector_are_named() {
+    let new = |rows, dim| DenseProjector::new(rows, dim, vec![1.0; 2]).map(|_| ());
+    assert!(matches!(new(1, 3), Err(QpError::Length { .. })));
+    assert!(matches!(new(2, 1), Err(QpError::CoarseDeficient { .. })));
+    for (rows, dim) in [(0, usize::MAX), (usize::MAX, 0)] {
+        assert!(DenseProjector::new(rows, dim, Vec::new()).is_err(), "{rows} x {dim}");
+    }
+    let mut projector = DenseProjector::new(1, 2, vec![1.0; 2]).expect("one row");
+    let error = projector.set_weights(&[5.0, -1.0]);
+    assert!(matches!(error, Err(QpError::Setting { name: "weight", .. })));
 }
