@@ -13,6 +13,8 @@ signorini_fem_mesh::errors! {
         OutOfStep { rank: usize, expected: usize, found: usize } =
             "rank {rank} sent {found} numbers where {expected} belong: the ranks do not run the same program on the \
             same scene with the same settings; start one program on one kind of processor everywhere";
+        NoRank { rank: usize, size: usize } =
+            "the communicator is rank {rank} of {size}; ranks are numbered from 0, each less than their number";
         TooLong { numbers: usize } =
             "{numbers} numbers are more than one message can hold; use more ranks";
     }

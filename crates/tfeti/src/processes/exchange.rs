@@ -62,6 +62,10 @@ impl Exchange {
 
     /// The first failure; all that was gathered since is not a number.
     pub(crate) fn check(&self) -> Result<(), CommunicationError> {
+        let (rank, size) = (self.rank(), self.ranks());
+        if rank >= size {
+            return Err(CommunicationError::NoRank { rank, size });
+        }
         self.failure.get().map_or(Ok(()), |error| Err(error.clone()))
     }
 

@@ -156,6 +156,7 @@ impl<'a> TfetiBuilder<'a> {
                 .with_held(decomposition, &supports.at_zero()),
         };
         let exchange = Arc::new(self.communicator.cloned().map_or_else(Exchange::default, Exchange::new));
+        exchange.check()?;
         let ownership = Ownership::new(&classes, exchange.clone());
         let started = Instant::now();
         let subdomains = Subdomains::assemble(mesh, decomposition, self.materials, classes, ownership)?;

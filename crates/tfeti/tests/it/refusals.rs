@@ -4,7 +4,11 @@ use crate::common::{Brick, gluing};
 use signorini_qp::internal::LineWeight;
 use signorini_qp::{EqualityProjector, QpError};
 use signorini_tfeti::internal::ActiveSetFactor;
-use signorini_tfeti::{ActiveSetProjector, Motion, NodeSupport, RowWeights, TfetiError};
+use signorini_tfeti::{
+    ActiveSetProjector, CommunicationError, Communicator, Motion, NodeSupport, RowWeights, TfetiError,
+};
+use std::ops::Range;
+use std::sync::Arc;
 
 #[test]
 fn projectors_check_their_arguments() {
@@ -85,5 +89,35 @@ fn cases_beyond_the_supports_are_refused() {
             ),
             "{error}"
         );
+    }
+}
+
+/// A communicator that a user wrote.
+#[derive(Debug)]
+struct Ranks(usize, usize);
+
+impl Communicator for Ranks {
+    fn rank(&self) -> usize {
+        self.0
+    }
+
+    fn size(&self) -> usize {
+        self.1
+    }
+
+    fn gather(&self, _: &mut [f64], _: &[Range<usize>]) -> Result<(), CommunicationError> {
+        Ok(())
+    }
+}
+
+#[test]
+fn a_communicator_is_a_rank_of_some() {
+    let brick = Brick::new(1, 2);
+    let supports = brick.supports();
+    for (rank, size) in [(0, 0), (2, 2)] {
+        let communicator: Arc<dyn Communicator> = Arc::new(Ranks(rank, size));
+        let error = brick.builder(&supports).with_communicator(&communicator).build();
+        let expected = CommunicationError::NoRank { rank, size };
+        assert!(matches!(error, Err(TfetiError::Communication(e)) if e == expected));
     }
 }
