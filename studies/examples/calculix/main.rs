@@ -416,8 +416,7 @@ fn forces(mesh: &TetMesh) -> Vec<(u32, [f64; 3])> {
             _ => continue,
         };
         let area = norm(area_vector(&mesh.facet_points(k)));
-        let nodes = if mesh.order() == 2 { mesh.facet_mids(k) } else { facet.nodes };
-        for node in nodes {
+        for node in mesh.facet_mids(k).unwrap_or(facet.nodes) {
             let force = forces.entry(node).or_insert([0.0; 3]);
             traction
                 .iter()

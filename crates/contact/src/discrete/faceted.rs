@@ -247,7 +247,7 @@ fn bends(mesh: &TetMesh, surface: &Surface) -> HashMap<u32, Bend> {
     let mut areas = vec![0.0; corners.len()];
     let mut mids = Vec::new();
     for (&facet, t) in surface.facets().iter().zip(surface.triangles()) {
-        let own = (mesh.order() == 2).then(|| mesh.facet_mids(facet as usize));
+        let own = mesh.facet_mids(facet as usize);
         let edges = edges(*t);
         let arcs = [0, 1, 2].map(|k| chords.arc(edges[k], own.map(|mids| mids[k])));
         let area = norm(area_vector(mesh, surface, t));

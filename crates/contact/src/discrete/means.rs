@@ -66,7 +66,7 @@ impl<'a> Means<'a> {
             let [a, b, c] = *triangle;
             for (ends, node) in [[a, b], [b, c], [c, a]]
                 .into_iter()
-                .zip(mesh.facet_mids(facet as usize))
+                .zip(mesh.facet_mids(facet as usize)?)
             {
                 let partner = *self.partners.get(&node)?;
                 let apart = norm(sub(place(partner), place(node)));
@@ -134,7 +134,10 @@ pub(super) fn opened(scene: &Scene, index: usize, mut paired: Paired) -> Result<
     let place = |node: u32| mesh.points()[node as usize];
     let opens = |triangle: &usize| {
         let facet = surface.facets()[*triangle] as usize;
-        let ([a, b, c], [ab, bc, ca]) = (mesh.facets()[facet].nodes, mesh.facet_mids(facet));
+        let [a, b, c] = mesh.facets()[facet].nodes;
+        let Some([ab, bc, ca]) = mesh.facet_mids(facet) else {
+            return false;
+        };
         let nodes = [a, b, c, ab, bc, ca];
         let normal = (paired.fixed).map_or_else(|| unit(area_vector(&mesh.facet_points(facet))), |frame| frame.normal);
         let gap = |node: u32| {
@@ -210,6 +213,7 @@ pub(super) fn mean(
 /// The partners of corners, and of mid-nodes those on the edge between the partners of its ends.
 fn all_partners(scene: &Scene, contact: usize, surface: &Surface, partners: &[Partner]) -> HashMap<u32, u32> {
     let (mesh, contact) = (&scene.mesh, &scene.contacts[contact]);
+    let mids_of = |facet: usize| mesh.facet_mids(facet).into_iter().flatten();
     let mut mids: HashMap<[u32; 2], u32> = HashMap::new();
     for (facet, own) in mesh
         .facets()
@@ -217,7 +221,7 @@ fn all_partners(scene: &Scene, contact: usize, surface: &Surface, partners: &[Pa
         .enumerate()
         .filter(|(_, f)| contact.partner.contains(&f.tag))
     {
-        for (edge, mid) in edges(own.nodes).into_iter().zip(mesh.facet_mids(facet)) {
+        for (edge, mid) in edges(own.nodes).into_iter().zip(mids_of(facet)) {
             mids.insert(edge, mid);
         }
     }
@@ -226,7 +230,7 @@ fn all_partners(scene: &Scene, contact: usize, surface: &Surface, partners: &[Pa
     for &facet in surface.facets() {
         let facet = facet as usize;
         let others = mesh.facets()[facet].nodes.map(|n| out[&n]);
-        for (edge, node) in edges(others).into_iter().zip(mesh.facet_mids(facet)) {
+        for (edge, node) in edges(others).into_iter().zip(mids_of(facet)) {
             // where meshes match all edges have theirs
             out.extend(mids.get(&edge).map(|&partner| (node, partner)));
         }

@@ -68,11 +68,8 @@ fn at_nodes(mesh: &TetMesh, spring: &Spring) -> Result<BTreeMap<u32, Matrix3<f64
         let area = vec3::norm(vector);
         let share = spring.matrix(vector.map(|c| c / area)) * (area / 3.0);
         // what a uniform stress does to nodes: nothing to the corners of a quadratic facet
-        let nodes = match mesh.order() {
-            1 => mesh.facets()[facet as usize].nodes,
-            _ => mesh.facet_mids(facet as usize),
-        };
-        for node in nodes {
+        let mids = mesh.facet_mids(facet as usize);
+        for node in mids.unwrap_or(mesh.facets()[facet as usize].nodes) {
             *own.entry(node).or_default() += share;
         }
     }

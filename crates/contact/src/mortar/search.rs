@@ -108,10 +108,9 @@ pub(super) fn in_order(mesh: &TetMesh, surface: &Surface) -> Vec<Triangle> {
         let nodes = mesh.facets()[facet as usize].nodes;
         let first = (0..3).min_by_key(|&k| nodes[k]).unwrap_or(0);
         let turn = |of: [u32; 3]| [0, 1, 2].map(|k| of[(first + k) % 3]);
-        let quadratic = mesh.order() == 2;
         Triangle {
             nodes: turn(nodes),
-            mids: quadratic.then(|| turn(mesh.facet_mids(facet as usize))),
+            mids: mesh.facet_mids(facet as usize).map(turn),
             tet: mesh.facet_owner(facet as usize) as u32,
         }
     });

@@ -25,11 +25,8 @@ pub(super) fn views(model: &Model) -> Vec<View> {
     for surface in &model.discrete.surfaces {
         for (triangle, &facet) in surface.triangles().iter().zip(surface.facets()) {
             let [a, b, c] = triangle.map(|n| surface.nodes()[n as usize]);
-            ends.extend(
-                mesh.facet_mids(facet as usize)
-                    .into_iter()
-                    .zip([[a, b], [b, c], [c, a]]),
-            );
+            let mids = mesh.facet_mids(facet as usize).into_iter().flatten();
+            ends.extend(mids.zip([[a, b], [b, c], [c, a]]));
         }
     }
     let mut at_node: HashMap<(usize, u32), Vec<usize>> = HashMap::new();

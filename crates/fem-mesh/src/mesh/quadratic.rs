@@ -68,9 +68,10 @@ impl TetMesh {
         quadratic_tets(&self.tets, &self.mids)
     }
 
-    /// Mid-nodes of the edges 01, 12, 20 of a tagged facet of a mesh of order 2.
-    pub fn facet_mids(&self, facet: usize) -> [u32; 3] {
-        self.mids_of(self.facet_owner(facet), self.facets[facet].nodes)
+    /// Mid-nodes of the edges 01, 12, 20 of a tagged facet; none in a mesh of order 1, or if there is no such facet.
+    pub fn facet_mids(&self, facet: usize) -> Option<[u32; 3]> {
+        let own = self.facets.get(facet).filter(|_| self.order() == 2)?;
+        Some(self.mids_of(self.facet_owner(facet), own.nodes))
     }
 
     /// Mid-nodes of the edges 01, 12, 20 of a triangle of a tetrahedron.
@@ -86,7 +87,8 @@ impl TetMesh {
 
     /// The six nodes of a tagged facet of a mesh of order 2, corners first.
     pub(crate) fn quadratic_facet(&self, facet: usize) -> [u32; 6] {
-        let ([a, b, c], [d, e, f]) = (self.facets[facet].nodes, self.facet_mids(facet));
+        let nodes = self.facets[facet].nodes;
+        let ([a, b, c], [d, e, f]) = (nodes, self.mids_of(self.facet_owner(facet), nodes));
         [a, b, c, d, e, f]
     }
 

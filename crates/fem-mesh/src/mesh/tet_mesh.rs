@@ -131,8 +131,8 @@ impl TetMesh {
         let mut normals: HashMap<usize, Vec<Vec3>> =
             pairs.iter().flat_map(|(a, b)| [*a, *b]).map(|n| (n, vec![])).collect();
         for (facet, corners) in self.facets.iter().enumerate() {
-            let mids = (self.order() == 2).then(|| self.facet_mids(facet));
-            for node in corners.nodes.into_iter().chain(mids.into_iter().flatten()) {
+            let mids = self.facet_mids(facet).into_iter().flatten();
+            for node in corners.nodes.into_iter().chain(mids) {
                 if let Some(normals) = normals.get_mut(&(node as usize)) {
                     normals.push(vec3::unit(facet_area_vector(self, facet)));
                 }
@@ -194,10 +194,8 @@ impl TetMesh {
     pub fn nodes_on(&self, tag: FacetTag) -> Vec<u32> {
         let on_tag = self.facets.iter().filter(|f| f.tag == tag);
         let mut nodes: Vec<_> = on_tag.flat_map(|f| f.nodes).collect();
-        if self.order() == 2 {
-            let on_tag = (0..self.facets.len()).filter(|&f| self.facets[f].tag == tag);
-            nodes.extend(on_tag.flat_map(|f| self.facet_mids(f)));
-        }
+        let on_tag = (0..self.facets.len()).filter(|&f| self.facets[f].tag == tag);
+        nodes.extend(on_tag.filter_map(|f| self.facet_mids(f)).flatten());
         distinct(nodes)
     }
 
@@ -230,18 +228,20 @@ impl TetMesh {
     }
 
     /// Pairs of these nodes that coincide, the one that comes first in the list first: of bodies that match where they
-    /// touch, of cracks, or of parts that are to be [merged](super::merge_nodes).
+    /// touch, of cracks, or of parts that are to be [merged](super::merge_nodes). Numbers that the mesh does not have
+    /// coincide with none.
     ///
     /// ```
     /// use signorini_fem_mesh::Brick;
     ///
     /// let lower = Brick::new([1.0; 3], [1; 3]).build()?;
     /// let both = lower.append(&lower.map_points(|[x, y, z]| [x, y, z + 1.0])?)?;
-    /// assert_eq!(both.coincident(&[0, 4, 5, 8, 9]), [[4, 8], [5, 9]]);
+    /// assert_eq!(both.coincident(&[0, 4, 5, 8, 9, 99]), [[4, 8], [5, 9]]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn coincident(&self, nodes: &[u32]) -> Vec<[u32; 2]> {
-        let places: Vec<Vec3> = nodes.iter().map(|&n| self.points[n as usize]).collect();
+        let place = |&n: &u32| Some((n, *self.points.get(n as usize)?));
+        let (nodes, places): (Vec<u32>, Vec<Vec3>) = nodes.iter().filter_map(place).unzip();
         let (low, high) = self.extent();
         let pairs = check::close_pairs(&places, COINCIDENT * vec3::norm(vec3::sub(high, low)));
         pairs.into_iter().map(|(a, b)| [nodes[a], nodes[b]]).collect()

@@ -27,7 +27,7 @@ fn quadratic_text(mesh: &signorini_fem_mesh::TetMesh, groups: bool) -> String {
     for (k, facet) in facets.iter().enumerate() {
         number += 1;
         text += &number.to_string();
-        for node in facet.nodes.into_iter().chain(mesh.facet_mids(k)) {
+        for node in facet.nodes.into_iter().chain(mesh.facet_mids(k).unwrap()) {
             text += &format!(" {}", node + 1);
         }
         text += "\n";

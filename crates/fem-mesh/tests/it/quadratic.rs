@@ -69,12 +69,13 @@ fn every_edge_gets_one_node() {
             .all(|&n| mesh.points()[n as usize][0] == 0.0)
     );
     for facet in 0..mesh.facets().len() {
-        let (corners, mids) = (mesh.facet_points(facet), mesh.facet_mids(facet));
+        let (corners, mids) = (mesh.facet_points(facet), mesh.facet_mids(facet).unwrap());
         for k in 0..3 {
             let middle = mesh.points()[mids[k] as usize];
             (0..3).for_each(|c| assert!((corners[k][c] + corners[(k + 1) % 3][c] - 2.0 * middle[c]).abs() < 1e-14));
         }
     }
+    assert_eq!([linear.facet_mids(0), mesh.facet_mids(usize::MAX)], [None; 2]);
     let again = TetMesh::quadratic(mesh.points().to_vec(), mesh.quadratic_tets(), mesh.facets().to_vec());
     assert_eq!(again.unwrap(), mesh);
 }
@@ -313,7 +314,7 @@ fn means_have_the_weights_of_hat_and_dual_functions() {
                     .corner(&mesh, all().find(|&t| surface.facets()[t] == facet).unwrap(), own)
                     .0;
             let nodes = mesh.facets()[facet as usize].nodes;
-            let mids = mesh.facet_mids(facet as usize);
+            let mids = mesh.facet_mids(facet as usize).unwrap();
             for k in 0..3 {
                 let corner = if k == own { area / 12.0 } else { -area / 24.0 };
                 *expected.entry(nodes[k]).or_insert(0.0) += corner / surface.areas()[local];
@@ -329,7 +330,7 @@ fn means_have_the_weights_of_hat_and_dual_functions() {
     let surface = Surface::new(&bent, &[Z_MIN]).unwrap();
     for (t, triangle) in surface.triangles().iter().enumerate() {
         let facet = surface.facets()[t] as usize;
-        let (nodes, mids) = (bent.facets()[facet].nodes, bent.facet_mids(facet));
+        let (nodes, mids) = (bent.facets()[facet].nodes, bent.facet_mids(facet).unwrap());
         let areas = [0, 1, 2].map(|corner| surface.corner(&bent, t, corner).0);
         for own in 0..3 {
             let mean = surface.mean(triangle[own] as usize, std::iter::once(t));

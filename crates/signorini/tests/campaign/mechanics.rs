@@ -414,7 +414,6 @@ fn sides(recipe: &Recipe, points: &[Vec3]) -> Vec<Side> {
             inner.insert(sorted(face), t[a]);
         }
     }
-    let quadratic = recipe.mesh.order() == 2;
     let side = |(k, facet): (usize, &signorini::fem_mesh::Facet)| {
         let [a, b, c] = facet.nodes.map(|n| points[n as usize]);
         let vector = scale(0.5, cross(sub(b, a), sub(c, a)));
@@ -423,8 +422,8 @@ fn sides(recipe: &Recipe, points: &[Vec3]) -> Vec<Side> {
         Side {
             tag: facet.tag,
             nodes: facet.nodes,
-            loaded: if quadratic { recipe.mesh.facet_mids(k) } else { facet.nodes },
-            mids: quadratic.then(|| recipe.mesh.facet_mids(k)),
+            loaded: recipe.mesh.facet_mids(k).unwrap_or(facet.nodes),
+            mids: recipe.mesh.facet_mids(k),
             vector: scale(sign, vector),
         }
     };

@@ -157,9 +157,8 @@ impl Hold {
             Where::Nodes(nodes) => nodes.clone(),
             Where::Tag(tag) => {
                 let facets = mesh.facets().iter().enumerate().filter(|f| f.1.tag == *tag);
-                let mids = |k| (mesh.order() == 2).then(|| mesh.facet_mids(k));
                 let of = |(k, f): (usize, &signorini::fem_mesh::Facet)| {
-                    f.nodes.into_iter().chain(mids(k).into_iter().flatten())
+                    f.nodes.into_iter().chain(mesh.facet_mids(k).into_iter().flatten())
                 };
                 let mut nodes: Vec<u32> = facets.flat_map(of).collect();
                 nodes.sort_unstable();

@@ -197,6 +197,9 @@ impl Tfeti {
 
     /// Displacement at the mesh nodes: the mean of the copies, `3 node + component`. Copies that differ count by
     /// their [stiffness](Self::copy_stiffness).
+    ///
+    /// # Panics
+    /// As a product with an operator: unless `u` is a torn vector.
     pub fn nodal_mean(&self, u: &[f64]) -> Vec<f64> {
         self.mean_by(self.copy_stiffness(), u)
     }

@@ -135,7 +135,7 @@ impl Bench<'_> {
                     || (1..self.rings.len()).any(|b| t == side(b, brick::X_MIN) || t == side(b - 1, brick::X_MAX))
             };
             let own = facets.iter().enumerate().filter(|(_, f)| is_met(f.tag));
-            own.flat_map(|(k, _)| mesh.facet_mids(k)).collect()
+            own.filter_map(|(k, _)| mesh.facet_mids(k)).flatten().collect()
         };
         if mesh.order() == 2 {
             met.extend(mids(mesh.facets()));
