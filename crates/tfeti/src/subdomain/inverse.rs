@@ -7,10 +7,10 @@
 
 use crate::error::TfetiError;
 use crate::linalg::dense;
-use crate::linalg::sparse::{Columns, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
+use crate::linalg::sparse::{Columns, FactorError, MemoryNeed, SolveMemory, SparseCholesky, Symbolic};
 use crate::subdomain::kernel::Kernel;
 use crate::subdomain::packed::PackedFactor;
-use crate::tolerances::{COLUMNS, FURTHER_MOTION, LEFT_OF_IT};
+use crate::tolerances::{COLUMNS, CONTRAST, FURTHER_MOTION, LEFT_OF_IT};
 use signorini_fem_mesh::vec3::{cross, dot, norm, sub};
 
 /// A generalised inverse of the whole matrix of one subdomain.
@@ -22,17 +22,31 @@ pub(crate) enum Inverse {
     Packed(PackedFactor),
 }
 
+/// The largest entry of the diagonal over the smallest one.
+fn contrast(matrix: &Columns) -> f64 {
+    let diagonal = (0..matrix.dim).map(|i| matrix.diagonal(i));
+    let (low, high) = diagonal.fold((f64::INFINITY, 0.0_f64), |(low, high), d| (low.min(d), high.max(d)));
+    high / low
+}
+
 impl Inverse {
     /// Factorises a [`regularised`] matrix of this symbolic factor.
     pub(crate) fn new(matrix: &Columns, symbolic: &Symbolic, subdomain: usize) -> Result<Self, TfetiError> {
-        let factor = SparseCholesky::new(symbolic, matrix).map_err(|error| TfetiError::pattern(error, subdomain))?;
+        let singular = |pivot| match contrast(matrix) {
+            ratio if ratio > CONTRAST => TfetiError::Contrast { subdomain, ratio },
+            _ => TfetiError::Singular { subdomain, pivot },
+        };
+        let factor = SparseCholesky::new(symbolic, matrix).map_err(|error| match error {
+            FactorError::Pivot(pivot) => singular(pivot),
+            error => TfetiError::pattern(error, subdomain),
+        })?;
         let (smallest, pivot, largest) = factor.pivots();
         let stiff = matrix.diagonal(factor.order()[pivot] as usize);
         // what is soft beside other materials has little of the largest, but not of its own
         let rounding = smallest <= largest * matrix.dim as f64 * f64::EPSILON;
         let vanishes = smallest <= FURTHER_MOTION * largest && smallest <= LEFT_OF_IT * stiff;
         if smallest.is_nan() || rounding || vanishes {
-            return Err(TfetiError::Singular { subdomain, pivot });
+            return Err(singular(pivot));
         }
         Ok(Self::Sparse(factor))
     }
@@ -189,7 +203,6 @@ pub(crate) fn regularised(stiffness: &Columns, kernel: &Kernel) -> Columns {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::linalg::sparse::FactorError;
     use signorini_fem_mesh::decomposition::split_disconnected;
     use signorini_fem_mesh::{Brick, Decomposition, Hooke, assemble_stiffness};
 
@@ -248,6 +261,25 @@ mod tests {
         let points: Vec<[f64; 3]> = TET.into_iter().chain([[-1.0, -1.0, 0.2], [-1.0, 0.1, -1.0]]).collect();
         let error = inverse(&points, &[[0, 1, 2, 3], [0, 1, 4, 5]]).unwrap_err();
         assert!(matches!(error, TfetiError::Singular { subdomain: 4, .. }), "{error}");
+    }
+
+    /// Materials too far apart are no hinge.
+    #[test]
+    fn materials_that_rounding_hides_are_named() {
+        let mesh = Brick::new([1.0; 3], [6, 2, 2]).build().unwrap();
+        let soft = Hooke::isotropic(1.0, 0.3).unwrap();
+        for (stiff, refused) in [(1e3, false), (1e16, true)] {
+            let hard = Hooke::isotropic(stiff, 0.3).unwrap();
+            let law = |t: usize| if mesh.tet_points(t).iter().all(|x| x[0] < 0.51) { &hard } else { &soft };
+            let stiffness = assemble_stiffness(mesh.points(), mesh.tets(), law).unwrap();
+            let matrix = regularised(
+                &Columns::from_symmetric(&stiffness),
+                &Kernel::new(mesh.points(), 0).unwrap(),
+            );
+            let found = Inverse::new(&matrix, &Symbolic::new(&matrix, 3).unwrap(), 5).err();
+            let is_contrast = matches!(found, Some(TfetiError::Contrast { subdomain: 5, ratio }) if ratio > 1e12);
+            assert_eq!((is_contrast, found.is_some()), (refused, refused), "{found:?}");
+        }
     }
 
     /// Three quadratic tetrahedra that are nearly incompressible have a motion without strain at their points of
