@@ -95,11 +95,12 @@ signorini_fem_mesh::errors! {
         TableRate { contact: usize, entry: usize, rate: f64 } =
             "friction of contact {contact}: the slip rate of entry {entry} (from 0) of the table is {}, which \
             is not finite or out of order; give finite slip rates, each larger than the one before", number(*rate);
-        CoefficientAt { node: u32, rate: f64, value: f64 } =
-            "friction at node {node}: the law gives the coefficient {} at slip rate {}; it must be \
-            finite and not negative", number(*value), number(*rate);
-        SlipBound { node: u32, value: f64 } =
-            "friction at node {node}: the slip bound {} must be finite and not negative", number(*value);
+        CoefficientAt { contact: usize, node: u32, position: [f64; 3], rate: f64, value: f64 } =
+            "friction of contact {contact} at node {node}, {}: the law gives the coefficient {} at slip rate {}; it \
+            must be finite and not negative", place(position), number(*value), number(*rate);
+        SlipBound { contact: usize, node: u32, position: [f64; 3], value: f64 } =
+            "friction of contact {contact} at node {node}, {}: the slip bound {} must be finite and not negative",
+            place(position), number(*value);
         Formula { alpha: f64, beta: f64, gamma: f64, rule: &'static str } =
             "difference formula {alpha}, {beta}, {gamma}: {rule}; use PAPER or BACKWARD_EULER";
         NoSteps = "the analysis has no step or more than a hundred million; ask for one to that many";
@@ -134,10 +135,13 @@ signorini_fem_mesh::errors! {
         Gap { contact: usize, node: u32, position: [f64; 3], value: f64 } =
             "contact {contact}: the gap at node {node}, {}, is {value}; it must be finite at every node of the surface",
             place(position);
-        SupportInObstacle { node: u32, depth: f64, time: f64, displacement: f64, gap: f64 } =
-            "support at node {node}: at time {time} s it holds this contact node {depth} inside the obstacle \
-            (normal displacement {displacement}, gap {gap}); shorten the motion of the support, correct the gap \
-            or the place of the obstacle, or leave the node free along the normal";
+        SupportInObstacle {
+            support: usize, contact: usize, node: u32, position: [f64; 3], depth: f64, time: f64, displacement: f64,
+            gap: f64
+        } =
+            "support {support} holds node {node}, {}, at time {time} s {depth} inside the obstacle of contact \
+            {contact} (normal displacement {displacement}, gap {gap}); shorten the motion of the support, correct the \
+            gap or the place of the obstacle, or leave the node free along the normal", place(position);
         ObstacleNormal { contact: usize, normal: [f64; 3] } =
             "contact {contact}: the obstacle's normal {normal:?} must be finite and not zero";
         ObstacleSide { contact: usize, direction: [f64; 3], nodes: usize } =

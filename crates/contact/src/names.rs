@@ -75,6 +75,8 @@ impl ContactError {
             | Self::ObstacleGradient { contact, node, .. }
             | Self::ObstacleDistance { contact, node, .. }
             | Self::FrictionAxis { contact, node, .. }
+            | Self::CoefficientAt { contact, node, .. }
+            | Self::SlipBound { contact, node, .. }
             | Self::TurnedNormal { contact, node, .. } => vec![Part::Contact(*contact), Part::Node(*node)],
             Self::Overlap {
                 contact, node, partner, ..
@@ -90,10 +92,10 @@ impl ContactError {
             Self::SharedNode { node, first, second } => {
                 vec![Part::Node(*node), Part::Contact(*first), Part::Contact(*second)]
             }
-            Self::CoefficientAt { node, .. }
-            | Self::SlipBound { node, .. }
-            | Self::SupportInObstacle { node, .. }
-            | Self::Probe { node, .. } => vec![Part::Node(*node)],
+            Self::SupportInObstacle {
+                support, contact, node, ..
+            } => vec![Part::Support(*support), Part::Contact(*contact), Part::Node(*node)],
+            Self::Probe { node, .. } => vec![Part::Node(*node)],
             Self::NotHeld {
                 step, node, coupling, ..
             } => {

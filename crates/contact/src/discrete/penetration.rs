@@ -8,7 +8,8 @@ use super::supports::Supports;
 use crate::error::ContactError;
 use crate::scene::{Pose, Scene};
 use crate::tolerances::DEPTH;
-use signorini_tfeti::internal::PrescribedPoint;
+use signorini_qp::vector;
+use signorini_tfeti::internal::{FixedDirection, PrescribedPoint};
 
 /// Refuses supports that hold contact nodes inside the obstacle, wherever it has moved, at some step of the stage.
 pub(super) fn check_penetration(
@@ -34,7 +35,7 @@ pub(super) fn check_penetration(
         .take(steps.len())
     {
         let factors: Vec<f64> = supports.motions.iter().map(|h| h.value(time)).collect();
-        let mut deepest: Option<(f64, u32, f64, f64)> = None;
+        let mut deepest: Option<(f64, &PrescribedPoint, f64, f64)> = None;
         for (fixed, slack) in prescribed.iter().zip(&slack) {
             // where an earlier step will leave it nobody knows
             let Some(slack) = slack else {
@@ -47,12 +48,21 @@ pub(super) fn check_penetration(
             let depth = displacement - gap;
             let allowed = rounding + slack + DEPTH * gap.abs().max(displacement.abs());
             if depth > allowed && deepest.is_none_or(|d| depth > d.0) {
-                deepest = Some((depth, fixed.node, displacement, gap));
+                deepest = Some((depth, fixed, displacement, gap));
             }
         }
-        if let Some((depth, node, displacement, gap)) = deepest {
+        if let Some((depth, fixed, displacement, gap)) = deepest {
+            let (contact, _, position) = points[fixed.point].at();
+            let normal = points[fixed.point].frame.normal;
+            // of several the one that holds most of the normal
+            let along = |held: &&FixedDirection| vector::dot(&held.direction, &normal).abs();
+            let held = supports.merged.directions(fixed.node).iter();
+            let most = held.max_by(|a, b| along(a).total_cmp(&along(b)));
             return Err(ContactError::SupportInObstacle {
-                node,
+                support: most.map_or(0, |held| held.support),
+                contact,
+                node: fixed.node,
+                position,
                 depth,
                 time,
                 displacement,

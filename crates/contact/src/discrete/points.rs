@@ -58,6 +58,11 @@ impl ContactPoint {
         self.sides.node()
     }
 
+    /// Contact, node and place, as errors name it.
+    pub(crate) fn at(&self) -> (usize, u32, [f64; 3]) {
+        (self.surface, self.node(), self.position)
+    }
+
     /// The gap, m, that the obstacle has brought by moving along the surface, without what it opens.
     pub(crate) fn gap_brought(&self, scene: &Scene, pose: &Pose) -> Result<f64, ContactError> {
         let contact = &scene.contacts[self.surface];

@@ -114,10 +114,7 @@ impl DiscreteScene {
         let mut without = prescribed.iter().map(|p| p.point).peekable();
         let has_rows: Vec<bool> = (0..points.len()).map(|k| without.next_if_eq(&k).is_none()).collect();
         let with_rows = points.iter().zip(&has_rows).filter(|(_, has)| **has);
-        check_laws(with_rows.map(|(p, _)| {
-            let friction = scene.contacts[p.surface].friction();
-            (friction, p.node(), p.position)
-        }))?;
+        check_laws(with_rows.map(|(p, _)| (scene.contacts[p.surface].friction(), p.at())))?;
         // those that no point asks, now or at all
         let mut bounds = (scene.contacts.iter().enumerate()).filter_map(|(k, c)| Some((k, c.friction().bad_bound()?)));
         if let Some((contact, value)) = bounds.next() {

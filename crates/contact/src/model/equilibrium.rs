@@ -265,7 +265,7 @@ fn generators(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Vec
         let (coefficient, tresca) = match model.law(point) {
             Friction::None => (Some(0.0), 0.0),
             Friction::Tresca(bound) => {
-                let stress = bound.stress(point.node(), point.position())?;
+                let stress = bound.stress(point.contact.at())?;
                 (Some(0.0), stress * point.area())
             }
             Friction::Coulomb(law) => (law.largest(point.position()), 0.0),

@@ -185,7 +185,7 @@ fn crease_between(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
 fn large_coefficient(scene: &Scene, points: &[ContactPoint]) -> Option<Warning> {
     let coefficient = |point: &ContactPoint| match scene.contacts[point.surface].friction() {
         Friction::Coulomb(law) => {
-            let at_rest = || law.value(point.node(), point.position, 0.0).ok();
+            let at_rest = || law.value(point.at(), 0.0).ok();
             let along = law.largest(point.position).or_else(at_rest)?;
             Some(along * point.stretch.max(1.0))
         }

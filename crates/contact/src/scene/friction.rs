@@ -82,14 +82,18 @@ impl SlipBound {
         Self::StressField(Function(Arc::new(f)))
     }
 
-    /// The bound in Pa at a place, checked.
-    pub(crate) fn stress(&self, node: u32, place: [f64; 3]) -> Result<f64, ContactError> {
+    /// The bound in Pa at a point, checked.
+    pub(crate) fn stress(&self, (contact, node, position): At) -> Result<f64, ContactError> {
         let value = match self {
             Self::Stress(value) => *value,
-            Self::StressField(field) => field(place),
+            Self::StressField(field) => field(position),
         };
-        let error = ContactError::SlipBound { node, value };
-        is_good(value).then_some(value).ok_or(error)
+        is_good(value).then_some(value).ok_or(ContactError::SlipBound {
+            contact,
+            node,
+            position,
+            value,
+        })
     }
 }
 
@@ -179,35 +183,40 @@ impl Coefficient {
         }
     }
 
-    /// The coefficient at a node, checked. `rate` in m/s.
-    pub(crate) fn value(&self, node: u32, place: [f64; 3], rate: f64) -> Result<f64, ContactError> {
+    /// The coefficient at a point, checked. `rate` in m/s.
+    pub(crate) fn value(&self, (contact, node, position): At, rate: f64) -> Result<f64, ContactError> {
         let value = match self {
             Self::Constant(value) => *value,
-            Self::Field(field) => field(place),
+            Self::Field(field) => field(position),
             Self::Exponential { fixed, kinetic, decay } => kinetic + (fixed - kinetic) * (-rate / decay).exp(),
             Self::Table(points) => interpolate(points, rate),
-            Self::RateField(field) => field(place, rate),
+            Self::RateField(field) => field(position, rate),
         };
-        let error = ContactError::CoefficientAt { node, rate, value };
-        is_good(value).then_some(value).ok_or(error)
+        is_good(value).then_some(value).ok_or(ContactError::CoefficientAt {
+            contact,
+            node,
+            position,
+            rate,
+            value,
+        })
     }
 }
+
+/// Where friction is: contact, node, and its place.
+pub(crate) type At = (usize, u32, [f64; 3]);
 
 /// Whether a bound or a coefficient can be meant.
 fn is_good(value: f64) -> bool {
     value.is_finite() && value >= 0.0
 }
 
-/// Asks the laws of friction at points (law, node, place), at rest, so that what it cannot mean is said before any
-/// work.
-pub(crate) fn check_laws<'a>(
-    points: impl IntoIterator<Item = (&'a Friction, u32, [f64; 3])>,
-) -> Result<(), ContactError> {
-    for (friction, node, place) in points {
+/// Asks the laws of friction at points, at rest, so that what it cannot mean is said before any work.
+pub(crate) fn check_laws<'a>(points: impl IntoIterator<Item = (&'a Friction, At)>) -> Result<(), ContactError> {
+    for (friction, at) in points {
         match friction {
             Friction::None => continue,
-            Friction::Tresca(bound) => bound.stress(node, place)?,
-            Friction::Coulomb(law) => law.value(node, place, 0.0)?,
+            Friction::Tresca(bound) => bound.stress(at)?,
+            Friction::Coulomb(law) => law.value(at, 0.0)?,
         };
     }
     Ok(())
@@ -225,15 +234,15 @@ mod tests {
             decay: 0.05,
         };
         law.validate(0).unwrap();
-        assert!((law.value(0, [0.0; 3], 0.0).unwrap() - 0.3).abs() < 1e-15);
-        assert!((law.value(0, [0.0; 3], 0.05).unwrap() - (0.1 + 0.2 * (-1.0_f64).exp())).abs() < 1e-15);
+        assert!((law.value((0, 0, [0.0; 3]), 0.0).unwrap() - 0.3).abs() < 1e-15);
+        assert!((law.value((0, 0, [0.0; 3]), 0.05).unwrap() - (0.1 + 0.2 * (-1.0_f64).exp())).abs() < 1e-15);
     }
 
     #[test]
     fn tables_interpolate_and_are_constant_outside() {
         let law = Coefficient::Table(vec![(0.0, 0.4), (1.0, 0.2)]);
         for (rate, expected) in [(-1.0, 0.4), (0.0, 0.4), (0.25, 0.35), (1.0, 0.2), (7.0, 0.2)] {
-            assert!((law.value(0, [0.0; 3], rate).unwrap() - expected).abs() < 1e-15);
+            assert!((law.value((0, 0, [0.0; 3]), rate).unwrap() - expected).abs() < 1e-15);
         }
     }
 
@@ -292,8 +301,13 @@ mod tests {
         }
         let field = Coefficient::field(|x| -x[0]);
         assert!(matches!(
-            field.value(7, [1.0; 3], 0.0),
-            Err(ContactError::CoefficientAt { node: 7, .. })
+            field.value((2, 7, [1.0; 3]), 0.0),
+            Err(ContactError::CoefficientAt {
+                contact: 2,
+                node: 7,
+                position: [1.0, 1.0, 1.0],
+                ..
+            })
         ));
     }
 }

@@ -19,12 +19,12 @@ impl StepProblem {
         // none where the law fails at a point: a later step must not take a part for all
         self.coefficients.clear();
         let value = |(k, point): (usize, &ConstrainedPoint)| -> Result<_, ContactError> {
-            let (node, place) = (point.node(), point.position());
+            let at = point.contact.at();
             let rate = state.rate.get(k).copied().unwrap_or(0.0);
             Ok(match model.law(point) {
                 Friction::None => (0.0, 0.0),
-                Friction::Tresca(bound) => (0.0, bound.stress(node, place)? * point.area()),
-                Friction::Coulomb(law) => (law.value(node, place, rate)?, 0.0),
+                Friction::Tresca(bound) => (0.0, bound.stress(at)? * point.area()),
+                Friction::Coulomb(law) => (law.value(at, rate)?, 0.0),
             })
         };
         let values: Result<Vec<_>, _> = model.points.iter().enumerate().map(value).collect();

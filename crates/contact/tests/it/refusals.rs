@@ -102,7 +102,10 @@ fn a_support_that_pushes_a_contact_edge_through_the_floor_is_refused() {
     let error = refused(&scene);
     let text = error.to_string();
     let ContactError::SupportInObstacle {
+        support: 0,
+        contact: 0,
         node,
+        position,
         depth,
         time,
         displacement,
@@ -112,7 +115,7 @@ fn a_support_that_pushes_a_contact_edge_through_the_floor_is_refused() {
         panic!("{text}");
     };
     let place = scene.mesh().points()[node as usize];
-    assert_eq!((place[0], place[2]), (0.0, 0.0));
+    assert_eq!((place, place[0], place[2]), (position, 0.0, 0.0));
     assert_eq!((time, gap), (0.75, 0.1));
     assert!((depth - 0.05).abs() < 1e-15 && (displacement - 0.15).abs() < 1e-15);
     assert!(

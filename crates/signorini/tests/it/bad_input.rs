@@ -228,13 +228,13 @@ fn contact_and_friction() {
         "a negative coefficient": attempt(coulomb(Coefficient::Constant(-0.3))) => Error::Contact(ContactError::Coefficient { .. }), "contact 0", "coefficient", "-0.3";
         "a negative coefficient of the second surface": attempt(good().with_contact(Contact::rigid(brick::Y_MIN).with_friction(Friction::coulomb(-0.3)))) => Error::Contact(ContactError::Coefficient { .. }), "contact 1";
         "a coefficient that is NaN": attempt(coulomb(Coefficient::Constant(nan))) => Error::Contact(ContactError::Coefficient { .. }), "coefficient", "NaN";
-        "a field of negative coefficients": attempt(coulomb(Coefficient::field(|x| 1.0 - x[0]))) => Error::Contact(ContactError::CoefficientAt { .. }), "node", "coefficient";
+        "a field of negative coefficients": attempt(coulomb(Coefficient::field(|x| 1.0 - x[0]))) => Error::Contact(ContactError::CoefficientAt { .. }), "contact 0 at node", "coefficient";
         "a law that is NaN": attempt(coulomb(Coefficient::rate_field(|_, _| f64::NAN))) => Error::Contact(ContactError::CoefficientAt { .. }), "node", "slip rate";
         "a decay rate of zero": attempt(coulomb(Coefficient::Exponential { fixed: 0.3, kinetic: 0.1, decay: 0.0 })) => Error::Contact(ContactError::Coefficient { .. }), "decay rate";
         "a negative kinetic coefficient": attempt(coulomb(Coefficient::Exponential { fixed: 0.3, kinetic: -0.1, decay: 1.0 })) => Error::Contact(ContactError::Coefficient { .. }), "kinetic";
         "an empty table": attempt(coulomb(Coefficient::Table(Vec::new()))) => Error::Contact(ContactError::EmptyTable { .. }), "contact 0", "table", "at least one";
         "a table out of order": attempt(coulomb(Coefficient::Table(vec![(1.0, 0.3), (0.0, 0.2)]))) => Error::Contact(ContactError::TableRate { entry: 1, .. }), "order";
-        "a negative slip bound": attempt(given(SlipBound::Stress(-1.0))) => Error::Contact(ContactError::SlipBound { .. }), "node", "slip bound";
+        "a negative slip bound": attempt(given(SlipBound::Stress(-1.0))) => Error::Contact(ContactError::SlipBound { .. }), "contact 0 at node", "slip bound";
         "a slip bound that is NaN": attempt(given(SlipBound::field(|x| (x[0] - 1.5).sqrt()))) => Error::Contact(ContactError::SlipBound { .. }), "node";
         "a free body": attempt(
             Scene::new(mesh(), steel()).with_load(Load::body([0.0, 0.0, -1e3]))
