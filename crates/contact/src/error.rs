@@ -3,7 +3,7 @@
 use crate::part::Part;
 use crate::status::FreeCoupling;
 use signorini_fem_mesh as fem;
-use signorini_fem_mesh::internal::{number, place};
+use signorini_fem_mesh::internal::{number, place, with_sources};
 use signorini_qp::QpError;
 use signorini_tfeti::TfetiError;
 
@@ -232,15 +232,15 @@ signorini_fem_mesh::errors! {
             "setting {name} = {} is outside its range {range}", number(*value);
         Doubling { reason: &'static str } = "step doubling: {reason}";
         Finished { steps: usize } = "the scene has {steps} steps and all are solved";
-        Observer { step: usize, source: Box<dyn std::error::Error + Send + Sync> } =
-            "observer, after step {step}: {source}";
+        Observer { step: usize, r#source: Box<dyn std::error::Error + Send + Sync> } =
+            "observer, after step {step}: {}", with_sources(source.as_ref());
         NotConverged(Box<crate::status::StepFailure>) = "{0}";
         UnconvergedHistory { step: usize } =
             "step {step} did not converge, and the slip of later steps depends on it; continue from a state before \
             it, with smaller steps or other settings";
         Checkpoint { reason: String } = "checkpoint: {reason}";
         UnreadableCheckpoint { reason: String } = "checkpoint: {reason}";
-        CheckpointFile { what: &'static str, path: std::path::PathBuf, source: std::io::Error } =
+        CheckpointFile { what: &'static str, path: std::path::PathBuf, r#source: std::io::Error } =
             "checkpoint: cannot {what} {}: {source}; {}", path.display(), match source.kind() {
                 std::io::ErrorKind::NotFound => "there is none at this path: look for the folder",
                 _ => "those stored before stay: make room, correct the rights of the folder or give another one, then \
@@ -251,7 +251,7 @@ signorini_fem_mesh::errors! {
         ResultTable { path: std::path::PathBuf, line: usize, found: String, expected: String } =
             "cannot continue {}: line {line} is {found:?}, but {expected} is needed; a run that is resumed goes on with \
             the table of a writer with the same choices: give it those, or another folder", path.display();
-        Named { names: String, source: Box<Self> } = "{names}: {source}";
-        Load { index: usize, source: fem::LoadError } = "load {index}: {source}";
+        Named { names: String, r#source: Box<Self> } = "{names}: {source}";
+        Load { index: usize, r#source: fem::LoadError } = "load {index}: {source}";
     }
 }

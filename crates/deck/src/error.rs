@@ -28,9 +28,9 @@ impl fmt::Display for Location {
 signorini_fem_mesh::errors! {
     /// A deck that cannot be read.
     DeckError {
-        Io { path: PathBuf, source: std::io::Error } = "cannot read {}: {source}", path.display();
+        Io { path: PathBuf, r#source: std::io::Error } = "cannot read {}: {source}", path.display();
         At { location: Location, word: String, fault: Box<Fault> } = "{location}: {word}: {fault}";
-        Mesh { path: PathBuf, source: MeshError } =
+        Mesh { path: PathBuf, r#source: MeshError } =
             "the elements of {} make no mesh: {source}", path.display();
         NoElements { path: PathBuf } =
             "{} has no elements; it needs *ELEMENT of solid elements, for instance TYPE=C3D4 or C3D10", path.display();
@@ -108,7 +108,7 @@ signorini_fem_mesh::errors! {
     Fault from { Hooke(HookeError), History(HistoryError) } {
         NoKeyword = "the deck begins with data; begin with a keyword, for instance *NODE";
         NotContinued = "the line ends with a comma, but no line continues it; remove the comma";
-        Include { path: PathBuf, source: std::io::Error } =
+        Include { path: PathBuf, r#source: std::io::Error } =
             "cannot read {}: {source}; paths are relative to the file that includes", path.display();
         IncludeLoop = "the file includes itself, directly or through others; remove one *INCLUDE";
         TooMany { what: &'static str, most: u64, remedy: &'static str } = "more than {most} {what}; {remedy}";
@@ -127,13 +127,13 @@ signorini_fem_mesh::errors! {
         Volume =
             "the element has no volume, or is turned inside out or far from convex; the nodes of its first face have to be \
             counter-clockwise seen from its other nodes";
-        Distorted { source: MeshError } =
+        Distorted { r#source: MeshError } =
             "the element is too far from convex or too distorted to be divided into tetrahedra; move its nodes, or remesh around \
             it (of its tetrahedra: {source})";
         FaceInside { element: u32, face: u8 } =
             "face {face} of element {element} lies inside the body, against another element; give only faces of the \
             boundary";
-        Mesh { names: String, source: MeshError } = "the elements make no mesh: {names}: {source}";
+        Mesh { names: String, r#source: MeshError } = "the elements make no mesh: {names}: {source}";
         Cannot(Cow<'static, str>) = "{0}";
     }
 }

@@ -12,9 +12,26 @@ pub fn place(place: &[f64; 3]) -> String {
     format!("({x}, {y}, {z})")
 }
 
+/// What an error says, and what its sources add.
+pub fn with_sources(error: &dyn std::error::Error) -> String {
+    let mut said = error.to_string();
+    let mut next = error.source();
+    while let Some(source) = next {
+        let text = source.to_string();
+        // errors of others may repeat their sources
+        if !said.contains(&text) {
+            said = format!("{said}: {text}");
+        }
+        next = source.source();
+    }
+    said
+}
+
 /// Defines an error. A variant is `Name { fields } = "message";`: the message says what is wrong, where, and the
-/// remedy; it is the documentation of the variant, too, and what a `main` that returns the error prints. Behind `from`
-/// stand errors of other crates that are passed on as they are, behind `as` those that are not converted by `?`.
+/// remedy; it is the documentation of the variant, too, and what a `main` that returns the error prints. What it tells of an
+/// inner error is not told again by `source`, so the field of that is `r#source`, which thiserror takes for no source.
+/// Behind `from` stand errors of other crates that are passed on as they are, behind `as` those that are not converted
+/// by `?`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! errors {
@@ -23,7 +40,7 @@ macro_rules! errors {
         $name:ident $(from { $($(#[$gate:meta])* $other:ident($error:ty)),* $(,)? })?
             $(as { $($own:ident($own_error:ty)),* })? {
             $(
-                $variant:ident $({ $($field:ident: $type:ty),* })? $(($(#[$from:meta])? $inner:ty))?
+                $variant:ident $({ $($field:ident: $type:ty),* })? $(($inner:ty))?
                 = $message:literal $(, $argument:expr)*;
             )*
         }
@@ -35,7 +52,7 @@ macro_rules! errors {
             $(
                 #[doc = $message]
                 #[error($message $(, $argument)*)]
-                $variant $({ $(#[allow(missing_docs)] $field: $type),* })? $(($(#[$from])? $inner))?,
+                $variant $({ $(#[allow(missing_docs)] $field: $type),* })? $(($inner))?,
             )*
             $($(
                 /// An error of another crate, as it is.
@@ -53,18 +70,7 @@ macro_rules! errors {
         // errors print their sentence with `{:?}`, too, and what their sources add to it
         impl std::fmt::Debug for $name {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                let mut said = self.to_string();
-                f.write_str(&said)?;
-                let mut next = std::error::Error::source(self);
-                while let Some(source) = next {
-                    let text = source.to_string();
-                    if !said.contains(&text) {
-                        write!(f, "\n  because {text}")?;
-                        said.push_str(&text);
-                    }
-                    next = source.source();
-                }
-                Ok(())
+                f.write_str(&$crate::internal::with_sources(self))
             }
         }
     };

@@ -112,7 +112,7 @@ pub use mesh::{Facet, FacetTag, MeshError, Surface, SurfaceError, SurfaceFrame, 
 #[doc(hidden)]
 pub mod internal {
     pub use crate::element::{TetNodes, shape_gradients};
-    pub use crate::errors::{number, place};
+    pub use crate::errors::{number, place, with_sources};
     pub use crate::files::replace_file;
     pub use crate::loads::interpolate;
     pub use crate::loads::tet_forces;

@@ -7,7 +7,7 @@ macro_rules! errors {
         $(#[$about:meta])*
         $name:ident {
             $(
-                $variant:ident $({ $($field:ident: $type:ty),* })? $(($(#[$from:meta])? $inner:ty))?
+                $variant:ident $({ $($field:ident: $type:ty),* })? $(($inner:ty))?
                 = $message:literal $(, $argument:expr)*;
             )*
         }
@@ -19,7 +19,7 @@ macro_rules! errors {
             $(
                 #[doc = $message]
                 #[error($message $(, $argument)*)]
-                $variant $({ $(#[allow(missing_docs)] $field: $type),* })? $(($(#[$from])? $inner))?,
+                $variant $({ $(#[allow(missing_docs)] $field: $type),* })? $(($inner))?,
             )*
         }
 
@@ -55,7 +55,7 @@ errors! {
     /// [`Status`](crate::Status).
     #[derive(Clone, PartialEq)]
     QpError {
-        Set(#[from] SetError) = "the convex set is wrong: {0}";
+        Set(SetError) = "the convex set is wrong: {0}";
         Length { what: &'static str, found: usize, expected: usize } =
             "{what} has length {found}, the operator needs {expected}";
         Setting { name: &'static str, value: f64, range: &'static str } =
@@ -82,6 +82,12 @@ errors! {
             remove it";
         NotSymmetric { row: usize, col: usize, difference: f64 } =
             "the matrix is not symmetric: entries ({row}, {col}) and ({col}, {row}) differ by {difference:e}";
+    }
+}
+
+impl From<SetError> for QpError {
+    fn from(error: SetError) -> Self {
+        Self::Set(error)
     }
 }
 

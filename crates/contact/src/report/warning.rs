@@ -117,7 +117,7 @@ signorini_fem_mesh::errors! {
         DamagedCheckpoint { path: PathBuf, reason: String, taken: PathBuf } =
             "the newest checkpoint is damaged ({reason}); the run goes on from the one before, {}, and the damaged one \
             is kept as {}: look at the disk", taken.display(), path.display();
-        Named { names: String, source: Box<Self> } = "{names}: {source}";
+        Named { names: String, r#source: Box<Self> } = "{names}: {source}";
     }
 }
 

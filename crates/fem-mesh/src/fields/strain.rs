@@ -9,13 +9,12 @@ use rayon::prelude::*;
 errors! {
     /// A field that cannot be evaluated.
     #[derive(Clone, PartialEq)]
-    FieldError {
+    FieldError from { Material(MaterialError) } {
         Length { what: &'static str, given: usize, expected: usize } =
             "the {what} has {given} entries; the mesh needs {expected}";
         NotFinite { node: usize, value: [f64; 3] } =
             "the displacement of node {node} is {value:?}; it must be finite, so look at the solver that computed it";
         Target { value: f64 } = "the error that is wanted, relative to the displacement, is {value}; it must be positive, as 0.05";
-        Material(#[from] MaterialError) = "{0}";
     }
 }
 

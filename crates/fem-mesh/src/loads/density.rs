@@ -80,7 +80,7 @@ impl LoadDensity {
 errors! {
     /// A load that cannot be applied.
     #[derive(Clone, PartialEq)]
-    LoadError {
+    LoadError from { Material(MaterialError) } {
         ForeignDecomposition { decomposed: usize, meshed: usize } =
             "the decomposition has {decomposed} tetrahedra and the mesh {meshed}; decompose the mesh that is loaded";
         UnknownTag { tag: FacetTag, known: Vec<FacetTag> } =
@@ -98,6 +98,5 @@ errors! {
             "an eigenstrain has {given} factors for {nodes} nodes; give one for each node";
         StrainFactor { node: usize, value: f64 } =
             "the factor of an eigenstrain at node {node} is {value}; it must be finite";
-        Material(#[from] MaterialError) = "{0}";
     }
 }

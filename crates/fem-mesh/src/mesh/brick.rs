@@ -70,7 +70,13 @@ errors! {
     BrickError {
         OutOfRange { field: &'static str, axis: &'static str, value: f64, required: &'static str } =
             "brick: {field} along {axis} is {value}; it must be {required}";
-        Mesh(#[from] MeshError) = "brick: {0}";
+        Mesh(MeshError) = "brick: {0}";
+    }
+}
+
+impl From<MeshError> for BrickError {
+    fn from(error: MeshError) -> Self {
+        Self::Mesh(error)
     }
 }
 

@@ -1,6 +1,7 @@
 //! A program that knows the facade only.
 
 use signorini::prelude::*;
+use signorini::qp::{ProductSet, QpError, Segment};
 
 fn scene(levels: usize) -> Result<Scene, Error> {
     let mesh = Brick::new([3.0, 1.0, 1.0], [6, 2, 2]).build()?;
@@ -74,7 +75,6 @@ fn a_closure_is_an_observer() -> Result<(), Error> {
     Ok(())
 }
 
-#[test]
 /// Lists and pairs of observers, owned or lent, are observers: all are told, and one that stops is enough.
 #[test]
 fn observers_compose() -> Result<(), Error> {
@@ -96,6 +96,7 @@ fn observers_compose() -> Result<(), Error> {
     Ok(())
 }
 
+#[test]
 fn an_observer_that_fails_ends_the_run_with_its_error() -> Result<(), Error> {
     let mut simulation = Simulation::new(scene(3)?, Settings::default())?;
     let mut room = 1;
@@ -134,10 +135,46 @@ fn errors_print_their_sentences() -> Result<(), Error> {
     let error = Error::from(outcome.expect_err("an observer that fails"));
     assert_eq!(
         format!("{error:?}"),
-        "observer, after step 0: no frame was kept\n  because the disk is full"
+        "observer, after step 0: no frame was kept: the disk is full"
     );
     let io = Error::from(std::io::Error::other("the disk is full"));
     assert_eq!(format!("{io:?}"), "the disk is full");
+    Ok(())
+}
+
+/// Errors that tell what is inside them do not give it as their source again, so that reports of chains repeat nothing.
+#[test]
+fn no_source_repeats_what_is_told() -> Result<(), Error> {
+    let io = || std::io::Error::other("the disk is full");
+    let fallen = || ContactError::UnconvergedHistory { step: 1 };
+    let observed = ContactError::Observer {
+        step: 0,
+        source: fallen().into(),
+    };
+    let named = ContactError::Named {
+        names: "contact 0 is the floor".to_owned(),
+        source: Box::new(observed),
+    };
+    let loaded = scene(1)?.with_load(Load::pressure(FacetTag(99), 1.0));
+    let far = Brick::new([f64::MAX; 3], [1; 3]).build().expect_err("no volume");
+    let segment = Segment::Discs { radii: vec![-1.0] };
+    for (error, inner) in [
+        (Error::from(io()), io().to_string()),
+        (Error::from(named), fallen().to_string()),
+        (
+            Simulation::new(loaded, Settings::default()).expect_err("no tag").into(),
+            "tag 99".to_owned(),
+        ),
+        (Error::from(far), "brick: ".to_owned()),
+        (
+            QpError::from(ProductSet::new(vec![segment]).expect_err("a radius")).into(),
+            "radius -1".to_owned(),
+        ),
+    ] {
+        let text = error.to_string();
+        assert!(text.contains(&inner), "{text}");
+        assert!(std::error::Error::source(&error).is_none(), "{text}");
+    }
     Ok(())
 }
 

@@ -29,8 +29,8 @@ use reader::Kind;
 errors! {
     /// A Gmsh file that cannot be read or written.
     GmshError {
-        Io { path: PathBuf, source: std::io::Error } = "cannot read {}: {source}", path.display();
-        Write { path: PathBuf, source: std::io::Error } = "cannot write {}: {source}", path.display();
+        Io { path: PathBuf, r#source: std::io::Error } = "cannot read {}: {source}", path.display();
+        Write { path: PathBuf, r#source: std::io::Error } = "cannot write {}: {source}", path.display();
         Sizes { nodes: usize, found: usize, good: usize } =
             "the mesh has {nodes} nodes and there are {found} edge lengths, the first {good} of them positive; give one positive \
             length a node";
@@ -66,7 +66,13 @@ errors! {
             so keep one group";
         RepeatedName { name: String, groups: [u32; 2] } =
             "the physical groups {} and {} of the Gmsh file are both named {name:?}; rename one", groups[0], groups[1];
-        Mesh(#[from] MeshError) = "the mesh in the Gmsh file (numbers from 0, in the order of the file; a divided element is several tetrahedra): {0}";
+        Mesh(MeshError) = "the mesh in the Gmsh file (numbers from 0, in the order of the file; a divided element is several tetrahedra): {0}";
+    }
+}
+
+impl From<MeshError> for GmshError {
+    fn from(error: MeshError) -> Self {
+        Self::Mesh(error)
     }
 }
 

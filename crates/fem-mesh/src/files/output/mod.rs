@@ -93,17 +93,17 @@ errors! {
             "two series in one folder are named {name:?}, and one would take the files of the other; rename one";
         Time { time: f64, before: f64 } =
             "time {time} of the series does not follow {before}; times must be finite and increase";
-        NoSeries { path: PathBuf, source: std::io::Error } =
+        NoSeries { path: PathBuf, r#source: std::io::Error } =
             "cannot read {}: {source}; to continue a series its list must be there, PvdSeries::create starts a new \
             one", path.display();
         BrokenSeries { path: PathBuf, line: usize, found: String, expected: String } =
             "line {line} of {} is {found:?}, but {expected} is needed; only lists written by PvdSeries under their \
             name can be continued, so restore the file or start a new series with PvdSeries::create", path.display();
-        Read { path: PathBuf, source: std::io::Error } =
+        Read { path: PathBuf, r#source: std::io::Error } =
             "cannot read {}: {source}; make it readable, or begin anew under another name", path.display();
         ShortFile { path: PathBuf } =
             "{} is cut short; put a copy of it back, remove it, or continue from a time before it", path.display();
-        Io { path: PathBuf, source: std::io::Error } =
+        Io { path: PathBuf, r#source: std::io::Error } =
             "cannot write {}: {source}; what was complete there stays: make room or give another folder, then go on",
             path.display();
     }
