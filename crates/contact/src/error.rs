@@ -69,7 +69,7 @@ signorini_fem_mesh::errors! {
     /// `partner` mesh nodes, steps from 0; in s, m, m/s, N and Pa. A body is a part of the mesh that hangs together.
     /// `friction` is the factor above which larger friction would hold it, `None` where none could.
     /// [`parts`](Self::parts) lists them. Where a scene [has names](crate::Scene::with_names) what is said of it is
-    /// `Named`.
+    /// `Named`: match on [`plain`](Self::plain).
     ContactError from {
         Mesh(fem::MeshError),
         Material(fem::MaterialError),

@@ -9,7 +9,9 @@ fem::errors! {
     /// `Contact`.
     ///
     /// With `{:?}` it prints its sentence and what its sources add, not its fields: a `main` that returns it shows what is
-    /// wrong and what to do about it. Programs match on its variants.
+    /// wrong and what to do about it. Programs match on its variants; where a scene [has
+    /// names](signorini_contact::Scene::with_names), what is said of it is `Contact`, to match on
+    /// [`plain`](ContactError::plain).
     ///
     /// ```
     /// use signorini::prelude::*;

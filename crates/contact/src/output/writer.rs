@@ -103,8 +103,9 @@ impl ResultWriter {
     }
 
     /// Writes a step; call it in a loop of your own (as an observer, the writer does so itself). A step that could not
-    /// be written can be written again. Of several processes each writes the tetrahedra of its subdomains, rank 0 the
-    /// rest, so every rank needs this writer.
+    /// be written can be written again, and one before the last begins anew there, without the rows and pictures from
+    /// it on. Of several processes each writes the tetrahedra of its subdomains, rank 0 the rest, so every rank needs
+    /// this writer.
     ///
     /// # Errors
     /// [`ContactError::Output`] if a name cannot name a file, a file cannot be written or continued, or a field is not

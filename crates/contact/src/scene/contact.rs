@@ -290,7 +290,8 @@ impl Contact {
 
     /// The obstacle turns about the axis through `point`: at time `t` by `angle(t)` radians, right-handed about `axis`,
     /// and by none before the first step. The axis moves with a [motion](Self::with_motion). The obstacle drags the
-    /// body by friction, however far it turns; if its shape is not round about the axis, gaps change.
+    /// body by friction, however far it turns; if its shape is not round about the axis, gaps change. It replaces a
+    /// rotation that was told before.
     ///
     /// The gap of an [obstacle](Self::obstacle) is measured at its current position in each step. A
     /// [gap field](Self::with_gap_field) turns with the obstacle. Other obstacles are assumed to have the shape of the
