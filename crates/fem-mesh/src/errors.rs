@@ -28,10 +28,9 @@ pub fn with_sources(error: &dyn std::error::Error) -> String {
 }
 
 /// Defines an error. A variant is `Name { fields } = "message";`: the message says what is wrong, where, and the
-/// remedy; it is the documentation of the variant, too, and what a `main` that returns the error prints. What it tells of an
-/// inner error is not told again by `source`, so the field of that is `r#source`, which thiserror takes for no source.
-/// Behind `from` stand errors of other crates that are passed on as they are, behind `as` those that are not converted
-/// by `?`.
+/// remedy; it is the documentation of the variant, too, and what a `main` that returns the error prints. An inner error
+/// that it tells is no source beside it: its field is `r#source`, which thiserror does not take for one. Behind `from`
+/// stand errors of other crates that are passed on as they are, behind `as` those that are not converted by `?`.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! errors {

@@ -12,8 +12,9 @@ signorini_fem_mesh::errors! {
             part of it hangs on a single node or edge, its elements are degenerate, or it has three or fewer quadratic \
             tetrahedra with a Poisson's ratio above 0.4: use another decomposition";
         Contrast { subdomain: usize, ratio: f64 } =
-            "subdomain {subdomain}: some of its nodes are {ratio:.1e} times as stiff as others, so that rounding hides what is \
-            soft: look at the units of its materials and at its smallest elements, or use subdomains of more even stiffness";
+            "subdomain {subdomain}: some of its nodes are {ratio:.1e} times as stiff as others, so that rounding hides \
+            what is soft: look at the units of its materials and at its smallest elements, or use subdomains of more \
+            even stiffness";
         Collinear { subdomain: usize } =
             "subdomain {subdomain}: its nodes lie on one line, so it has fewer than six rigid motions";
         Material { element: usize, message: String } = "tetrahedron {element}: {message}";

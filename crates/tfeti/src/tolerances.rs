@@ -38,8 +38,8 @@ pub(crate) const PIVOT: f64 = 1e-13;
 /// ratios from 0.49 to 0.4999; of 3,300 random bodies solved right none had less than 9e-10 and 1e-9.
 pub(crate) const FURTHER_MOTION: f64 = 1e-12;
 pub(crate) const LEFT_OF_IT: f64 = 1e-10;
-/// Largest over smallest diagonal entry of a stiffness that is singular, above which rounding is the reason, not a motion
-/// without strain: about what double precision has left beside the condition of a mesh of one material.
+/// Largest over smallest diagonal entry of a stiffness that is singular, above which rounding is the reason, not a
+/// motion without strain: about what double precision has left beside the condition of a mesh of one material.
 pub(crate) const CONTRAST: f64 = 1e8;
 /// Pivots of coarse factors and of matrices from which directions are taken out, relative to the largest diagonal
 /// entry.
