@@ -3,7 +3,7 @@
 use crate::part::Part;
 use crate::status::FreeCoupling;
 use signorini_fem_mesh as fem;
-use signorini_fem_mesh::internal::{number, place, with_sources};
+use signorini_fem_mesh::internal::{number, place};
 use signorini_qp::QpError;
 use signorini_tfeti::TfetiError;
 
@@ -233,7 +233,7 @@ signorini_fem_mesh::errors! {
         Doubling { reason: &'static str } = "step doubling: {reason}";
         Finished { steps: usize } = "the scene has {steps} steps and all are solved";
         Observer { step: usize, r#source: Box<dyn std::error::Error + Send + Sync> } =
-            "observer, after step {step}: {}", with_sources(source.as_ref());
+            "observer, after step {step}: {}", fem::with_sources(source.as_ref());
         NotConverged(Box<crate::status::StepFailure>) = "{0}";
         UnconvergedHistory { step: usize } =
             "step {step} did not converge, and the slip of later steps depends on it; continue from a state before \

@@ -69,7 +69,7 @@ macro_rules! errors {
         // errors print their sentence with `{:?}`, too, and what their sources add to it
         impl std::fmt::Debug for $name {
             fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-                f.write_str(&$crate::internal::with_sources(self))
+                f.write_str(&$crate::with_sources(self))
             }
         }
     };

@@ -98,6 +98,8 @@ pub mod vec3;
 pub use assembly::assemble_stiffness;
 pub use decomposition::{Decomposition, DecompositionError};
 pub use element::Element;
+#[doc(hidden)]
+pub use errors::with_sources;
 pub use fields::FieldError;
 #[cfg(feature = "gmsh")]
 pub use files::gmsh;
@@ -112,7 +114,7 @@ pub use mesh::{Facet, FacetTag, MeshError, Surface, SurfaceError, SurfaceFrame, 
 #[doc(hidden)]
 pub mod internal {
     pub use crate::element::{TetNodes, shape_gradients};
-    pub use crate::errors::{number, place, with_sources};
+    pub use crate::errors::{number, place};
     pub use crate::files::replace_file;
     pub use crate::loads::interpolate;
     pub use crate::loads::tet_forces;
