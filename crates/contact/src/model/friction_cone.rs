@@ -119,6 +119,14 @@ impl WrenchCone {
             });
             Self::new(scaled.collect())
         };
+        // what topples is told at once by friction without bound, and by larger and larger one late
+        let unbounded = self.generators.iter().map(|g| Generators {
+            coefficient: g.coefficient.filter(|c| *c == 0.0),
+            ..g.clone()
+        });
+        if let Found::Apart(_) = Self::new(unbounded.collect()).closest(&scaled(b, norm(b)), true) {
+            return None;
+        }
         let holds = |factor: f64| cone(factor).exceeded(b).is_none();
         let (mut low, mut high) = (1.0_f64, MOST_FRICTION);
         if !holds(high) {

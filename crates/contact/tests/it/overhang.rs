@@ -85,3 +85,32 @@ fn supports_of_a_plank_are_pressed_alike() {
         }
     }
 }
+
+/// A column of loose cubes that its weight, inclined, topples by a thousandth: no friction would hold it. That took
+/// seconds to be told, growing with the fifth power of their number.
+#[test]
+fn columns_that_topple_are_refused_at_once() {
+    let count = 12;
+    let cube = |k: usize| {
+        block([1.0; 3], [1; 3])
+            .map_points(|[x, y, z]| [x, y, z + k as f64])
+            .expect("moved")
+            .map_tags(|t| FacetTag(t.0 + 10 * k as u32))
+    };
+    let mesh = (1..count).fold(cube(0), |mesh, k| mesh.append(&cube(k)).expect("column"));
+    let column = |inclined: f64| {
+        let scene = Scene::new(mesh.clone(), uniform(1e9, 0.3))
+            .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.7)))
+            .with_load(Load::body([inclined * 1e4 / count as f64, 0.0, -1e4]));
+        (1..count).fold(scene, |scene, k| {
+            let [under, top] = [(brick::Z_MIN, k), (brick::Z_MAX, k - 1)].map(|(t, k)| FacetTag(t.0 + 10 * k as u32));
+            scene.with_contact(Contact::between(under, top).with_friction(Friction::coulomb(0.7)))
+        })
+    };
+    let refused = Simulation::new(column(1.001), Settings::default()).map(|_| ());
+    assert!(
+        matches!(refused, Err(ContactError::NotHeld { friction: None, .. })),
+        "{refused:?}"
+    );
+    assert_certified(&solve(column(0.99), Settings::default()), "a column that stands");
+}
