@@ -46,8 +46,9 @@ fn short_cases_come_near_their_targets() {
     // contact that grows from a point: 68 products is the linear problem with the last active set on the full mesh
     let hertz = findings.iter().find(|f| f.case == "two spheres").expect("two spheres");
     assert!(hertz.run.products <= 80, "{hertz:?}");
-    // what supports of a thin body leave free is eliminated, and what is added to dependent rows of a joint is little
-    for (start, most) in [("plate", 400), ("press", 140), ("crack", 65), ("punch", 65)] {
+    // what supports of a thin body leave free is eliminated, and what is added to dependent rows of a joint is little;
+    // between the planes of a slice rows at the border of the punch depend on others
+    for (start, most) in [("plate", 400), ("press", 140), ("crack", 65), ("punch", 95)] {
         let own = findings.iter().filter(|f| f.case.starts_with(start));
         let products: Vec<usize> = own.map(|f| f.run.products).collect();
         assert!(products.iter().all(|p| *p <= most), "{start}: {products:?}");
