@@ -86,7 +86,8 @@ impl Observer for Arc<AtomicBool> {
 ///     steps.push(result.step());
 ///     Flow::Continue
 /// };
-/// let mut all: Vec<&mut dyn Observer> = vec![&mut count, &mut Silent];
+/// let mut silent = Silent;
+/// let mut all: Vec<&mut dyn Observer> = vec![&mut count, &mut silent];
 /// // simulation.run(&mut all)?
 /// # all.finished(0);
 /// ```
