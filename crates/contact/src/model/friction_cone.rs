@@ -8,12 +8,9 @@
 //! loads lie in the sum of both is asked by going towards them in steps (Frank and Wolfe, as far as the distance
 //! falls): the residual of `b - z` separates `b` if `b` works more on it than all friction can.
 
-use crate::tolerances::{
-    FRICTION_FACTOR, LEVERAGE, MOST_FRICTION, SLIDES, SLIDING, TRESCA_EXCESS, WRENCH_APART, WRENCH_FACTOR, WRENCH_RANK,
-    WRENCH_RESIDUAL,
-};
+use super::positive_factors::improve;
+use crate::tolerances::{FRICTION_FACTOR, LEVERAGE, MOST_FRICTION, SLIDES, SLIDING, TRESCA_EXCESS, WRENCH_RESIDUAL};
 use crate::vec3::{dot, norm};
-use nalgebra::{DMatrix, DVector};
 use signorini_qp::vector;
 
 /// Force directions of one contact point, as work on the motions.
@@ -111,20 +108,18 @@ impl WrenchCone {
     /// By more than which factor friction would have to be larger for contact to hold the loads `b`, N, that it does
     /// not hold; `None` where no friction could.
     pub(crate) fn friction_needed(&self, b: &[f64]) -> Option<f64> {
-        let cone = |factor: f64| {
-            let scaled = self.generators.iter().map(|g| Generators {
-                coefficient: g.coefficient.map(|c| factor * c),
-                tresca: factor * g.tresca,
+        let with = |friction: &dyn Fn(f64) -> Option<f64>, tresca: f64| {
+            let changed = self.generators.iter().map(|g| Generators {
+                coefficient: g.coefficient.and_then(friction),
+                tresca: tresca * g.tresca,
                 ..g.clone()
             });
-            Self::new(scaled.collect())
+            Self::new(changed.collect())
         };
+        let cone = |factor: f64| with(&|c| Some(factor * c), factor);
+        let loads = scaled(b, norm(b));
         // what topples is told at once by friction without bound, and by larger and larger one late
-        let unbounded = self.generators.iter().map(|g| Generators {
-            coefficient: g.coefficient.filter(|c| *c == 0.0),
-            ..g.clone()
-        });
-        if let Found::Apart(_) = Self::new(unbounded.collect()).closest(&scaled(b, norm(b)), true) {
+        if let Found::Apart(_) = with(&|c| (c == 0.0).then_some(c), 1.0).closest(&loads, true) {
             return None;
         }
         let holds = |factor: f64| cone(factor).exceeded(b).is_none();
@@ -138,7 +133,7 @@ impl WrenchCone {
         }
         // what was left open is no remedy
         let tresca = self.generators.iter().any(|g| g.tresca > 0.0);
-        let held = || matches!(cone(2.0 * high).closest(&scaled(b, norm(b)), false), Found::Inside);
+        let held = || matches!(cone(2.0 * high).closest(&loads, false), Found::Inside);
         (tresca || held()).then_some(low)
     }
 
@@ -282,64 +277,6 @@ impl WrenchCone {
 
 fn scaled(v: &[f64], length: f64) -> Vec<f64> {
     v.iter().map(|v| v / length).collect()
-}
-
-/// Least squares over the columns in use with positive factors; columns that would get negative ones leave.
-fn improve(used: &mut Vec<Vec<f64>>, factors: &mut Vec<f64>, b: &[f64]) -> bool {
-    loop {
-        let count = used.len();
-        if count == 0 {
-            return false;
-        }
-        let a = DMatrix::from_fn(b.len(), count, |i, j| used[j][i]);
-        let Some(solution) = least_squares(a, DVector::from_column_slice(b)) else {
-            return false;
-        };
-        let mut step = 1.0_f64;
-        for (new, old) in solution.iter().zip(factors.iter()) {
-            if *new < 0.0 {
-                step = step.min(old / (old - new));
-            }
-        }
-        for (new, old) in solution.iter().zip(factors.iter_mut()) {
-            *old += step * (new - *old);
-        }
-        if step >= 1.0 {
-            return true;
-        }
-        let size = factors.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        let keep: Vec<bool> = factors
-            .iter()
-            .zip(solution.iter())
-            .map(|(f, new)| *new >= 0.0 || *f > WRENCH_FACTOR * size)
-            .collect();
-        if keep.iter().all(|k| *k) {
-            return true;
-        }
-        let mut kept = keep.iter();
-        used.retain(|_| kept.next() == Some(&true));
-        let mut kept = keep.iter();
-        factors.retain(|_| kept.next() == Some(&true));
-    }
-}
-
-/// The `x` that makes `a x - b` least, the least one where columns depend on one another.
-fn least_squares(a: DMatrix<f64>, mut b: DVector<f64>) -> Option<DVector<f64>> {
-    // columns hardly ever depend on one another, and singular values take many times longer
-    let n = a.ncols();
-    if n <= a.nrows() {
-        let qr = a.clone().qr();
-        let r = qr.r();
-        let sizes = r.diagonal().abs();
-        if sizes.min() > WRENCH_APART * sizes.max() {
-            qr.q_tr_mul(&mut b);
-            let mut x = b.rows(0, n).into_owned();
-            return r.solve_upper_triangular_mut(&mut x).then_some(x);
-        }
-    }
-    let svd = a.svd(true, true);
-    let cut = WRENCH_RANK * svd.singular_values.max();
-    svd.solve(&b, cut).ok()
 }
 
 #[cfg(test)]

@@ -13,6 +13,7 @@ mod equilibrium;
 mod friction_cone;
 mod model;
 mod nearest;
+mod positive_factors;
 
 pub use contact_point::ConstrainedPoint;
 pub(crate) use contact_point::PointRow;

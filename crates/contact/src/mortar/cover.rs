@@ -47,8 +47,8 @@ struct Multipliers {
     /// What is projected onto linear functions and evaluated at the place of a corner is these times the moments of a
     /// function.
     kernel: [[f64; 3]; 3],
-    /// Shape functions of the facet at the places.
-    places: [[f64; 3]; 3],
+    /// Shape functions of the facet at the places, where these are not the corners.
+    places: Option<[[f64; 3]; 3]>,
     /// The same of the shape functions of a quadratic facet, unless it is to have dual functions alone.
     hats: Option<[[f64; 3]; 3]>,
 }
@@ -88,12 +88,17 @@ impl Multipliers {
             ]
         });
         let middle = barycentric(facet, centre);
-        let areas = if shares == [1.0; 3] {
-            middle.map(|l| area * l)
-        } else {
+        let moved = shares != [1.0; 3];
+        let areas = if moved {
             // of the triangle of the places, which has the same middle
             let parts = [0, 1, 2].map(|j| middle[j] / shares[j]);
             parts.map(|part| area * part / parts.iter().sum::<f64>())
+        } else {
+            middle.map(|l| area * l)
+        };
+        let shape_at = |j: usize| {
+            let own = |i| if i == j { shares[j] } else { 0.0 };
+            [0, 1, 2].map(|i| (1.0 - shares[j]) * middle[i] + own(i))
         };
         let hat = |j: usize| {
             let [from, to] = [facet[(j + 1) % 3], facet[(j + 2) % 3]];
@@ -105,10 +110,7 @@ impl Multipliers {
             centre,
             areas,
             kernel,
-            places: [0, 1, 2].map(|j| {
-                let own = |i| if i == j { shares[j] } else { 0.0 };
-                [0, 1, 2].map(|i| (1.0 - shares[j]) * middle[i] + own(i))
-            }),
+            places: moved.then(|| [0, 1, 2].map(shape_at)),
             hats: own.nodes.filter(|_| !dual).map(|_| [0, 1, 2].map(hat)),
         })
     }
@@ -167,8 +169,8 @@ impl Cover {
         }
         let own = own.nodes.into_iter().flatten().zip(&here);
         let mut own: Vec<_> = own.map(|(node, moments)| (node, multipliers.take(moments))).collect();
-        if let Some(nodes) = within.filter(|_| multipliers.places.iter().flatten().any(|l| *l != 0.0 && *l != 1.0)) {
-            let (places, areas) = (&multipliers.places, &multipliers.areas);
+        if let (Some(nodes), Some(places)) = (within, &multipliers.places) {
+            let areas = &multipliers.areas;
             let of = |i: usize| [0, 1, 2].map(|j| areas[j] * places[j][i]);
             own.extend([0, 1, 2].map(|i| (nodes[i], of(i))));
         }
