@@ -12,8 +12,7 @@ use std::collections::HashMap;
 /// that have one, m. Edges that turn by much may be those of a prism, so that theirs are not a number; those at kinks
 /// between flat sides are flat.
 pub(super) fn arcs(mesh: &TetMesh, surface: &Surface) -> HashMap<[u32; 2], f64> {
-    let surface = &fitted(mesh, surface.clone());
-    let chords = Chords::new(mesh, surface);
+    let chords = Chords::new(mesh, surface, fitted(mesh, surface));
     let all = || surface.triangles().iter().flat_map(|t| edges(*t));
     let length = |edge: [u32; 2]| norm(along(mesh, surface, edge));
     // a kink turns towards a flat side as much as anywhere
@@ -50,6 +49,8 @@ pub(super) fn edges([a, b, c]: [u32; 3]) -> [[u32; 2]; 3] {
 pub(super) struct Chords<'a> {
     mesh: &'a TetMesh,
     surface: &'a Surface,
+    /// Of its nodes.
+    normals: Vec<[f64; 3]>,
     /// Nodes at a rim, whose normals are those of facets on one side of them.
     at_rim: Vec<bool>,
     /// Ends of edges that are bent.
@@ -57,13 +58,14 @@ pub(super) struct Chords<'a> {
 }
 
 impl<'a> Chords<'a> {
-    pub(super) fn new(mesh: &'a TetMesh, surface: &'a Surface) -> Self {
+    pub(super) fn new(mesh: &'a TetMesh, surface: &'a Surface, normals: Vec<[f64; 3]>) -> Self {
         let mut edges: Vec<[u32; 2]> = surface.triangles().iter().flat_map(|t| edges(*t)).collect();
         edges.sort_unstable();
         let count = surface.nodes().len();
         let mut out = Self {
             mesh,
             surface,
+            normals,
             at_rim: vec![false; count],
             on_arc: vec![false; count],
         };
@@ -79,7 +81,7 @@ impl<'a> Chords<'a> {
 
     /// How far the normals of the ends of an edge tilt outward over its length, m.
     fn tilts(&self, edge: [u32; 2]) -> [f64; 2] {
-        tilts(self.mesh, self.surface, edge)
+        tilts(self.mesh, self.surface, &self.normals, edge)
     }
 
     /// Height of the arc over an edge, m, positive if it is convex; none over edges with a mid-node on the arc.
@@ -100,7 +102,7 @@ impl<'a> Chords<'a> {
         let Some(mid) = mid else { return arc };
         let place = |local: u32| self.mesh.points()[self.surface.nodes()[local as usize] as usize];
         let chord = scale(0.5, add(place(edge[0]), place(edge[1])));
-        let outward = edge.map(|end| self.surface.frames()[end as usize].normal);
+        let outward = edge.map(|end| self.normals[end as usize]);
         let way = sub(self.mesh.points()[mid as usize], chord);
         let off = 0.5 * dot(way, add(outward[0], outward[1]));
         if off * arc.signum() > 0.5 * arc.abs() { 0.0 } else { arc }
@@ -113,22 +115,29 @@ fn along(mesh: &TetMesh, surface: &Surface, edge: [u32; 2]) -> [f64; 3] {
     sub(to, from)
 }
 
-/// How far the normals of the ends of an edge tilt outward over its length, m.
-fn tilts(mesh: &TetMesh, surface: &Surface, edge: [u32; 2]) -> [f64; 2] {
+/// How far normals at the ends of an edge tilt outward over its length, m.
+fn tilts(mesh: &TetMesh, surface: &Surface, normals: &[[f64; 3]], edge: [u32; 2]) -> [f64; 2] {
     let along = along(mesh, surface, edge);
-    let [a, b] = edge.map(|end| dot(along, surface.frames()[end as usize].normal));
+    let [a, b] = edge.map(|end| dot(along, normals[end as usize]));
     [-a, b]
 }
 
-/// A surface in a mesh of order 1 with the normals of paraboloids through the nodes that are next to those on the two
-/// rings around them: means of uneven facets of a cylinder are off by some hundredths, and arcs with them. What is
-/// behind a kink does not count. They are no normals of contact, as their rounding would hold what slides along a curve.
-fn fitted(mesh: &TetMesh, surface: Surface) -> Surface {
+/// Those of the frames of its nodes.
+pub(super) fn normals(surface: &Surface) -> Vec<[f64; 3]> {
+    surface.frames().iter().map(|frame| frame.normal).collect()
+}
+
+/// In a mesh of order 1 those of paraboloids through the nodes that are next to those on the two rings around them: means
+/// of uneven facets of a cylinder are off by some hundredths, and arcs with them. What is behind a kink does not count.
+/// They are no normals of contact, as their small slopes would hold what slides along a curve.
+fn fitted(mesh: &TetMesh, surface: &Surface) -> Vec<[f64; 3]> {
+    let normals = normals(surface);
+    let tilts = |edge| tilts(mesh, surface, &normals, edge);
     let edges = distinct(surface.triangles().iter().flat_map(|t| edges(*t)));
     let count = surface.nodes().len();
     let turn = |edge: [u32; 2]| {
-        let tilts = tilts(mesh, &surface, edge).map(f64::abs);
-        tilts[0].max(tilts[1]) / norm(along(mesh, &surface, edge))
+        let tilts = tilts(edge).map(f64::abs);
+        tilts[0].max(tilts[1]) / norm(along(mesh, surface, edge))
     };
     let mut most = vec![0.0_f64; count];
     for (edge, n) in edges.iter().flat_map(|edge| edge.map(|n| (*edge, n as usize))) {
@@ -137,7 +146,7 @@ fn fitted(mesh: &TetMesh, surface: Surface) -> Surface {
     let mut ring = vec![Vec::new(); count];
     for [a, b] in edges {
         let most = most[a as usize].max(most[b as usize]);
-        if are_bent(tilts(mesh, &surface, [a, b])) || turn([a, b]) <= KINK * most {
+        if are_bent(tilts([a, b])) || turn([a, b]) <= KINK * most {
             ring[a as usize].push(b);
             ring[b as usize].push(a);
         }
@@ -145,7 +154,7 @@ fn fitted(mesh: &TetMesh, surface: Surface) -> Surface {
     let normal = |node: usize, frame: &SurfaceFrame| {
         let next = ring[node].iter().flat_map(|n| &ring[*n as usize]).chain(&ring[node]);
         let near = distinct(next.copied().filter(|n| *n as usize != node));
-        let ways = || near.iter().map(|n| along(mesh, &surface, [node as u32, *n]));
+        let ways = || near.iter().map(|n| along(mesh, surface, [node as u32, *n]));
         let size = ways().map(|way| dot(way, way)).fold(0.0, f64::max).sqrt();
         let (mut matrix, mut right) = (SMatrix::<f64, 5, 5>::zeros(), SVector::<f64, 5>::zeros());
         for way in ways() {
@@ -170,8 +179,7 @@ fn fitted(mesh: &TetMesh, surface: Surface) -> Surface {
             .filter(|_| most[node] >= BENT)
             .unwrap_or(frame.normal)
     });
-    let normals: Vec<[f64; 3]> = bent.collect();
-    surface.with_normals(&normals)
+    bent.collect()
 }
 
 /// Whether an edge is the chord of an arc, which bends at both ends. One between flat sides bends at one end.

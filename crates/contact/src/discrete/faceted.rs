@@ -6,7 +6,7 @@
 //! all contact of two bodies, it tells whether they touch or are pressed together. Gaps between linear facets that
 //! cover one another are measured to the curve (`chords`), and have nothing of it.
 
-use super::chords::{Chords, edges};
+use super::chords::{Chords, edges, normals};
 use super::creases::area_vector;
 use super::partners::Paired;
 use super::points::{ContactPoint, of_contact};
@@ -242,7 +242,7 @@ impl BentSide {
 
 /// How far the facets of a surface are from the curve at its nodes.
 fn bends(mesh: &TetMesh, surface: &Surface) -> HashMap<u32, Bend> {
-    let chords = Chords::new(mesh, surface);
+    let chords = Chords::new(mesh, surface, normals(surface));
     let mut corners = vec![Bend::default(); surface.nodes().len()];
     let mut areas = vec![0.0; corners.len()];
     let mut mids = Vec::new();

@@ -202,15 +202,6 @@ impl Surface {
         Ok(self)
     }
 
-    /// The same with other normals of its nodes; those without a direction stay.
-    #[doc(hidden)]
-    pub fn with_normals(mut self, normals: &[[f64; 3]]) -> Self {
-        for (frame, normal) in self.frames.iter_mut().zip(normals) {
-            *frame = SurfaceFrame::from_normal(*normal).unwrap_or(*frame);
-        }
-        self
-    }
-
     /// Areas and frames of the nodes.
     fn measure(&mut self, mesh: &TetMesh) -> Result<(), SurfaceError> {
         let nodes = &self.nodes;
