@@ -127,9 +127,9 @@ pub(super) fn normals(surface: &Surface) -> Vec<[f64; 3]> {
     surface.frames().iter().map(|frame| frame.normal).collect()
 }
 
-/// In a mesh of order 1 those of paraboloids through the nodes that are next to those on the two rings around them: means
-/// of uneven facets of a cylinder are off by some hundredths, and arcs with them. What is behind a kink does not count.
-/// They are no normals of contact, as their small slopes would hold what slides along a curve.
+/// In a mesh of order 1 those of paraboloids through the two rings of nodes around them: means of uneven facets of a
+/// cylinder are off by some hundredths, and arcs with them. What is behind a kink does not count. They are no normals
+/// of contact, as their small slopes would hold what slides along a curve.
 fn fitted(mesh: &TetMesh, surface: &Surface) -> Vec<[f64; 3]> {
     let normals = normals(surface);
     let tilts = |edge| tilts(mesh, surface, &normals, edge);

@@ -230,12 +230,14 @@ impl ActiveSetProjector {
 
 /// Rows of springs that are soft beside the stiffest rows, where contact may hold what they do.
 fn soft_springs(coarse: &Coarse, contact_rows: usize, metric: Option<&[f64]>) -> Vec<usize> {
-    let weighted = metric.filter(|_| contact_rows > 0).into_iter().flatten().enumerate();
-    let is_soft = |(row, weight): (usize, &f64)| {
-        let spring = coarse.0.gluing.spring(row)?;
-        (weight * spring.scale.powi(2) < SOFT_SPRING).then_some(row)
+    let springs = coarse.0.gluing.springs();
+    let Some(metric) = metric.filter(|_| contact_rows > 0) else {
+        return Vec::new();
     };
-    weighted.filter_map(is_soft).collect()
+    let first = metric.len() - springs.len();
+    let weighted = metric[first..].iter().zip(springs).zip(first..);
+    let soft = weighted.filter(|((weight, spring), _)| *weight * spring.scale.powi(2) < SOFT_SPRING);
+    soft.map(|(_, row)| row).collect()
 }
 
 /// Weights of which these rows have none.
