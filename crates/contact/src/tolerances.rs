@@ -124,16 +124,16 @@ pub(crate) const FACING: f64 = 0.1;
 /// Mean area of the facets of a side over that of the other from which on it is the coarser one.
 pub(crate) const COARSER: f64 = 1.1;
 
-/// The same from which on a flat side leaves the points to the other where it reaches beyond that: forces at its outer
-/// nodes had moments about that by up to a facet.
-pub(crate) const MUCH_COARSER: f64 = 2.0;
-
 /// Shear modulus of a body over that of the other from which on it leaves the points to the other where it reaches
 /// beyond that: thousands of products otherwise.
 pub(crate) const HARDER: f64 = 10.0;
 
 /// Part of the area of a facet or node below which what covers it counts as nothing.
 pub(crate) const COVERED: f64 = 1e-10;
+
+/// The same of a node whose shape function others have instead: the other side ends within a hundredth of a facet beside
+/// them, and rows there differ by the square of that; SMALSE took ten thousand products.
+pub(crate) const SLIVER: f64 = 1e-4;
 
 /// How much the pieces that cover a facet may overlap, over its area: those of a curved surface do a little.
 pub(crate) const OVERLAP: f64 = 0.05;

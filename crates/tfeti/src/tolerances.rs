@@ -17,6 +17,8 @@ pub(crate) const HELD: f64 = 0.25;
 /// The same where both sides are means, in a mesh of order 2: of a corner on a plane that supports hold it is a quarter
 /// or a half, of one beside the plane a tenth at most.
 pub(crate) const HELD_MEANS: f64 = 0.2;
+/// The same of the other side, where the plane cuts the own one: smaller facets have less of a mean on it.
+pub(crate) const HELD_OF_OTHER: f64 = 0.02;
 /// Prescribed displacements in one direction: relative difference that supports may have.
 pub(crate) const AGREEING: f64 = 1e-7;
 /// Nodes of a rigid subdomain: largest distance from a line, relative to its length, on which they lie. At 3e-6 loads

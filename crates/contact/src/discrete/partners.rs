@@ -11,7 +11,7 @@ use super::normals::{differ, fixed_frame};
 use crate::error::ContactError;
 use crate::mortar::{Arcs, MortarNode, Rim, mortar_nodes};
 use crate::scene::{Contact, Gap};
-use crate::tolerances::{BESIDE, COARSER, FACING, HARDER, LOCKING, MOST_TILT, MUCH_COARSER, OVERLAP, TILT};
+use crate::tolerances::{BESIDE, COARSER, FACING, HARDER, LOCKING, MOST_TILT, OVERLAP, TILT};
 use rayon::prelude::*;
 use rstar::primitives::GeomWithData;
 use rstar::{AABB, RTree};
@@ -104,9 +104,8 @@ impl Paired {
     /// The sides of a contact whose meshes do not match. The coarser one has the points, of sides with facets of one
     /// size that with fewer: rows are farther from depending on one another, and pressures smoother. But a curved side
     /// that hardly changes its volume has them, in meshes of order 2: between points of larger facets it gives way, and
-    /// loses its pressure. Linear tetrahedra are too stiff to. And a flat one that reaches beyond has none if it is
-    /// much coarser, as its points beyond would hold the other side from tipping over its edge, or if its body is much
-    /// harder (linear meshes): a rim of the softer one would be all that several of them press.
+    /// loses its pressure. Linear tetrahedra are too stiff to. And a flat side of these that reaches beyond has none if
+    /// its body is much harder: a rim of the softer one would be all that several of them press.
     pub(super) fn mortar(
         (mesh, materials): (&TetMesh, &Materials),
         (index, contact): (usize, &Contact),
@@ -150,17 +149,15 @@ impl Paired {
                 if count(&back) < count(&there) { (back, true) } else { (there, false) }
             }
         };
-        // of the side with the points, then of the other one
-        let in_order = |[own, others]: [f64; 2]| if swapped { [others, own] } else { [own, others] };
-        let [coarser, finer] = in_order([own, others]);
         let sides = [&surface, &other];
-        let is_flat = !sides.into_iter().any(is_curved);
         let is_harder = || {
-            let [harder, softer] = in_order(sides.map(|s| hardness(mesh, materials, s)));
-            mesh.order() == 1 && harder > HARDER * softer
+            let [own, others] = sides.map(|s| hardness(mesh, materials, s));
+            let [own, others] = if swapped { [others, own] } else { [own, others] };
+            own > HARDER * others
         };
-        let yields = is_flat
-            && (coarser > MUCH_COARSER * finer || is_harder())
+        let yields = mesh.order() == 1
+            && !sides.into_iter().any(is_curved)
+            && is_harder()
             && reaches_beyond(sides[usize::from(swapped)], &mortar);
         let (mortar, swapped) = match (yields, swapped) {
             (true, false) => (back(), true),

@@ -7,8 +7,8 @@
 //! sum of that and of the shape function of the corner, but where a gap opens from the rim; edges that are bent in the
 //! plane, as at the rim of a disc, count.
 //!
-//! A node beyond the cover would press with a lever that the cover does not have. Where sides may part `P f` of linear
-//! facets is taken at the border instead, on the way from the corner to the middle of `C`.
+//! A node beyond the cover would press with a lever that the cover does not have. Where flat sides may part `P f` is taken
+//! at the border instead, on the way from the corner to the middle of `C`.
 
 use super::pieces::{Flat, Piece, Point, barycentric, cross, place, sub};
 use crate::tolerances::{AT_BORDER, NO_EXTENT};
@@ -89,12 +89,13 @@ impl Multipliers {
         });
         let middle = barycentric(facet, centre);
         let moved = shares != [1.0; 3];
+        let plain = middle.map(|l| area * l);
         let areas = if moved {
             // of the triangle of the places, which has the same middle
             let parts = [0, 1, 2].map(|j| middle[j] / shares[j]);
             parts.map(|part| area * part / parts.iter().sum::<f64>())
         } else {
-            middle.map(|l| area * l)
+            plain
         };
         let shape_at = |j: usize| {
             let own = |i| if i == j { shares[j] } else { 0.0 };
@@ -103,14 +104,14 @@ impl Multipliers {
         let hat = |j: usize| {
             let [from, to] = [facet[(j + 1) % 3], facet[(j + 2) % 3]];
             let [x, y] = sub(to, from).map(|d| d / cross(sub(to, from), sub(facet[j], from)));
-            [areas[j] / area, -y, x]
+            [plain[j] / area, -y, x]
         };
         Some(Self {
             area,
             centre,
             areas,
             kernel,
-            places: moved.then(|| [0, 1, 2].map(shape_at)),
+            places: (moved && own.nodes.is_none()).then(|| [0, 1, 2].map(shape_at)),
             hats: own.nodes.filter(|_| !dual).map(|_| [0, 1, 2].map(hat)),
         })
     }
@@ -123,6 +124,14 @@ impl Multipliers {
             moments[0] += value;
             moments[1] += value * x;
             moments[2] += value * y;
+        }
+    }
+
+    /// What they take of one.
+    fn of_one(&self) -> [f64; 3] {
+        match &self.hats {
+            Some(hats) => [0, 1, 2].map(|j| 0.5 * (self.areas[j] + self.area * hats[j][0])),
+            None => self.areas,
         }
     }
 
@@ -176,7 +185,7 @@ impl Cover {
         }
         Some(Self {
             area: multipliers.area,
-            areas: multipliers.areas,
+            areas: multipliers.of_one(),
             weights,
             own,
             ways: multipliers.take(&ways[0]),

@@ -1,7 +1,7 @@
 //! The other side of each node of a surface.
 
 use super::search::{Bends, Normals, Seen, covers, in_order};
-use crate::tolerances::{COVERED, NO_WEIGHT, SAME_NORMAL};
+use crate::tolerances::{COVERED, NO_WEIGHT, SAME_NORMAL, SLIVER};
 use crate::vec3::edge_cosine;
 use rayon::prelude::*;
 use signorini_fem_mesh::internal::Lists;
@@ -75,7 +75,7 @@ fn handed_on(surface: &Surface, other: &Surface, crossing: &HashSet<u32>) -> Has
 
 /// For each node of a surface what it sees of the other one; `None` where that is nothing, and at nodes on both sides,
 /// as the tip of a crack: their shape functions are shared out to the other corners of each facet. So are, as far as
-/// [they may be](handed_on), those of the nodes that `crossing` tells from what all see.
+/// [they may be](handed_on), those of the nodes that `crossing` tells from what all see, and those of [slivers].
 ///
 /// Where sides that are `tied` are apart, as facets of curved sides are, displacements of the other side go on to the
 /// first one as in the tetrahedra behind it: linear ones, rotations among them, are the same on both sides, and what
@@ -104,7 +104,7 @@ pub(crate) fn mortar_nodes(
         is_bent(mesh, &facets, crease)
     };
     // tied sides need no normal, and means of displacements have their own
-    let may_part = !tied && mesh.order() == 1;
+    let may_part = !tied;
     let bent: HashSet<u32> = surface
         .nodes()
         .par_iter()
@@ -112,10 +112,12 @@ pub(crate) fn mortar_nodes(
         .filter(|n| may_part && is_bent(*n))
         .collect();
     // around a curve a place has another normal than its node
-    let within = |nodes: [u32; 3]| may_part && !nodes.iter().any(|n| bent.contains(n));
+    let is_flat = |node: u32| may_part && !bent.contains(&node);
+    let within = |nodes: [u32; 3]| nodes.into_iter().all(is_flat);
     let covers = covers(mesh, &triangles, other, (tied, &within), bends);
+    let slivers = slivers(surface, (&corners, &around), &covers, is_flat);
     let node = |(local, &own): (usize, &u32), shared: &HashSet<u32>| {
-        let is_tip = |node: u32| other.local(node).is_some() || shared.contains(&node);
+        let is_tip = |node: u32| other.local(node).is_some() || shared.contains(&node) || slivers.contains(&node);
         if is_tip(own) {
             return None;
         }
@@ -131,7 +133,7 @@ pub(crate) fn mortar_nodes(
         if sums.area <= COVERED * surface.areas()[local] {
             return None;
         }
-        let frame = if bent.contains(&own) {
+        let frame = if mesh.order() == 1 && bent.contains(&own) {
             surface.frames()[local]
         } else {
             SurfaceFrame::from_normal(sums.normal)?
@@ -153,6 +155,29 @@ pub(crate) fn mortar_nodes(
         }
     }
     out
+}
+
+/// Nodes of which hardly anything is covered, beside others in each of their facets.
+fn slivers(
+    surface: &Surface,
+    (corners, around): (&[[u32; 3]], &Lists<u32>),
+    covers: &[Option<Seen>],
+    may_be: impl Fn(u32) -> bool,
+) -> HashSet<u32> {
+    let covered = |node: u32| -> f64 {
+        let places = around.of(node as usize).iter().map(|place| *place as usize);
+        let areas = places.filter_map(|place| Some(covers[place / 3].as_ref()?.cover.areas[place % 3]));
+        areas.sum()
+    };
+    let hardly = surface.nodes().iter().zip(surface.areas());
+    let hardly = hardly.filter(|(node, area)| may_be(**node) && covered(**node) <= SLIVER * *area);
+    let mut found: HashSet<u32> = hardly.map(|(node, _)| *node).collect();
+    for (nodes, _) in corners.iter().zip(covers).filter(|facet| facet.1.is_some()) {
+        if nodes.iter().all(|node| found.contains(node)) {
+            nodes.iter().for_each(|node| _ = found.remove(node));
+        }
+    }
+    found
 }
 
 /// The share of a corner of a facet in what the corners have: its own, and a part of what the tips hand on.

@@ -170,7 +170,13 @@ fn the_algebraic_error_is_estimated() {
 #[test]
 fn leaves_clamped_together_press_on_each_other_only_where_they_move() {
     let leaf = |long: f64, cells| block([long, 10.0, 1.0], [cells, 3, 1]);
-    for (cells, order) in [([20, 20], 1), ([20, 23], 1), ([20, 20], 2)] {
+    for (cells, order) in [
+        ([20, 20], 1),
+        ([20, 23], 1),
+        ([20, 80], 1),
+        ([20, 20], 2),
+        ([20, 40], 2),
+    ] {
         let both = with_second(&leaf(100.0, cells[0]), &lifted(&leaf(85.0, cells[1]), 1.0));
         let both = match order {
             2 => both.raise_order().expect("order 2"),

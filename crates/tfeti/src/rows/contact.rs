@@ -4,7 +4,7 @@ use crate::error::TfetiError;
 use crate::linalg::entry;
 use crate::rows::side::{ContactConstraint, check_constraints};
 use crate::rows::supports::{FixedNode, MergedSupports};
-use crate::tolerances::{ANGLE, FIXED};
+use crate::tolerances::{ANGLE, FIXED, HELD_OF_OTHER};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use signorini_fem_mesh::vec3::dot;
 
@@ -196,13 +196,15 @@ impl Space {
                 false => Matrix3::identity(),
             };
             let least = point.side.held_from();
-            let own = match own {
-                1 => Matrix3::identity() - self.nodes[0].1,
+            let (own, least_of_other) = match own {
+                1 => (Matrix3::identity() - self.nodes[0].1, least),
                 // the directions that supports hold at a good part of a mean
                 _ => {
                     let held = SymmetricEigen::new(shares[..own].iter().sum::<Matrix3<f64>>());
                     let found = (0..3).filter(|&k| held.eigenvalues[k] >= least);
-                    found.map(|k| along(&held.eigenvectors.column(k).into())).sum()
+                    let is_cut = held.eigenvalues.max() < 1.0 - ANGLE;
+                    let own = found.map(|k| along(&held.eigenvectors.column(k).into())).sum();
+                    (own, if is_cut { HELD_OF_OTHER } else { least })
                 }
             };
             // supports may fix the normal, too
@@ -212,17 +214,17 @@ impl Space {
                 .iter()
                 .fold(Matrix3::identity() - along(&across), |p, d| p - along(d));
             // by a good part, and not a direction between that and free ones
-            let holds = |side: &Matrix3<f64>, d: Vector3<f64>| {
+            let holds = |side: &Matrix3<f64>, least: f64, d: Vector3<f64>| {
                 let share = d.dot(&(side * d));
                 share >= least && (side * d - d * share).norm() <= ANGLE * share
             };
-            if [own, other].iter().all(|side| holds(side, across)) {
+            if holds(&own, least, across) && holds(&other, least_of_other, across) {
                 fixed.push(across);
             }
             let held = SymmetricEigen::new(left * own * other * own * left);
-            let found = (0..3).filter(|&k| held.eigenvalues[k] >= least);
+            let found = (0..3).filter(|&k| held.eigenvalues[k] >= least_of_other);
             let found = found.map(|k| Vector3::from(held.eigenvectors.column(k)));
-            fixed.extend(found.filter(|&d| is_pair || holds(&own, d)));
+            fixed.extend(found.filter(|&d| is_pair || holds(&own, least, d)));
         }
         fixed
     }
