@@ -20,7 +20,7 @@ type Start = (bool, Attempt);
 
 impl Simulation {
     /// The attempts at an increment that follows on a state.
-    pub(super) fn attempts(&self, state: &State, increment: Increment) -> Result<Vec<Start>, ContactError> {
+    pub(super) fn attempts(&self, state: &State, increment: Increment) -> Vec<Start> {
         // the line leads on where the loads have stopped, and astray where friction has turned round: there is another
         // start
         let extrapolates = self.settings.extrapolate;
@@ -29,22 +29,15 @@ impl Simulation {
         let line = extrapolates && !rests;
         if extrapolates && state.step() > 0 && state.unconverged_history().is_none() {
             if !self.falls_back() {
-                return Ok(vec![(line, Attempt::First), (!line, Attempt::Whole)]);
+                return vec![(line, Attempt::First), (!line, Attempt::Whole)];
             }
             // with a formula of more steps the rate is yet to fall; estimates judge what was solved
             let is_one_step = (self.problem.formula).is_some_and(|formula| formula.is_one_step());
             let stands = rests && is_one_step && self.settings.accuracy == Accuracy::Tolerance;
             let all = [(line, Attempt::Rest), (line, Attempt::First), (!line, Attempt::Whole)];
-            return Ok(all[usize::from(!stands)..].to_vec());
+            return all[usize::from(!stands)..].to_vec();
         }
-        let effects = &self.model.plan.effects;
-        let moves = effects.history && (effects.motion || effects.moving_obstacle);
-        let settles = state.step() == 0 && moves && self.falls_back() && !self.model.loose_motions()?.is_empty();
-        Ok(if settles {
-            vec![(line, Attempt::First), (line, Attempt::Settled)]
-        } else {
-            vec![(line, Attempt::Whole)]
-        })
+        vec![(line, Attempt::Whole)]
     }
 
     /// The attempts, and one without contact forces where loads do no work on what contact alone stops: first, if
@@ -115,9 +108,6 @@ impl Simulation {
             }
             if !std::mem::take(&mut sets_out) {
                 self.start(state, way, line, attempt);
-                if attempt == Attempt::Settled {
-                    report = report.resumed(self.settle(state, way, line)?);
-                }
             }
             let (next, recovered) = self.solve()?;
             (report, found) = (report.resumed(next), Some(recovered));
@@ -134,24 +124,6 @@ impl Simulation {
             }
         }
         Ok((report, found.unwrap_or_default()))
-    }
-
-    /// From a start to where loads bring bodies that nothing moves yet: what moves may carry them far along, with
-    /// forces that friction decides once they are pressed.
-    fn settle(&mut self, state: &State, way: &Way, line: bool) -> Result<StepReport, ContactError> {
-        let prepare = |own: &mut Self, acting| {
-            Arc::make_mut(&mut own.problem).prepare(&own.model, state, way.increment(), acting)
-        };
-        prepare(self, Acting::Unmoved)?;
-        self.iterate.attempt = Attempt::First;
-        let (report, recovered) = self.solve()?;
-        (self.spare, self.controller) = (recovered, state.controller);
-        prepare(self, Acting::All)?;
-        if !report.status.converged() {
-            self.start(state, way, line, Attempt::Settled);
-        }
-        (self.iterate.attempt, self.iterate.offered) = (Attempt::Settled, false);
-        Ok(report)
     }
 
     /// The result without contact forces: bodies then stand apart, or touch without force, and active sets run in

@@ -86,7 +86,7 @@ impl Simulation {
         let increment = way.increment();
         self.controller = state.controller;
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, Acting::All)?;
-        let attempts = self.attempts(state, increment)?;
+        let attempts = self.attempts(state, increment);
         let (tried, unloaded, told) = self.unload(state, way, attempts[0])?;
         let (mut report, recovered) = match unloaded {
             Some(recovered) => (tried, recovered),

@@ -55,8 +55,6 @@ pub(crate) enum Attempt {
     /// From that start, or the only one, by active sets and then by the paper's method.
     #[default]
     Whole,
-    /// The same from where loads alone bring bodies that contact holds, before anything moves.
-    Settled,
 }
 
 /// Status of a step from the status of a quadratic program.

@@ -62,8 +62,6 @@ pub(crate) enum Acting {
     All,
     /// This part of the loads at its start, too.
     More(f64),
-    /// The same loads, but what moves is where it was at its start.
-    Unmoved,
 }
 
 impl StepProblem {
@@ -76,13 +74,9 @@ impl StepProblem {
         acting: Acting,
     ) -> Result<(), ContactError> {
         let time = increment.end;
-        let moved = match acting {
-            Acting::Unmoved => increment.start,
-            _ => Some(time),
-        };
         let left = match acting {
+            Acting::All => 0.0,
             Acting::More(left) => left,
-            _ => 0.0,
         };
         self.index = increment.index;
         self.time = time;
@@ -106,10 +100,7 @@ impl StepProblem {
             vector::axpy(*factor, lambda, &mut self.balancing);
         }
         let histories = model.discrete.supports.motions.iter();
-        let cases: Vec<(usize, f64)> = histories
-            .map(|h| moved.map_or(0.0, |time| h.value(time)))
-            .enumerate()
-            .collect();
+        let cases: Vec<(usize, f64)> = histories.map(|h| h.value(time)).enumerate().collect();
         self.offset = model.tfeti.prescribed_offsets(take(&mut self.offset), &cases);
         self.part_ties(model);
         self.prescribed_force = model.prescribed_force(&self.offset, &self.factors);
@@ -123,7 +114,7 @@ impl StepProblem {
                 self.prescribed[row] = self.offset[row];
             }
         }
-        self.find_obstacles(model, [moved, increment.start]);
+        self.find_obstacles(model, [Some(time), increment.start]);
         self.add_offsets(model, state)?;
         self.linear.resize(rows, 0.0);
         vector::difference(&self.offset, &self.load, &mut self.linear);
