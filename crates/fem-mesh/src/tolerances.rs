@@ -60,9 +60,10 @@ pub(crate) const LARGER: usize = 6;
 /// How many times as long as thick a rod is that is cut in lengths. Beams on floors, clamped and pulled, of 35, 20, 15
 /// and 7 take 1/10, 1/10, 1/7 and 1/3 of the products in lengths of one and a half to two, plates hardly fewer.
 pub(crate) const ROD: f64 = 8.0;
-/// Tetrahedra that lengths of rods have at least, linear and quadratic ones.
+/// Tetrahedra that lengths of rods have at least, linear and quadratic ones. Leaves of a spring two cells wide take a
+/// quarter of the products in lengths of 20 as in those of 10.
 pub(crate) const ROD_TETS: usize = 30;
-pub(crate) const ROD_QUADRATIC: usize = 10;
+pub(crate) const ROD_QUADRATIC: usize = 20;
 /// Volume of a rod over the square of its thickness and the longest edge of its box up to which it is one, for bent
 /// rods, oblique ones, and such as are wider than thick: where the box is about as wide as long, and else. Rings have
 /// three; to cut them gains nothing.

@@ -143,3 +143,37 @@ fn a_stiff_body_with_more_cells_costs_no_products() {
         assert!(5 * pair <= 6 * matching, "{lower} {upper}: {pair}, {matching}");
     }
 }
+
+/// Two quadratic leaves of a spring, clamped together at one end: twice as stiff as one, by few products, whichever way
+/// they point. In lengths of one cell it took 349 products.
+#[test]
+fn leaves_of_a_spring_cost_few_products() {
+    let [length, width, thickness] = [1.0, 0.1, 0.02];
+    let leaf = block([length, width, thickness], [20, 2, 1]);
+    let both = with_second(&leaf, &lifted(&leaf, thickness));
+    let both = both.raise_order().expect("order 2");
+    let end = both.points().iter().rposition(|p| p[0] == length).expect("an end");
+    let (sin, cos) = 0.7_f64.sin_cos();
+    let oblique = |[x, y, z]: [f64; 3]| {
+        let [x, y] = [cos * x - sin * y, sin * x + cos * y];
+        [x, 0.8 * y - 0.6 * z, 0.6 * y + 0.8 * z]
+    };
+    for turned in [false, true] {
+        let turn = |p| if turned { oblique(p) } else { p };
+        let both = both.map_points(turn).expect("turned");
+        let down = turn([0.0, 0.0, -1.0]);
+        let scene = Scene::new(both, uniform(1e9, 0.0))
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_support(Support::fixed(second(brick::X_MIN)))
+            .with_contact(Contact::between(brick::Z_MAX, second(brick::Z_MIN)))
+            .with_load(Load::force(second(brick::X_MAX), down));
+        let (_, results) = run(scene, Settings::default());
+        let moved: f64 = (0..3).map(|c| results[0].displacement[3 * end + c] * down[c]).sum();
+        let second_moment = 2.0 * width * thickness.powi(3) / 12.0;
+        let expected = length.powi(3) / (3.0 * 1e9 * second_moment);
+        let products = results[0].report.counters.products;
+        println!("turned {turned}: {products} products, {moved} of {expected}");
+        assert!((moved - expected).abs() < 1e-3 * expected, "{moved}, {expected}");
+        assert!(products <= if turned { 170 } else { 80 }, "{products}");
+    }
+}
