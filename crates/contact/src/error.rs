@@ -27,7 +27,8 @@ fn held_remedy(step: usize, friction: Option<f64>, coupling: Option<&FreeCouplin
             (digits * factor).floor() / digits
         ),
         None => "add a support, contact or friction, merge its nodes with those of a body that it is a part of \
-            (mesh::merge_nodes), or balance the loads"
+            (mesh::merge_nodes), or balance the loads; where they tip it just within its edge, make the facets there \
+            smaller, or linear"
             .to_owned(),
     };
     let before = match step {

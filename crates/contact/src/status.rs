@@ -51,7 +51,10 @@ impl StepStatus {
             Self::NotContractive => {
                 "the Coulomb problem may have no solution here: take a smaller coefficient or smaller steps"
             }
-            Self::NotHeld => "press the body more, give it more friction, hold it by a support, or take smaller steps",
+            Self::NotHeld => {
+                "press the body more, give it more friction, hold it by a support, or take smaller steps, as \
+                Settings::with_step_halving does"
+            }
             Self::NotCertified => {
                 "take better shaped cells, Poisson's ratio further from 1/2, springs less soft beside the body, smaller \
                 steps, or Method::paper()"
