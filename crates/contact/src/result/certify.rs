@@ -144,8 +144,8 @@ mod tests {
     use crate::Settings;
     use crate::State;
     use crate::model::Model;
+    use crate::step::StepProblem;
     use crate::step::example::{block, first_step};
-    use crate::step::{Acting, StepProblem};
     use crate::{Analysis, Contact, Scene, Support};
     use signorini_fem_mesh::{Brick, History, Hooke, Materials, brick};
     use signorini_tfeti::TangentialRows;
@@ -156,9 +156,7 @@ mod tests {
         model.points.clear();
         let mut problem = StepProblem::default();
         let first = model.scene.analysis.increment(0).expect("a step");
-        problem
-            .prepare(&model, &State::default(), first, Acting::All)
-            .expect("step");
+        problem.prepare(&model, &State::default(), first, 0.0).expect("step");
         let u = displacement.repeat(model.tfeti.torn_dim() / 3);
         let (zero, lambda) = (vec![0.0; u.len()], vec![0.0; model.tfeti.dual_dim()]);
         let measured = Measured {

@@ -12,7 +12,6 @@ use crate::settings::{Accuracy, Method};
 use crate::solve::Attempt;
 use crate::state::State;
 use crate::status::StepStatus;
-use crate::step::Acting;
 use std::sync::Arc;
 
 /// Whether an attempt starts on the line through the last two steps, or else from the last one.
@@ -138,7 +137,7 @@ impl Simulation {
         let problem = Arc::make_mut(&mut self.problem);
         problem.open(&self.model);
         let solved = self.solve_once(self.settings.tolerance)?;
-        Arc::make_mut(&mut self.problem).prepare(&self.model, state, way.increment(), Acting::All)?;
+        Arc::make_mut(&mut self.problem).prepare(&self.model, state, way.increment(), 0.0)?;
         let (next, old) = solved;
         let converged = next.status.converged();
         *report = std::mem::take(report).resumed(next);

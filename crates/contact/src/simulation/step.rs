@@ -12,7 +12,7 @@ use crate::settings::Accuracy;
 use crate::solve::{Attempt, Iterate, Task};
 use crate::state::{Peak, State};
 use crate::status::StepStatus;
-use crate::step::{Acting, StepProblem};
+use crate::step::StepProblem;
 use crate::tolerances::CERTIFIED;
 use signorini_qp::vector;
 use signorini_tfeti::internal::{of_length, zeros};
@@ -85,7 +85,7 @@ impl Simulation {
     fn solve_after(&mut self, state: &State, way: &Way) -> Result<StepResult, ContactError> {
         let increment = way.increment();
         self.controller = state.controller;
-        Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, Acting::All)?;
+        Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, 0.0)?;
         let attempts = self.attempts(state, increment);
         let (tried, unloaded, told) = self.unload(state, way, attempts[0])?;
         let (mut report, recovered) = match unloaded {

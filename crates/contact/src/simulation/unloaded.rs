@@ -9,7 +9,7 @@ use crate::report::StepReport;
 use crate::result::{ContactState, Recovered, Sizes};
 use crate::solve::Attempt;
 use crate::state::State;
-use crate::step::{Acting, entry_or_zero};
+use crate::step::entry_or_zero;
 use crate::tolerances::{LOCKED, NULL_RANK, PARTS_LEFT, REST, ROUNDING, VANISHING};
 use nalgebra::{DMatrix, DVector};
 use signorini_qp::vector;
@@ -57,7 +57,7 @@ impl Simulation {
         let mut gone = vec![false; self.model.bodies.count().max(1)];
         let mut last = std::mem::take(&mut self.spare);
         for left in PARTS_LEFT {
-            Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, Acting::More(left))?;
+            Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, left)?;
             self.spare = last;
             let (next, recovered) = self.solve()?;
             (report, last) = (report.resumed(next), recovered);
@@ -84,7 +84,7 @@ impl Simulation {
                 vector::scale(PARTS_LEFT[1] / PARTS_LEFT[0], of_forces);
             }
         }
-        Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, Acting::All)?;
+        Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, 0.0)?;
         let model = &self.model;
         let vanish = |point: &&ConstrainedPoint| gone[model.bodies.of_row(point.row)];
         let points = self.touching(&last).filter(vanish);

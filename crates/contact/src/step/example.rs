@@ -1,6 +1,6 @@
 //! A scene for unit tests of what works on rows.
 
-use super::problem::{Acting, StepProblem};
+use super::problem::StepProblem;
 use crate::model::Model;
 use crate::scene::{Contact, Friction, Scene, Support};
 use crate::settings::Settings;
@@ -23,8 +23,6 @@ pub(crate) fn first_step(scene: Scene) -> (Model, StepProblem) {
     let model = Model::new(scene, &Settings::default()).expect("model");
     let mut problem = StepProblem::default();
     let first = model.scene.analysis.increment(0).expect("a step");
-    problem
-        .prepare(&model, &State::default(), first, Acting::All)
-        .expect("step");
+    problem.prepare(&model, &State::default(), first, 0.0).expect("step");
     (model, problem)
 }

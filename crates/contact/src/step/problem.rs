@@ -55,29 +55,17 @@ pub(crate) struct StepProblem {
     pub(crate) units: Vec<f64>,
 }
 
-/// What acts at the end of an increment.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Acting {
-    /// What the scene tells.
-    All,
-    /// This part of the loads at its start, too.
-    More(f64),
-}
-
 impl StepProblem {
-    /// Computes the data of an increment from the model and the state before it.
+    /// Computes the data of an increment from the model and the state before it. Besides its own loads this part of those
+    /// at its start is `left`: zero but on the way to where none act.
     pub(crate) fn prepare(
         &mut self,
         model: &Model,
         state: &State,
         increment: Increment,
-        acting: Acting,
+        left: f64,
     ) -> Result<(), ContactError> {
         let time = increment.end;
-        let left = match acting {
-            Acting::All => 0.0,
-            Acting::More(left) => left,
-        };
         self.index = increment.index;
         self.time = time;
         self.step = increment.length;
