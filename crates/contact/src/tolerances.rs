@@ -131,9 +131,9 @@ pub(crate) const HARDER: f64 = 10.0;
 /// Part of the area of a facet or node below which what covers it counts as nothing.
 pub(crate) const COVERED: f64 = 1e-10;
 
-/// The same of a node whose shape function others have instead: the other side ends within a hundredth of a facet beside
-/// them, and rows there differ by the square of that; SMALSE took ten thousand products.
-pub(crate) const SLIVER: f64 = 1e-4;
+/// The same of a node whose shape function others have instead: the other side ends within a tenth of a facet beside
+/// them, and rows there nearly depend on one another; SMALSE took ten thousand products.
+pub(crate) const SLIVER: f64 = 0.05;
 
 /// How much the pieces that cover a facet may overlap, over its area: those of a curved surface do a little.
 pub(crate) const OVERLAP: f64 = 0.05;

@@ -126,3 +126,28 @@ fn columns_that_topple_are_refused_at_once() {
     );
     assert_certified(&solve(column(0.99), Settings::default()), "a column that stands");
 }
+
+/// A block that ends just beyond nodes of a coarser plate: those beyond them have no points, and the others have their
+/// areas. Farther beyond they have their own.
+#[test]
+fn covers_that_end_beside_nodes_are_shared_out() {
+    for order in [1, 2] {
+        for (beyond, columns) in [(0.0, 3), (1e-3, 3), (0.01, 3), (0.2, 4)] {
+            let plate = block([2.0, 1.0, 0.5], [4, 2, 1]);
+            let upper = block([1.0 + beyond, 1.0, 0.5], [5, 3, 1]);
+            let mesh = in_order(with_second(&plate, &lifted(&upper, 0.5)), order);
+            let scene = Scene::new(mesh, uniform(2e11, 0.3))
+                .with_support(Support::fixed(brick::Z_MIN))
+                .with_contact(
+                    Contact::between(brick::Z_MAX, second(brick::Z_MIN)).with_friction(Friction::coulomb(0.5)),
+                )
+                .with_load(Load::traction(second(brick::Z_MAX), [0.0, 0.0, -1e6]));
+            let (_, results) = run(scene, Settings::default());
+            let points = &results[0].points;
+            let area: f64 = points.iter().map(|p| p.area).sum();
+            assert!((area - 1.0 - beyond).abs() < 1e-12, "{order} {beyond}: {area}");
+            assert_eq!(points.len(), 3 * columns, "{order} {beyond}");
+            assert!(results[0].report.status.converged(), "{order} {beyond}");
+        }
+    }
+}
