@@ -253,8 +253,7 @@ fn dragging(model: &Model, rows: &[Row]) -> Vec<usize> {
             parts.entry(same[0].0 / 3).or_default().push(part);
         }
     }
-    let springs = gluing.ranges().total() - gluing.springs().len();
-    let supports = gluing.ranges().dirichlet.start..springs;
+    let supports = gluing.ranges().dirichlet.start..gluing.spring_rows().start;
     let drags = |row: &usize| {
         let direction = gluing.direction(*row);
         let along = |part: &[f64; 3]| dot(part, &direction).powi(2) > FREEDOM_TAKEN * dot(&direction, &direction);

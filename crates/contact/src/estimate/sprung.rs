@@ -53,8 +53,7 @@ impl SprungNodes {
                 share: if is_coupled { 0.0 } else { share },
             })
         };
-        let first = gluing.ranges().total() - springs.len();
-        let rows = (first..).zip(springs.iter().map(|spring| spring.compliance));
+        let rows = gluing.spring_rows().zip(springs.iter().map(|spring| spring.compliance));
         Self(rows.filter_map(sprung).collect())
     }
 

@@ -23,17 +23,15 @@ impl Springs {
     pub(super) fn new(system: &Tfeti, scaled: bool) -> Self {
         let gluing = system.gluing();
         let springs = if scaled { &[] } else { gluing.springs() };
-        let total = gluing.ranges().total();
-        let first = total - springs.len();
         let copies = |row: usize| gluing.row(row).into_iter().map(|(s, dof, _)| (s, dof / 3));
         let touching: HashSet<(usize, usize)> = match springs {
             [] => HashSet::new(),
             _ => gluing.ranges().contact().flat_map(copies).collect(),
         };
-        let rows = (first..total).zip(springs);
+        let rows = gluing.spring_rows().zip(springs);
         let alone = rows.filter(|(row, _)| copies(*row).any(|copy| touching.contains(&copy)));
         Self {
-            first,
+            first: gluing.spring_rows().start,
             factors: springs.iter().map(|spring| spring.factor).collect(),
             alone: alone.map(|(row, spring)| (row, 1.0 / spring.compliance)).collect(),
         }

@@ -230,14 +230,13 @@ impl ActiveSetProjector {
 
 /// Rows of springs that are soft beside the stiffest rows, where contact may hold what they do.
 fn soft_springs(coarse: &Coarse, contact_rows: usize, metric: Option<&[f64]>) -> Vec<usize> {
-    let springs = coarse.0.gluing.springs();
     let Some(metric) = metric.filter(|_| contact_rows > 0) else {
         return Vec::new();
     };
-    let first = metric.len() - springs.len();
-    let weighted = metric[first..].iter().zip(springs).zip(first..);
-    let soft = weighted.filter(|((weight, spring), _)| *weight * spring.scale.powi(2) < SOFT_SPRING);
-    soft.map(|(_, row)| row).collect()
+    let gluing = &coarse.0.gluing;
+    let rows = gluing.spring_rows().zip(gluing.springs());
+    let soft = rows.filter(|(row, spring)| metric[*row] * spring.scale.powi(2) < SOFT_SPRING);
+    soft.map(|(row, _)| row).collect()
 }
 
 /// Weights of which these rows have none.

@@ -9,6 +9,7 @@ use crate::rows::ranges::RowRanges;
 use crate::rows::side::ContactConstraint;
 use crate::tolerances::RIGID;
 use signorini_fem_mesh::internal::{DisjointSets, Lists};
+use std::ops::Range;
 
 /// Tangential rows of a contact point.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -203,15 +204,21 @@ impl Gluing {
         }
     }
 
-    /// The rows of springs, which are the last ones.
+    /// What the rows of springs are, in their order.
     pub fn springs(&self) -> &[SpringRow] {
         &self.springs
     }
 
+    /// The rows of springs, which are the last ones.
+    pub fn spring_rows(&self) -> Range<usize> {
+        let total = self.ranges.total();
+        total - self.springs.len()..total
+    }
+
     /// The spring of a row; `None` if it is another one.
     pub fn spring(&self, row: usize) -> Option<&SpringRow> {
-        let first = self.ranges.total() - self.springs.len();
-        row.checked_sub(first).and_then(|spring| self.springs.get(spring))
+        row.checked_sub(self.spring_rows().start)
+            .and_then(|spring| self.springs.get(spring))
     }
 
     /// Length of a row that is no contact row: those that hold rigid subdomains are longer than one, those of springs
@@ -236,9 +243,8 @@ impl Gluing {
 
     /// Rows that give way, contact rows and springs, with `C` of them in row units, m/N.
     pub(crate) fn compliance(&self) -> impl Iterator<Item = (usize, f64)> {
-        let first = self.ranges.total() - self.springs.len();
         let contact = self.contact_compliance.iter().copied().enumerate();
-        contact.chain((first..).zip(self.springs.iter().map(|s| s.compliance)))
+        contact.chain(self.spring_rows().zip(self.springs.iter().map(|s| s.compliance)))
     }
 
     /// Adds what springs and contact rows give way to `B u`: `y += C x`, for whole dual vectors.

@@ -174,10 +174,9 @@ impl Tfeti {
             weights[row] /= 1.0 + compliance * weights[row];
         }
         self.compare_weights(&mut weights);
-        let first = weights.len() - springs.len();
-        for (weight, spring) in weights[first..].iter_mut().zip(springs) {
-            if *weight * spring.scale.powi(2) < NO_HOLD {
-                *weight = 0.0;
+        for (row, spring) in self.gluing().spring_rows().zip(springs) {
+            if weights[row] * spring.scale.powi(2) < NO_HOLD {
+                weights[row] = 0.0;
             }
         }
         self.weigh_rigid(&mut weights);
