@@ -115,9 +115,8 @@ pub(crate) fn mortar_nodes(
     let is_flat = |node: u32| may_part && !bent.contains(&node);
     let within = |nodes: [u32; 3]| nodes.into_iter().all(is_flat);
     let covers = covers(mesh, &triangles, other, (tied, &within), bends);
-    let slivers = slivers(surface, (&corners, &around), &covers, is_flat);
     let node = |(local, &own): (usize, &u32), shared: &HashSet<u32>| {
-        let is_tip = |node: u32| other.local(node).is_some() || shared.contains(&node) || slivers.contains(&node);
+        let is_tip = |node: u32| other.local(node).is_some() || shared.contains(&node);
         if is_tip(own) {
             return None;
         }
@@ -141,12 +140,13 @@ pub(crate) fn mortar_nodes(
         sums.node(own, frame)
     };
     let nodes = || surface.nodes().par_iter().enumerate();
-    let none = HashSet::new();
-    let mut out: Vec<Option<MortarNode>> = nodes().map(|own| node(own, &none)).collect();
-    let shared = handed_on(surface, other, &crossing(&out));
+    let slivers = slivers(surface, (&corners, &around), &covers, is_flat);
+    let mut out: Vec<Option<MortarNode>> = nodes().map(|own| node(own, &slivers)).collect();
+    let mut shared = handed_on(surface, other, &crossing(&out));
     if shared.is_empty() {
         return out;
     }
+    shared.extend(slivers);
     let again: Vec<_> = nodes().map(|own| node(own, &shared)).collect();
     for ((own, seen), again) in surface.nodes().iter().zip(&mut out).zip(again) {
         match seen {
