@@ -48,8 +48,12 @@ pub(crate) const SNAP: f64 = 0.15;
 /// are tried: so many steps of two per cent more and less than the edge that the number asks for.
 pub(crate) const FILLED: f64 = 0.98;
 pub(crate) const EDGE_STEPS: i32 = 6;
+/// Volume of a box around a body over that of its box along the axes of coordinates below which it is cut along the
+/// former, and the part of its longest edge below which coordinates there are equal.
+pub(crate) const OBLIQUE: f64 = 0.9;
+pub(crate) const SAME_PLACE: f64 = 1e-9;
 /// Part of its box that a part fills which is a box but for rounding.
-pub(crate) const BOX: f64 = 1.0 - 1e-9;
+pub(crate) const BOX: f64 = 1.0 - 1e-6;
 /// How much longer some cells are along an axis than others, each relative to itself, where a mesh is graded along it:
 /// the ratio of the quantiles at 0.95 and 0.05. Meshes of Gmsh have 1.8 to 2.1.
 pub(crate) const GRADED: f64 = 2.5;

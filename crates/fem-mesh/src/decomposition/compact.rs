@@ -37,18 +37,20 @@ use super::subdomains::DecompositionError;
 pub fn compact_parts(mesh: &TetMesh, groups: &[u32], parts: &[u32]) -> Result<Vec<u32>, DecompositionError> {
     expect_parts(mesh, groups)?;
     expect_parts(mesh, parts)?;
-    let compact = compact(mesh, &split_by(mesh, groups), parts);
+    let centres: Vec<Vec3> = (0..parts.len())
+        .map(|tet| vec3::centroid(&mesh.tet_points(tet)))
+        .collect();
+    let compact = compact(mesh, &split_by(mesh, groups), &centres, parts);
     Ok(split_at_cracks(mesh, &compact))
 }
 
 /// As [`compact_parts`], with groups that hang together, numbers with gaps, and parts on both sides of a crack.
-pub(crate) fn compact(mesh: &TetMesh, groups: &[u32], parts: &[u32]) -> Vec<u32> {
+pub(crate) fn compact(mesh: &TetMesh, groups: &[u32], centres: &[Vec3], parts: &[u32]) -> Vec<u32> {
     let tets = parts.len();
-    let centres: Vec<Vec3> = (0..tets).map(|tet| vec3::centroid(&mesh.tet_points(tet))).collect();
     let corners = Lists::by_key(mesh.points().len(), mesh.tets().as_flattened());
     let mut parts = within_groups(groups, parts);
     for _ in 0..MOST_SWEEPS {
-        let next = sweep(&corners, groups, &centres, &parts);
+        let next = sweep(&corners, groups, centres, &parts);
         let moved = next.iter().zip(&parts).filter(|(a, b)| a != b).count();
         parts = next;
         if moved as f64 <= SWEEP_MOVES * tets as f64 {

@@ -2,6 +2,7 @@
 
 use super::compact::{compact, join_pieces};
 use super::cracks::split_at_cracks;
+use super::frame::Frame;
 use super::parts::{expect_parts, split_by, volumes_and_surfaces};
 use super::subdomains::DecompositionError;
 use crate::mesh::{TetMesh, extent};
@@ -29,8 +30,8 @@ pub enum PartCount {
 ///
 /// `groups` are labels, one for each tetrahedron, of what a part must not mix: materials. Bodies are never mixed. Each
 /// connected group gets its share of the parts by its number of tetrahedra, at least one. It is cut across the longest
-/// edge of its box into slabs, slabs into columns, columns into blocks; cells of a structured mesh stay whole where the
-/// number of parts allows it. What is not compact then is made so as by
+/// edge of its box, which may lie obliquely, into slabs, slabs into columns, columns into blocks; cells of a structured
+/// mesh stay whole where the number of parts allows it. What is not compact then is made so as by
 /// [`compact_parts`](crate::decomposition::compact_parts), cracks included. In a box with cells graded along an axis,
 /// slabs of long cells get fewer of them, so that parts are not flat, and where all fell into boxes they stay so. The
 /// parts are numbered by their first tetrahedra.
@@ -47,17 +48,21 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     }
     let groups = split_by(mesh, groups);
     let members = Lists::by_number(&groups);
-    let centres: Vec<Vec3> = (0..tets).map(|tet| vec3::centroid(&mesh.tet_points(tet))).collect();
-    let cutter = |shares| Cutter {
+    let frames: Vec<Option<Frame>> = members.iter().map(|own| Frame::new(mesh, &groups, own)).collect();
+    let frame = |group: usize| frames[group].as_ref();
+    let centre = |tet: usize| vec3::centroid(&corners(mesh, frame(groups[tet] as usize), tet));
+    let centres: Vec<Vec3> = (0..tets).map(centre).collect();
+    let plain = |frame| Cutter {
         mesh,
+        frame,
         centres: &centres,
-        shares,
+        shares: &NO_SHARES,
     };
-    let plain = cutter([const { None }; 3]);
     // elsewhere long cells along an axis are not layers
-    let boxes: Vec<bool> = members.iter().map(|group| plain.is_box(group)).collect();
-    let (grading, shares) = if boxes.contains(&true) { shares(mesh) } else { ([1.0; 3], [const { None }; 3]) };
-    let graded = Some(cutter(shares)).filter(|cutter| cutter.shares.iter().any(Option::is_some));
+    let all: Vec<usize> = (0..members.count()).collect();
+    let boxes: Vec<bool> = all.iter().map(|&g| plain(frame(g)).is_box(members.of(g))).collect();
+    let along_axes = all.iter().any(|&g| boxes[g] && frames[g].is_none());
+    let along_axes = if along_axes { shares(mesh, None) } else { NO_GRADING };
     let bulk = match count {
         PartCount::Exactly(_) => Vec::new(),
         PartCount::About(_) => volumes_and_surfaces(mesh, &groups),
@@ -67,9 +72,20 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     for (group, own) in members.iter().enumerate() {
         let share = (own.len() as f64 / tets as f64 * number as f64).round() as usize;
         let share = share.clamp(1, own.len());
-        let layered = graded.as_ref().filter(|_| boxes[group]);
-        let flat = mesh.order() == 2 && layered.is_some() && grading.iter().all(|ratio| *ratio > STRONGLY);
-        let cutter = layered.unwrap_or(&plain);
+        let oblique = frame(group)
+            .filter(|_| boxes[group])
+            .map(|frame| shares(mesh, Some(frame)));
+        let (grading, shares) = match (&oblique, boxes[group]) {
+            (Some(oblique), _) => oblique,
+            (None, true) => &along_axes,
+            (None, false) => &NO_GRADING,
+        };
+        let layered = shares.iter().any(Option::is_some);
+        let flat = mesh.order() == 2 && layered && grading.iter().all(|ratio| *ratio > STRONGLY);
+        let cutter = Cutter {
+            shares,
+            ..plain(frame(group))
+        };
         let pieces = match count {
             PartCount::Exactly(_) => cutter.pieces(own, share),
             PartCount::About(_) => match cutter.lengths(own, bulk[group]) {
@@ -79,7 +95,7 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
                 _ => cutter.nearest_to_cubes(own, share),
             },
         };
-        whole[group] = layered.is_some() && pieces.iter().all(|piece| cutter.is_box(piece));
+        whole[group] = layered && pieces.iter().all(|piece| cutter.is_box(piece));
         for piece in pieces {
             for tet in piece {
                 slabs[tet as usize] = next;
@@ -91,7 +107,7 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     let mut parts = slabs;
     if whole.contains(&false) {
         let slabs = std::mem::take(&mut parts);
-        parts = compact(mesh, &groups, &slabs);
+        parts = compact(mesh, &groups, &centres, &slabs);
         // boxes stay: their faces are plane, and along ragged ones long cells hang loose
         for tet in (0..tets).filter(|&tet| whole[groups[tet] as usize]) {
             parts[tet] = tets as u32 + slabs[tet];
@@ -103,14 +119,19 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
 /// Whether cells are graded so strongly along all axes that many are flat.
 #[doc(hidden)]
 pub fn is_strongly_graded(mesh: &TetMesh) -> bool {
-    shares(mesh).0.iter().all(|ratio| *ratio > STRONGLY)
+    shares(mesh, None).0.iter().all(|ratio| *ratio > STRONGLY)
 }
 
 /// How strongly cells are graded along each axis, and what each tetrahedron counts in a cut across it; none where all
 /// count alike.
-fn shares(mesh: &TetMesh) -> ([f64; 3], [Option<Vec<f64>>; 3]) {
+type Grading = ([f64; 3], [Option<Vec<f64>>; 3]);
+
+const NO_SHARES: [Option<Vec<f64>>; 3] = [const { None }; 3];
+const NO_GRADING: Grading = ([1.0; 3], NO_SHARES);
+
+fn shares(mesh: &TetMesh, frame: Option<&Frame>) -> Grading {
     let lengths = |tet: usize| {
-        let (low, high) = extent(mesh.tet_points(tet));
+        let (low, high) = extent(corners(mesh, frame, tet));
         vec3::sub(high, low)
     };
     let all: Vec<Vec3> = (0..mesh.tets().len()).map(lengths).collect();
@@ -129,10 +150,17 @@ fn shares(mesh: &TetMesh) -> ([f64; 3], [Option<Vec<f64>>; 3]) {
     (grading, shares)
 }
 
+/// Corners of a tetrahedron along the axes of a frame.
+fn corners(mesh: &TetMesh, frame: Option<&Frame>, tet: usize) -> [Vec3; 4] {
+    let points = mesh.tet_points(tet);
+    frame.map_or(points, |frame| points.map(|p| frame.place(p)))
+}
+
 struct Cutter<'a> {
     mesh: &'a TetMesh,
+    frame: Option<&'a Frame>,
     centres: &'a [Vec3],
-    shares: [Option<Vec<f64>>; 3],
+    shares: &'a [Option<Vec<f64>>; 3],
 }
 
 impl Cutter<'_> {
@@ -234,7 +262,7 @@ impl Cutter<'_> {
         let far = (PLANE * middle.min(tets.len() - middle) as f64) as usize;
         let places = middle.saturating_sub(far).max(least)..=(middle + far).min(most);
         let ends = |k: usize| {
-            let (low, high) = extent(self.mesh.tet_points(tets[k] as usize));
+            let (low, high) = extent(corners(self.mesh, self.frame, tets[k] as usize));
             [low[axis], high[axis]]
         };
         let mut next = vec![f64::MAX; tets.len() + 1];
@@ -258,7 +286,10 @@ impl Cutter<'_> {
     /// Edges of the box around these tetrahedra, and their volume.
     fn size(&self, tets: &[u32]) -> (Vec3, f64) {
         let volume = tets.iter().map(|&tet| self.mesh.volume(tet as usize)).sum();
-        let (low, high) = extent(tets.iter().flat_map(|&tet| self.mesh.tet_points(tet as usize)));
+        let (low, high) = extent(
+            tets.iter()
+                .flat_map(|&tet| corners(self.mesh, self.frame, tet as usize)),
+        );
         (vec3::sub(high, low), volume)
     }
 

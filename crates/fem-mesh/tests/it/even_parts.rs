@@ -1,6 +1,6 @@
 //! The cut of a mesh that comes without one: connected parts of similar size, boxes where boxes are best.
 
-use signorini_fem_mesh::decomposition::{PartCount, even_parts};
+use signorini_fem_mesh::decomposition::{PartCount, even_parts, volumes_and_surfaces};
 use signorini_fem_mesh::{Brick, Decomposition, DecompositionError, TetMesh};
 
 fn brick(cells: [usize; 3]) -> TetMesh {
@@ -11,6 +11,14 @@ fn sizes(parts: &[u32]) -> Vec<usize> {
     let mut sizes = vec![0; parts.iter().max().map_or(0, |&p| p as usize + 1)];
     parts.iter().for_each(|&part| sizes[part as usize] += 1);
     sizes
+}
+
+fn turned([x, y, z]: [f64; 3]) -> [f64; 3] {
+    [
+        0.8 * x - 0.48 * y - 0.36 * z,
+        0.6 * x + 0.64 * y + 0.48 * z,
+        0.8 * z - 0.6 * y,
+    ]
 }
 
 /// One cut for the whole mesh, whatever its tetrahedra are made of.
@@ -61,13 +69,6 @@ fn about_so_many_is_the_grid_nearest_by() {
 fn rods_fall_into_lengths_of_about_twice_their_thickness() {
     let rod = |long: f64, wide: f64, cells| Brick::new([long, wide, 1.0], cells).build().expect("a rod");
     let straight = rod(30.0, 1.0, [60, 2, 2]);
-    let turned = |[x, y, z]: [f64; 3]| {
-        [
-            0.8 * x - 0.48 * y - 0.36 * z,
-            0.6 * x + 0.64 * y + 0.48 * z,
-            0.8 * z - 0.6 * y,
-        ]
-    };
     let oblique = straight.map_points(turned).expect("turned");
     let about = |turn: f64| move |[x, y, z]: [f64; 3]| ((x * turn / 30.0).sin_cos(), 30.0 / turn - y, z);
     let bent = |turn| {
@@ -109,6 +110,49 @@ fn rods_fall_into_lengths_of_about_twice_their_thickness() {
         count(&rod(4.0, 4.0, [4, 4, 2]).append(&beside).expect("two")),
         1 + count(&straight)
     );
+}
+
+/// Where a body lies does not matter.
+#[test]
+fn oblique_bodies_are_cut_as_straight_ones() {
+    let graded = brick([18, 6, 6])
+        .map_points(|[x, y, z]| [x * x, y, z * z])
+        .expect("graded");
+    let cube = Brick::new([1.0; 3], [8; 3]).build().expect("a cube");
+    let plate = Brick::new([4.0, 3.0, 0.1], [16, 12, 1]).build().expect("a plate");
+    let strap = Brick::new([2.0, 1.5, 0.1], [40, 6, 1]).build().expect("a strap");
+    let strap = strap
+        .map_points(|[x, y, z]| [(1.0 + z) * x.sin(), y, (1.0 + z) * x.cos()])
+        .expect("bent");
+    let both = cube
+        .append(
+            &brick([15, 5, 5])
+                .map_points(|[x, y, z]| [x, y, z + 2.0])
+                .expect("moved"),
+        )
+        .expect("two");
+    for mesh in [
+        brick([15, 5, 5]),
+        graded,
+        cube,
+        plate.raise_order().expect("order 2"),
+        both,
+        strap,
+    ] {
+        let oblique = mesh.map_points(turned).expect("turned");
+        for count in [PartCount::Exactly(8), PartCount::About(27), PartCount::About(1)] {
+            let cut = |mesh: &TetMesh| even_parts(mesh, &vec![0; mesh.tets().len()], count).expect("parts");
+            let parts = [&mesh, &oblique].map(cut);
+            let numbers = parts.each_ref().map(|parts| sizes(parts).len());
+            let surface = |k: usize| {
+                let surfaces = volumes_and_surfaces([&mesh, &oblique][k], &parts[k]);
+                surfaces.iter().map(|[_, surface]| surface).sum::<f64>()
+            };
+            let ratio = surface(1) / surface(0);
+            assert_eq!(numbers[0], numbers[1], "{count:?}");
+            assert!((ratio - 1.0).abs() < 0.05, "{count:?} {numbers:?}: {ratio}");
+        }
+    }
 }
 
 /// Parts that cut through long cells, and flat ones, take up to fifty times the iterations.
