@@ -24,6 +24,7 @@
 #[doc = include_str!("../docs/how-to/convergence.md")]
 #[doc = include_str!("../docs/how-to/long-runs.md")]
 #[doc = include_str!("../docs/how-to/accuracy.md")]
+#[doc = include_str!("../docs/how-to/other-programs.md")]
 #[doc = include_str!("../docs/how-to/results.md")]
 #[doc = include_str!("../docs/how-to/reactions.md")]
 pub struct HowTo;

@@ -1,6 +1,8 @@
 //! The plain programs: each runs, and finds what it must find.
 #![allow(dead_code, missing_docs, unreachable_pub)]
 
+#[path = "../coupled.rs"]
+mod coupled;
 #[path = "../crack.rs"]
 mod crack;
 #[path = "../deck.rs"]
@@ -44,6 +46,15 @@ fn the_crack_slides_as_the_formula_says() {
     for (slip, expected) in slips.iter().zip([0.0, 1.0, 5.0 / 7.0, -1.0, -1.0, 1.0]) {
         assert!((slip / slips[1] - expected).abs() < 1e-5, "{slips:?}");
     }
+}
+
+/// What friction warms presses the harder.
+#[test]
+fn the_force_of_the_brake_grows_as_heat_tells() {
+    let forces = coupled::run(10).expect("coupled");
+    let growth = (forces[9] / forces[0]).ln() / 27.0;
+    let rate = coupled::rate(forces[0]);
+    assert!((growth / rate - 1.0).abs() < 0.05, "{growth} {rate}");
 }
 
 #[test]

@@ -140,6 +140,16 @@ impl Couplings {
         Ok(())
     }
 
+    /// Refuses loads that points cannot take.
+    pub(super) fn check_loads(&self, scene: &Scene) -> Result<(), ContactError> {
+        let points = scene.couplings.iter().zip(&self.axes).enumerate();
+        for (index, (_, axes)) in points.filter(|(_, (coupling, _))| coupling.is_point()) {
+            check_point(scene, index)?;
+            idle(scene, index, axes)?;
+        }
+        Ok(())
+    }
+
     /// The subdomain of the motion that the sides of a tied contact have relative to each other, if they have.
     pub(crate) fn relative(&self, contact: usize) -> Option<u32> {
         self.relative

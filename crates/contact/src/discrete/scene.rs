@@ -145,6 +145,14 @@ impl DiscreteScene {
         })
     }
 
+    /// The nodal forces of the loads of a scene that differs in nothing else.
+    pub(crate) fn forces(&self, scene: &Scene) -> Result<Vec<Vec<Vec<f64>>>, ContactError> {
+        scene.validate()?;
+        self.couplings.check_loads(scene)?;
+        let [softest, _] = check_materials(scene)?;
+        nodal_loads(scene, (&self.decomposition, &self.couplings), softest)
+    }
+
     /// The contact points that have rows.
     pub(crate) fn with_rows(&self) -> impl Iterator<Item = &ContactPoint> {
         self.points.iter().zip(&self.has_rows).filter(|p| *p.1).map(|p| p.0)

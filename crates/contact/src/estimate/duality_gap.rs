@@ -443,7 +443,7 @@ mod tests {
         let mut recovered = result.recovered.clone();
         let mut change = 0.0;
         let weights = caches.weights.get().expect("made by the estimate");
-        for (point, touch) in recovered.points.iter_mut().zip(&model.points) {
+        for (point, touch) in recovered.points.iter_mut().zip(model.points.iter()) {
             if point.state != crate::ContactState::Slip {
                 continue;
             }

@@ -17,8 +17,9 @@ use crate::tolerances::{ALONGSIDE, FREE_WORK, LEFT_FREE, NEAR_BALANCE, ROUNDING,
 use signorini_qp::vector;
 use signorini_tfeti::{BodyMotion, FreeMotion};
 
-/// Refuses loads that push the body along a rigid motion that neither supports nor contact can stop.
-pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
+/// Refuses loads that push the body, at some step from a `first` one on, along a rigid motion that neither supports nor
+/// contact can stop.
+pub(crate) fn check_equilibrium(model: &Model, first: usize) -> Result<(), ContactError> {
     let motions = model.loose_motions()?;
     if motions.is_empty() {
         return Ok(());
@@ -30,7 +31,7 @@ pub(crate) fn check_equilibrium(model: &Model) -> Result<(), ContactError> {
         if motions.is_empty() {
             continue;
         }
-        if let Some(escape) = escapes(model, body, &motions)? {
+        if let Some(escape) = escapes(model, body, &motions, first)? {
             let first = |w: &Escape| escape.step < w.step || escape.step == w.step && escape.force > w.force;
             if worst.as_ref().is_none_or(first) {
                 worst = Some(escape);
@@ -129,8 +130,8 @@ struct Escape {
     error: ContactError,
 }
 
-/// The first step at which nothing can hold a body.
-fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Option<Escape>, ContactError> {
+/// The first step, from one on, at which nothing can hold a body.
+fn escapes(model: &Model, body: usize, motions: &[&FreeMotion], first: usize) -> Result<Option<Escape>, ContactError> {
     let mut cone = WrenchCone::new(generators(model, body, motions)?);
     let largest = motions.iter().map(|m| vector::norm(&m.amplitudes));
     let largest = largest.fold(0.0, f64::max);
@@ -147,6 +148,7 @@ fn escapes(model: &Model, body: usize, motions: &[&FreeMotion]) -> Result<Option
     let mut approved: Option<Vec<f64>> = None;
     // other stages may hold more, or less
     let steps = model.scene.stage_steps();
+    let steps = steps.start.max(first)..steps.end;
     let times = model.scene.analysis.times().iter().enumerate();
     for (step, &time) in times.skip(steps.start).take(steps.len()) {
         let mut b = vec![0.0; motions.len()];

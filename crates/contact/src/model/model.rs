@@ -14,21 +14,21 @@ use signorini_qp::{ProductSet, Segment};
 use signorini_tfeti::internal::Dependency;
 use signorini_tfeti::{FreeMotion, LoadResponse, RowWeights, Tfeti, TfetiBuilder, TfetiError, TiedRows};
 use std::ops::Range;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Segment numbers of the feasible set.
 pub(crate) const DISCS: usize = 1;
 /// Intervals of points with one tangential direction.
 pub(crate) const INTERVALS: usize = 2;
 
-/// Everything that is computed once.
-#[derive(Debug)]
+/// Everything that is computed once. With other loads the rest is shared.
+#[derive(Debug, Clone)]
 pub(crate) struct Model {
     pub(crate) scene: Scene,
     pub(crate) plan: Plan,
-    pub(crate) discrete: DiscreteScene,
-    pub(crate) tfeti: Tfeti,
-    pub(crate) bodies: Bodies,
+    pub(crate) discrete: Arc<DiscreteScene>,
+    pub(crate) tfeti: Arc<Tfeti>,
+    pub(crate) bodies: Arc<Bodies>,
     pub(crate) loads: Vec<LoadResponse>,
     /// Size of the factor of each load up to which it is none.
     no_load: Vec<f64>,
@@ -37,7 +37,7 @@ pub(crate) struct Model {
     /// Without contact, multipliers of supports and gluing that [balance each load](Self::balance_loads); solvers find
     /// what is left. Empty with contact.
     pub(crate) balancing: Vec<Vec<f64>>,
-    pub(crate) points: Vec<ConstrainedPoint>,
+    pub(crate) points: Arc<[ConstrainedPoint]>,
     /// The point with rows that stands for each condition of a contact; none where supports hold the node, which was
     /// judged before anything is solved.
     pub(crate) standing: Vec<Option<usize>>,
@@ -200,39 +200,7 @@ impl Model {
             .with_contact(&discrete.constraints)
             .with_communicator(&settings.communicator)
             .build()?;
-        let no_load = |(load, forces): (&Load, &Vec<Vec<f64>>)| {
-            if forces.iter().flatten().all(|f| *f == 0.0) {
-                f64::INFINITY
-            } else {
-                NO_LOAD * scene.analysis.largest_factor(&load.history).0
-            }
-        };
-        let no_load = scene.loads.iter().zip(&discrete.loads).map(no_load).collect();
-        let loads = std::mem::take(&mut discrete.loads).into_iter().zip(&scene.loads);
-        let loads = loads
-            .map(|(local, load)| {
-                let mut response = if discrete.points.is_empty() {
-                    tfeti.torn_load(&local)?
-                } else {
-                    tfeti.load_response(&local)?
-                };
-                // strain that makes no stress is in balance, and no rounding is to push a body that nothing holds
-                if load.is_eigenstrain() {
-                    response.coarse.fill(0.0);
-                }
-                Ok::<_, TfetiError>(response)
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        tfeti.check_processes()?;
-        let bodies = Bodies::new(&tfeti, &discrete);
-        let strained = loads.iter().zip(&scene.loads).map(|(response, load)| {
-            if load.is_eigenstrain() {
-                bodies.torn_squares(&tfeti, &response.force)
-            } else {
-                Vec::new()
-            }
-        });
-        let strained = strained.collect();
+        let forces = std::mem::take(&mut discrete.loads);
         let points = constrained_points(&discrete.points, tfeti.gluing());
         let mut with_rows = vec![None; discrete.points.len()];
         let rows = tfeti.gluing().contact().iter().enumerate();
@@ -246,23 +214,75 @@ impl Model {
             Segment::Free(ranges.total() - ranges.interface.start),
         ])
         .map_err(signorini_qp::QpError::from)?;
-        Ok(Self {
-            bodies,
+        let mut model = Self {
+            bodies: Arc::new(Bodies::new(&tfeti, &discrete)),
             standing: discrete.stands.iter().map(|&point| with_rows[point]).collect(),
             scene,
             plan,
-            discrete,
-            tfeti,
-            loads,
-            no_load,
-            strained,
+            discrete: Arc::new(discrete),
+            tfeti: Arc::new(tfeti),
+            loads: Vec::new(),
+            no_load: Vec::new(),
+            strained: Vec::new(),
             balancing: Vec::new(),
-            points,
+            points: points.into(),
             set,
             moved_stiffness: OnceLock::new(),
             dependencies: OnceLock::new(),
             loose_motions: OnceLock::new(),
-        })
+        };
+        model.respond(&forces)?;
+        Ok(model)
+    }
+
+    /// The same model with other loads; what is wrong with them is refused as in a new scene.
+    pub(crate) fn with_loads(&self, loads: Vec<Load>) -> Result<Self, ContactError> {
+        let mut model = self.clone();
+        model.scene.loads = loads;
+        let forces = model.discrete.forces(&model.scene)?;
+        model.plan.set_loads([self.loads.len(), forces.len()]);
+        model.respond(&forces)?;
+        Ok(model)
+    }
+
+    /// Takes the loads of the scene, of these nodal forces.
+    fn respond(&mut self, forces: &[Vec<Vec<f64>>]) -> Result<(), ContactError> {
+        let Self {
+            scene, tfeti, bodies, ..
+        } = &*self;
+        let no_load = |(load, forces): (&Load, &Vec<Vec<f64>>)| {
+            if forces.iter().flatten().all(|f| *f == 0.0) {
+                f64::INFINITY
+            } else {
+                NO_LOAD * scene.analysis.largest_factor(&load.history).0
+            }
+        };
+        let no_load = scene.loads.iter().zip(forces).map(no_load).collect();
+        let response = |(load, forces): (&Load, &Vec<Vec<f64>>)| {
+            let mut response = if self.discrete.points.is_empty() {
+                tfeti.torn_load(forces)?
+            } else {
+                tfeti.load_response(forces)?
+            };
+            // strain that makes no stress is in balance, and no rounding is to push a body that nothing holds
+            if load.is_eigenstrain() {
+                response.coarse.fill(0.0);
+            }
+            Ok::<_, TfetiError>(response)
+        };
+        let loads = scene.loads.iter().zip(forces).map(response);
+        let loads = loads.collect::<Result<Vec<_>, _>>()?;
+        tfeti.check_processes()?;
+        let strained = loads.iter().zip(&scene.loads).map(|(response, load)| {
+            if load.is_eigenstrain() {
+                bodies.torn_squares(tfeti, &response.force)
+            } else {
+                Vec::new()
+            }
+        });
+        (self.strained, self.no_load) = (strained.collect(), no_load);
+        (self.loads, self.balancing) = (loads, Vec::new());
+        Ok(())
     }
 
     /// Without contact: `balance` gives multipliers that balance each load on every subdomain, and its response is that

@@ -103,6 +103,12 @@ impl Plan {
         all().map_err(|error| scene.names.tell(error))
     }
 
+    /// Counts the vectors of other loads.
+    pub(crate) fn set_loads(&mut self, [before, loads]: [usize; 2]) {
+        let of = |loads: usize| (8 * loads * self.primal) as u64;
+        self.vector_bytes = self.vector_bytes - of(before) + of(loads);
+    }
+
     /// Takes over warnings of other stages, each kind once; that nothing acts stands only where it does in none.
     pub(crate) fn warn(&mut self, others: &[Self]) {
         let idle = |w: &Warning| matches!(w.plain(), Warning::NothingActs { .. });

@@ -153,7 +153,7 @@ mod tests {
     /// The gap of a certificate where all nodes are displaced alike, and the points of the model say nothing.
     fn judged(scene: Scene, displacement: [f64; 3]) -> Violation {
         let mut model = Model::new(scene, &Settings::default()).expect("model");
-        model.points.clear();
+        model.points = [].into();
         let mut problem = StepProblem::default();
         let first = model.scene.analysis.increment(0).expect("a step");
         problem.prepare(&model, &State::default(), first, 0.0).expect("step");

@@ -168,7 +168,7 @@ pub(crate) fn nodal_reactions(
             force[dof % 3] += lambda * coefficient;
         }
     }
-    for (state, point) in recovered.points.iter().zip(&model.points) {
+    for (state, point) in recovered.points.iter().zip(model.points.iter()) {
         let whole = state.force();
         let size = whole.iter().map(|f| f.abs()).fold(0.0, f64::max);
         for (node, own) in point.contact.sides.forces(whole) {
@@ -244,7 +244,7 @@ pub(crate) fn reactions_about(
     };
     let mut contact = Resultant::default();
     let mut contacts = vec![Resultant::default(); model.scene.contacts.len()];
-    for (state, point) in recovered.points.iter().zip(&model.points) {
+    for (state, point) in recovered.points.iter().zip(model.points.iter()) {
         let sides = &point.contact.sides;
         sides
             .forces(state.force())

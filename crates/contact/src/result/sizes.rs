@@ -82,7 +82,7 @@ pub(super) fn sizes(m: &Measured<'_>) -> Vec<Sizes> {
         own.residual += residual;
         own.forces += force;
     }
-    for point in &model.points {
+    for point in model.points.iter() {
         let mut sum = (point.scale * lambda[point.row]).powi(2);
         if let Some((row, count, scale)) = point.tangential_rows() {
             let rows = lambda[row..row + count].iter();

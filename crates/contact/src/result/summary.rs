@@ -56,7 +56,7 @@ pub(crate) fn summarise(
 ) -> Result<ContactSummary, ContactError> {
     let mut s = ContactSummary::default();
     let start = model.tangential_rows().start;
-    for (point, touch) in recovered.points.iter().zip(&model.points) {
+    for (point, touch) in recovered.points.iter().zip(model.points.iter()) {
         let active = point.state != ContactState::Open;
         s.active += usize::from(active);
         s.slip += usize::from(point.state == ContactState::Slip);

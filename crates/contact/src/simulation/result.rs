@@ -237,7 +237,7 @@ impl StepResult {
     /// surfaces, also at edges; partners on other bodies have the opposite forces. Zero elsewhere.
     pub fn contact_force_field(&self) -> Vec<[f64; 3]> {
         let mut field = vec![[0.0; 3]; self.model.scene.mesh.points().len()];
-        for (state, point) in self.recovered.points.iter().zip(&self.model.points) {
+        for (state, point) in self.recovered.points.iter().zip(self.model.points.iter()) {
             for (node, force) in point.contact.sides.forces(state.force()) {
                 (0..3).for_each(|c| field[node as usize][c] += force[c]);
             }

@@ -7,7 +7,7 @@ use crate::model::{ConstrainedPoint, Model, check_equilibrium};
 use crate::plan::Plan;
 use crate::report::Counters;
 use crate::result::Recovered;
-use crate::scene::{Scene, Stage};
+use crate::scene::{Load, Scene, Stage};
 use crate::settings::Settings;
 use crate::solve::{Iterate, Solver};
 use crate::state::{Controller, Fingerprint, State, operator_hash};
@@ -53,7 +53,7 @@ impl std::fmt::Debug for Simulation {
 /// The model of a scene that contact and supports can hold.
 fn balanced(scene: Scene, settings: &Settings) -> Result<Model, ContactError> {
     let model = Model::new(scene, settings)?;
-    check_equilibrium(&model)?;
+    check_equilibrium(&model, 0)?;
     Ok(model)
 }
 
@@ -129,6 +129,26 @@ impl Simulation {
             total: Counters::default(),
             setup: start.elapsed(),
         })
+    }
+
+    /// Takes other loads from the next step on, such as pressures or temperatures that another program computes step by
+    /// step. All else stays, all matrices too: it takes a fraction of a new set-up, and gives the same bits as a
+    /// simulation of the scene with these loads that [resumes](Self::resume) here. Steps solved before keep theirs;
+    /// warnings of the plan are those of the first loads.
+    ///
+    /// # Errors
+    /// What [`new`](Self::new) would refuse of them; the simulation is then as it was.
+    pub fn set_loads(&mut self, loads: Vec<Load>) -> Result<(), ContactError> {
+        let names = self.model.scene.names.clone();
+        let set = || {
+            let mut model = self.model.with_loads(loads)?;
+            check_equilibrium(&model, self.state.step())?;
+            self.solver.balance_loads(&mut model);
+            model.tfeti.check_processes()?;
+            self.model = Arc::new(model);
+            Ok(())
+        };
+        on_pool(set).map_err(|error| names.tell(error))
     }
 
     /// The plan; where supports or contacts start or end that of the stage at hand.

@@ -255,7 +255,7 @@ fn start_vector(last: &[f64], before: Option<&[f64]>, n: usize, along: Option<f6
 fn traces(model: &Model, problem: &StepProblem, rows: &[f64]) -> Vec<f64> {
     let tangential = model.tangential_rows();
     let mut trace = vec![0.0; tangential.len()];
-    for point in &model.points {
+    for point in model.points.iter() {
         for along in point.along() {
             trace[along.row - tangential.start] = problem.relative(point, along, rows[along.row]);
         }

@@ -112,7 +112,7 @@ impl StepProblem {
     /// Opens all contacts: gaps beyond all that bodies move by.
     pub(crate) fn open(&mut self, model: &Model) {
         let largest = self.linear.iter().fold(0.0, |most: f64, v| most.max(v.abs()));
-        for point in &model.points {
+        for point in model.points.iter() {
             self.offset[point.row] += OPENED * largest;
             self.linear[point.row] += OPENED * largest;
         }
@@ -164,7 +164,7 @@ impl StepProblem {
         let effects = &model.plan.effects;
         let formula = self.formula.filter(|_| effects.history);
         let start = model.tangential_rows().start;
-        for point in &model.points {
+        for point in model.points.iter() {
             if effects.gap {
                 let gap = rounded(self.gap(&model.scene, point, 0)?, model.discrete.rounding);
                 self.offset[point.row] += point.scale * gap;

@@ -63,6 +63,7 @@ mod restart;
 mod sanity;
 #[cfg(feature = "serde")]
 mod serialised;
+mod set_loads;
 mod shapes;
 mod sheets;
 mod slices;
