@@ -1,18 +1,20 @@
 //! Contacts that cross: nodes of a contact between bodies that another contact has, too.
 //!
 //! With conditions of both, rows along a surface nearly depend on one another where meshes do not match, and active
-//! sets run in circles. Flush sides hand theirs on to the neighbours (`mortar`).
+//! sets run in circles. Flush sides hand theirs on to the neighbours (`mortar`). A side that several contacts have, as
+//! a lintel on its posts, is crossed only where it is folded: along one normal their conditions are on other bodies.
 
 use crate::mortar::MortarNode;
 use crate::scene::{Contact, Gap, Scene};
-use crate::tolerances::FLUSH;
-use signorini_fem_mesh::{Surface, TetMesh};
-use std::collections::HashSet;
+use crate::tolerances::{FLUSH, SHARP};
+use signorini_fem_mesh::vec3::{area_vector, dot, unit};
+use signorini_fem_mesh::{FacetTag, Surface, TetMesh};
+use std::collections::{HashMap, HashSet};
 
 /// Nodes at which other contacts have conditions that may nearly depend on those of one between linear meshes, or of a
 /// group that goes on in one another: friction of either acts along normals of the other. Of two between bodies the
 /// first keeps its conditions.
-pub(super) fn crossing(scene: &Scene, group: &[usize]) -> HashSet<u32> {
+pub(super) fn crossing<'a>(scene: &'a Scene, group: &[usize]) -> HashSet<u32> {
     let (index, own) = (group[0], &scene.contacts[group[0]]);
     if own.tied || own.partner.is_empty() || scene.mesh.order() == 2 {
         return HashSet::new();
@@ -25,8 +27,31 @@ pub(super) fn crossing(scene: &Scene, group: &[usize]) -> HashSet<u32> {
         keeps && rough && !contact.tied && own.span.meets(&contact.span, times)
     };
     let others = scene.contacts.iter().enumerate().filter(crosses);
-    let tags = others.flat_map(|(_, contact)| contact.tags.iter().chain(&contact.partner));
-    tags.flat_map(|tag| scene.mesh.nodes_on(*tag)).collect()
+    let sides = |contact: &'a Contact| contact.tags.iter().chain(&contact.partner).copied();
+    let own: HashSet<FacetTag> = group.iter().flat_map(|k| sides(&scene.contacts[*k])).collect();
+    let tags: HashSet<FacetTag> = others.flat_map(|(_, contact)| sides(contact)).collect();
+    let (shared, others): (HashSet<FacetTag>, HashSet<FacetTag>) = tags.into_iter().partition(|t| own.contains(t));
+    let mut out: HashSet<u32> = others.into_iter().flat_map(|tag| scene.mesh.nodes_on(tag)).collect();
+    out.extend(folds(&scene.mesh, &shared));
+    out
+}
+
+/// Nodes at which facets with these tags meet at an angle.
+fn folds(mesh: &TetMesh, tags: &HashSet<FacetTag>) -> HashSet<u32> {
+    let mut out = HashSet::new();
+    let mut normals: HashMap<u32, Vec<[f64; 3]>> = HashMap::new();
+    let facets = mesh.facets().iter().enumerate();
+    for (k, facet) in facets.filter(|(_, facet)| tags.contains(&facet.tag)) {
+        let normal = unit(area_vector(&mesh.facet_points(k)));
+        for node in facet.nodes {
+            let known = normals.entry(node).or_default();
+            if known.iter().any(|other| dot(*other, normal) < SHARP) {
+                out.insert(node);
+            }
+            known.push(normal);
+        }
+    }
+    out
 }
 
 /// Those of these nodes around which the gap is the same: where sides open from an edge on, that edge alone may touch.

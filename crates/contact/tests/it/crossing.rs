@@ -192,3 +192,32 @@ fn without_loads_a_block_stays_where_it_slid() {
         assert!(off < 0.2, "{step}: {off:e}");
     }
 }
+
+/// A plate on blocks apart, each in a contact of its own with the lower side of the plate: nodes of that side were
+/// taken for those of a crossing, and which contact came first decided where the plate rests, and with how much.
+#[test]
+fn contacts_of_one_flat_side_do_not_cross() {
+    let on_blocks = |order: [u32; 3]| {
+        let mut mesh = block([1.2, 1.2, 0.08], [4, 4, 1]);
+        for (k, [x, y]) in (1..).zip([[0.0, 0.0], [0.96, 0.0], [0.48, 0.96]]) {
+            let own = Brick::new([0.24, 0.24, 0.15], [2, 2, 1]).with_origin([x, y, -0.15]);
+            let own = own.build().expect("a block").map_tags(|t| FacetTag(t.0 + 10 * k));
+            mesh = mesh.append(&own).expect("a plate on blocks");
+        }
+        let side = |tag: FacetTag, k: u32| FacetTag(tag.0 + 10 * k);
+        let mut scene = Scene::new(mesh, uniform(2.1e11, 0.3))
+            .with_load(Load::pressure(brick::Z_MAX, 5e5))
+            .with_load(Load::force(brick::X_MAX, [3e4, 0.0, 0.0]));
+        for k in order {
+            let contact = Contact::between(brick::Z_MIN, side(brick::Z_MAX, k));
+            scene = scene
+                .with_support(Support::fixed(side(brick::Z_MIN, k)))
+                .with_contact(contact.with_friction(Friction::coulomb(0.2)));
+        }
+        solve(scene, at(1e-9)).displacement
+    };
+    let reference = on_blocks([1, 2, 3]);
+    for order in [[3, 2, 1], [2, 3, 1], [3, 1, 2]] {
+        assert_close(&on_blocks(order), &reference, 1e-6, &format!("{order:?}"));
+    }
+}
