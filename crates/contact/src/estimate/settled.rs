@@ -6,12 +6,8 @@
 //! with the matrix `P C P^T`. Where the step is solved it is `v0`.
 
 use super::shared::{SharedNodes, Target};
-use crate::tolerances::{SETTLE_STOP, SHARED_MOVES};
-use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::problem::{BlockState, ConvexSet};
-use signorini_qp::{
-    ActiveSetSettings, DenseProjector, MovingSet, ProductSet, Segment, SymmetricOperator, active_set, vector,
-};
+use signorini_qp::{ProductSet, Segment, SymmetricOperator, vector};
 
 impl SharedNodes {
     /// Moves the displacement `v` there. `forces` of the points, along the normal and along the surface, with slip
@@ -40,8 +36,7 @@ impl SharedNodes {
         lambda.resize(n, 0.0);
         touching.extend(self.fixed.iter().map(|&row| offset[row]));
         let at = |touching: Vec<f64>| touching.into_iter().map(Target::At).collect();
-        let (Ok(mut set), Ok(mut projector)) = (ProductSet::new(segments), DenseProjector::new(0, n, Vec::new()))
-        else {
+        let Ok(mut set) = ProductSet::new(segments) else {
             return at(touching);
         };
         let mut linear = vec![0.0; n];
@@ -49,23 +44,9 @@ impl SharedNodes {
         for ((linear, row), touching) in linear.iter_mut().zip(&self.rows).zip(&touching) {
             *linear += touching - row.iter().map(|&(at, c)| c * v[at]).sum::<f64>();
         }
-        let problem = ActiveSetProblem {
-            operator: self,
-            preconditioner: &self.inverse,
-            scale: self.inverse.entries(),
-            linear: &linear,
-            rhs: &[],
-        };
-        let settings = ActiveSetSettings::default()
-            .with_tolerance(SETTLE_STOP)
-            .with_max_products(SHARED_MOVES);
         let mut y = lambda.clone();
         set.project(&mut y);
-        let (x, ax, known) = (&mut y[..], &mut linear.clone()[..], false);
-        let (fixed, point) = (MovingSet::fixed(&mut set), ActiveSetPoint { x, ax, known });
-        let mut work = ActiveSetWorkspace::new(self, &self.inverse);
-        let solved = active_set(&problem, &mut projector, fixed, point, &settings, &mut work);
-        if solved.is_err() {
+        if self.solve(&linear, &mut set, &mut y).is_none() {
             return at(touching);
         }
         let mut targets = Vec::with_capacity(n);

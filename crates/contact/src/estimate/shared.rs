@@ -151,14 +151,7 @@ impl SharedNodes {
             Target::Any => None,
         });
         let size = largest.fold(vector::max_abs(v), f64::max);
-        // no equality
         let n = self.dim();
-        let Ok(mut projector) = DenseProjector::new(0, n, Vec::new()) else {
-            return;
-        };
-        let settings = ActiveSetSettings::default().with_tolerance(SETTLE_STOP);
-        let settings = settings.with_max_products(SHARED_MOVES);
-        let mut work = ActiveSetWorkspace::new(self, &self.inverse);
         let (mut moved, mut sum) = (vec![0.0; v.len()], vec![0.0; n]);
         for _ in 0..SHARED_ROUNDS {
             let rows = self.rows.iter().zip(targets);
@@ -189,25 +182,37 @@ impl SharedNodes {
             let Ok(mut set) = ProductSet::new(vec![Segment::bounds(lower, upper)]) else {
                 return;
             };
-            let problem = ActiveSetProblem {
-                operator: self,
-                preconditioner: &self.inverse,
-                scale: self.inverse.entries(),
-                linear: &missing,
-                rhs: &[],
-            };
-            let (mut y, mut product) = (vec![0.0; n], vec![0.0; n]);
             // as far as rows depend on one another the result is one of many
-            let (x, ax, known) = (&mut y[..], &mut product[..], true);
-            let (set, point) = (MovingSet::fixed(&mut set), ActiveSetPoint { x, ax, known });
-            let solved = active_set(&problem, &mut projector, set, point, &settings, &mut work);
-            if solved.is_err() {
+            let mut y = vec![0.0; n];
+            if self.solve(&missing, &mut set, &mut y).is_none() {
                 return;
             }
             self.spread(&y, &mut moved);
             vector::axpy(1.0, &moved, v);
             vector::axpy(1.0, &y, &mut sum);
         }
+    }
+
+    /// The `y` in the set, from that given on, with the smallest `1/2 yᵀ P C Pᵀ y - yᵀ linear`.
+    pub(super) fn solve(&self, linear: &[f64], set: &mut ProductSet, y: &mut [f64]) -> Option<()> {
+        let problem = ActiveSetProblem {
+            operator: self,
+            preconditioner: &self.inverse,
+            scale: self.inverse.entries(),
+            linear,
+            rhs: &[],
+        };
+        // no equality
+        let mut projector = DenseProjector::new(0, self.dim(), Vec::new()).ok()?;
+        let settings = ActiveSetSettings::default().with_tolerance(SETTLE_STOP);
+        let settings = settings.with_max_products(SHARED_MOVES);
+        // the product of zero is known
+        let known = y.iter().all(|y| *y == 0.0);
+        let (x, ax) = (y, &mut vec![0.0; self.dim()][..]);
+        let (set, point) = (MovingSet::fixed(set), ActiveSetPoint { x, ax, known });
+        let mut work = ActiveSetWorkspace::new(self, &self.inverse);
+        let solved = active_set(&problem, &mut projector, set, point, &settings, &mut work);
+        solved.ok().map(drop)
     }
 
     /// The smallest change of a displacement by which rows of ties grow by so much.
