@@ -70,6 +70,20 @@ impl Word {
         value.ok_or_else(|| self.expected(wanted))
     }
 
+    /// So many finite numbers, from an entry on.
+    pub(crate) fn reals<const N: usize>(
+        &self,
+        fields: &[&str],
+        from: usize,
+        wanted: &'static str,
+    ) -> Result<[f64; N], DeckError> {
+        let mut values = [0.0; N];
+        for (at, value) in (from..).zip(&mut values) {
+            *value = self.real(fields, at, wanted)?;
+        }
+        Ok(values)
+    }
+
     /// A number of a node or element.
     pub(crate) fn label(&self, fields: &[&str], at: usize, wanted: &'static str) -> Result<u32, DeckError> {
         let found = fields.get(at).and_then(|text| label(text));

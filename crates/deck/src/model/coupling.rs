@@ -49,14 +49,8 @@ pub(super) fn pretension(model: &mut Model, card: &Card) -> Result<(), DeckError
     card.allow(&["SURFACE", "NODE"])?;
     card.lines_at_most(1, "the normal")?;
     let wanted = "the three components of the normal";
-    let normal = card.lines.first().map(|line| {
-        let fields = line.at_most(3, wanted)?;
-        Ok::<_, DeckError>([
-            line.real(&fields, 0, wanted)?,
-            line.real(&fields, 1, wanted)?,
-            line.real(&fields, 2, wanted)?,
-        ])
-    });
+    let normal = card.lines.first();
+    let normal = normal.map(|line| line.reals(&line.at_most(3, wanted)?, 0, wanted));
     model.couplings.push(Coupling {
         word: card.word.clone(),
         reference: node_of(card.need("NODE")?),

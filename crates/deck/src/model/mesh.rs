@@ -16,47 +16,28 @@ const TYPES: [(&str, Kind, [usize; 2], &str); 16] = {
     const TWO: &str = "an element number and two node numbers";
     const THREE: &str = "an element number and three node numbers";
     const FOUR: &str = "an element number and four node numbers";
+    const FIVE: &str = "an element number and five node numbers";
+    const SIX: &str = "an element number and six node numbers";
     const EIGHT: &str = "an element number and eight node numbers";
+    const TEN: &str = "an element number and ten node numbers";
+    const THIRTEEN: &str = "an element number and thirteen node numbers";
+    const FIFTEEN: &str = "an element number and fifteen node numbers";
+    const TWENTY: &str = "an element number and twenty node numbers";
     [
         ("C3D4", Solid(Tetrahedron), [4, 4], FOUR),
-        (
-            "C3D10",
-            Solid(Tetrahedron),
-            [10, 10],
-            "an element number and ten node numbers",
-        ),
-        (
-            "C3D13",
-            Solid(Pyramid),
-            [13, 13],
-            "an element number and thirteen node numbers",
-        ),
-        (
-            "C3D5",
-            Solid(Pyramid),
-            [5, 5],
-            "an element number and five node numbers",
-        ),
-        ("C3D6", Solid(Prism), [6, 6], "an element number and six node numbers"),
-        (
-            "C3D15",
-            Solid(Prism),
-            [15, 15],
-            "an element number and fifteen node numbers",
-        ),
+        ("C3D10", Solid(Tetrahedron), [10, 10], TEN),
+        ("C3D13", Solid(Pyramid), [13, 13], THIRTEEN),
+        ("C3D5", Solid(Pyramid), [5, 5], FIVE),
+        ("C3D6", Solid(Prism), [6, 6], SIX),
+        ("C3D15", Solid(Prism), [15, 15], FIFTEEN),
         ("C3D8", Solid(Hexahedron), [8, 8], EIGHT),
-        (
-            "C3D20",
-            Solid(Hexahedron),
-            [20, 20],
-            "an element number and twenty node numbers",
-        ),
+        ("C3D20", Solid(Hexahedron), [20, 20], TWENTY),
         ("R3D3", Rigid, [3, 3], THREE),
         ("R3D4", Rigid, [4, 4], FOUR),
         ("CPS3", Flat, [3, 3], THREE),
         ("CPS4", Flat, [4, 4], FOUR),
         // a place between the corners is not looked at
-        ("CPS6", Flat, [6, 3], "an element number and six node numbers"),
+        ("CPS6", Flat, [6, 3], SIX),
         ("CPS8", Flat, [8, 4], EIGHT),
         ("T3D2", Line, [2, 2], TWO),
         ("T3D3", Line, [3, 2], THREE),
@@ -250,17 +231,13 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
             "an element or element set, and a face S1 to S6 (SPOS or SNEG of rigid facets), or none"
         };
         let fields = line.at_most(2, wanted)?;
-        let side = match (of_nodes, fields.get(1).map(|f| name(f)).as_deref()) {
+        let face = fields.get(1).map(|f| name(f));
+        let side = match (of_nodes, face.as_deref().map(str::as_bytes)) {
             (true, None) => Side::Nodes,
-            (false, None | Some("")) => Side::Outside,
-            (false, Some("S1")) => Side::Face(1),
-            (false, Some("S2")) => Side::Face(2),
-            (false, Some("S3")) => Side::Face(3),
-            (false, Some("S4")) => Side::Face(4),
-            (false, Some("S5")) => Side::Face(5),
-            (false, Some("S6")) => Side::Face(6),
-            (false, Some("SPOS")) => Side::Facet { positive: true },
-            (false, Some("SNEG")) => Side::Facet { positive: false },
+            (false, None | Some(b"")) => Side::Outside,
+            (false, Some([b'S', face @ b'1'..=b'6'])) => Side::Face(face - b'0'),
+            (false, Some(b"SPOS")) => Side::Facet { positive: true },
+            (false, Some(b"SNEG")) => Side::Facet { positive: false },
             _ => return Err(line.entry(&fields, 1).expected(wanted)),
         };
         let target = target(line, fields[0])?;

@@ -396,27 +396,20 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
         };
         let fields = line.at_most(9, wanted)?;
         let label = name(fields.get(1).unwrap_or(&""));
-        let (kind, count) = match (on_surface, label.as_str()) {
-            (true, "P") => (DistributedKind::Surface, 3),
-            (true, "TRVEC") => (DistributedKind::Traction(vector(line, &fields, 3)?), 6),
-            (false, "P1") => (DistributedKind::Face(1), 3),
-            (false, "P2") => (DistributedKind::Face(2), 3),
-            (false, "P3") => (DistributedKind::Face(3), 3),
-            (false, "P4") => (DistributedKind::Face(4), 3),
-            (false, "P5") => (DistributedKind::Face(5), 3),
-            (false, "P6") => (DistributedKind::Face(6), 3),
-            (false, "BX") => (DistributedKind::Volume(VolumeLaw::Force(0)), 3),
-            (false, "BY") => (DistributedKind::Volume(VolumeLaw::Force(1)), 3),
-            (false, "BZ") => (DistributedKind::Volume(VolumeLaw::Force(2)), 3),
-            (false, "GRAV") => (
+        let (kind, count) = match (on_surface, label.as_bytes()) {
+            (true, b"P") => (DistributedKind::Surface, 3),
+            (true, b"TRVEC") => (DistributedKind::Traction(vector(line, &fields, 3)?), 6),
+            (false, [b'P', face @ b'1'..=b'6']) => (DistributedKind::Face(face - b'0'), 3),
+            (false, [b'B', axis @ b'X'..=b'Z']) => {
+                let axis = usize::from(axis - b'X');
+                (DistributedKind::Volume(VolumeLaw::Force(axis)), 3)
+            }
+            (false, b"GRAV") => (
                 DistributedKind::Volume(VolumeLaw::Gravity(vector(line, &fields, 3)?)),
                 6,
             ),
-            (false, "CENTRIF") => {
-                let mut point = [0.0; 3];
-                for (c, p) in point.iter_mut().enumerate() {
-                    *p = line.real(&fields, 3 + c, "a point of the axis: three numbers")?;
-                }
+            (false, b"CENTRIF") => {
+                let point = line.reals(&fields, 3, "a point of the axis: three numbers")?;
                 let axis = [point, vector(line, &fields, 6)?];
                 (DistributedKind::Volume(VolumeLaw::Centrifugal(axis)), 9)
             }
@@ -450,10 +443,7 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
 /// A direction, by its three numbers.
 fn vector(line: &Word, fields: &[&str], at: usize) -> Result<[f64; 3], DeckError> {
     let wanted = "a direction that is not zero: three numbers";
-    let mut direction = [0.0; 3];
-    for (c, d) in direction.iter_mut().enumerate() {
-        *d = line.real(fields, at + c, wanted)?;
-    }
+    let direction: [f64; 3] = line.reals(fields, at, wanted)?;
     let length = direction.iter().map(|d| d * d).sum::<f64>();
     if length > 0.0 && length.is_finite() {
         Ok(direction)

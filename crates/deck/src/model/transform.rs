@@ -25,11 +25,7 @@ pub(crate) enum Axes {
 /// The two points of a line of axes.
 pub(super) fn two_points(line: &Word, wanted: &'static str) -> Result<[Vec3; 2], DeckError> {
     let fields = line.at_most(6, wanted)?;
-    let mut points = [[0.0; 3]; 2];
-    for (at, value) in points.as_flattened_mut().iter_mut().enumerate() {
-        *value = line.real(&fields, at, wanted)?;
-    }
-    Ok(points)
+    Ok([line.reals(&fields, 0, wanted)?, line.reals(&fields, 3, wanted)?])
 }
 
 /// Whether the points of rectangular axes and the origin are in line, as far as digits tell.
