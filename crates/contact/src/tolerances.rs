@@ -44,10 +44,6 @@ pub(crate) const ALONG: f64 = 1e-9;
 /// told apart: what rounding leaves of a rotation is 1e-10 there.
 pub(crate) const FAR: f64 = 1e6;
 
-/// Coefficient of a point in an equation over those of nodes up to which, and over which, the displacement of the point
-/// counts in the unit of theirs.
-pub(crate) const ALIKE: f64 = 16.0;
-
 /// Cosine above which two directions of contact are one: 1.4e-6 radians. Rows of larger angles are solved for apart, at
 /// any angle. Within smaller ones a node would have twice the same row, and one condition keeps the other to 1.4e-6 of
 /// the way along the surface, which the certificate sees.

@@ -2,7 +2,7 @@
 
 use crate::error::ContactError;
 use crate::scene::{Equation, LoadKind, Scene};
-use crate::tolerances::{ALIKE, ALONG};
+use crate::tolerances::ALONG;
 use signorini_fem_mesh::vec3::{Vec3, add, dot, is_finite, norm, scale, sub, unit};
 use std::collections::BTreeMap;
 
@@ -67,14 +67,16 @@ pub(super) fn sizes(scene: &Scene) -> Vec<f64> {
             .into_iter()
             .for_each(|(point, ratio)| sizes[point] = ratio.max(sizes[point]));
     }
-    let rounded = |most: f64| {
-        if most > 0.0 && !(1.0 / ALIKE..=ALIKE).contains(&most) {
-            most.log2().round().exp2()
-        } else {
-            1.0
-        }
-    };
-    sizes.into_iter().map(rounded).collect()
+    sizes.into_iter().map(power_of_two).collect()
+}
+
+/// The power of two next to a size; 1 for what has none.
+pub(crate) fn power_of_two(size: f64) -> f64 {
+    if size > 0.0 && size.is_finite() {
+        size.log2().round().clamp(-900.0, 900.0).exp2()
+    } else {
+        1.0
+    }
 }
 
 /// The directions of a point of which neither an equation nor the coupling itself says anything: it stays there.
@@ -115,5 +117,17 @@ pub(super) fn idle(scene: &Scene, index: usize, axes: &[Vec3; 3]) -> Result<Vec<
         ))
     } else {
         Ok(idle)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_are_powers_of_two() {
+        for (size, unit) in [(0.0, 1.0), (f64::NAN, 1.0), (3.1, 4.0), (1e-3, 0.5f64.powi(10))] {
+            assert_eq!(power_of_two(size), unit);
+        }
     }
 }

@@ -36,6 +36,7 @@ pub(crate) use couplings::Couplings;
 pub(crate) use creases::{SurfaceSide, area_vector, creases};
 pub(crate) use extents::Extents;
 pub(crate) use faceted::FacetedOverlaps;
+pub(crate) use free_points::power_of_two;
 pub(crate) use points::{ContactPoint, of_contact};
 pub(crate) use scene::DiscreteScene;
 pub(crate) use side::{mean_place, rounded};

@@ -1,6 +1,7 @@
 //! Units of force: a step is solved with forces and displacements of each body divided by a power of two of its own.
 
 use super::iterate::Iterate;
+use crate::discrete::power_of_two;
 use crate::model::Model;
 use crate::step::StepProblem;
 
@@ -72,25 +73,4 @@ fn divide(x: &mut [f64], units: &[f64]) {
 
 fn multiply(x: &mut [f64], units: &[f64]) {
     x.iter_mut().zip(units).for_each(|(x, u)| *x *= u);
-}
-
-/// The power of two next to a size; 1 for what has none.
-fn power_of_two(size: f64) -> f64 {
-    if size > 0.0 && size.is_finite() {
-        size.log2().round().clamp(-900.0, 900.0).exp2()
-    } else {
-        1.0
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn units_are_powers_of_two() {
-        for (size, unit) in [(0.0, 1.0), (f64::NAN, 1.0), (3.1, 4.0), (1e-3, 0.5f64.powi(10))] {
-            assert_eq!(power_of_two(size), unit);
-        }
-    }
 }
