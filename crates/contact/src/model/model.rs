@@ -231,7 +231,7 @@ impl Model {
             dependencies: OnceLock::new(),
             loose_motions: OnceLock::new(),
         };
-        model.respond(&forces)?;
+        model.respond(forces)?;
         Ok(model)
     }
 
@@ -241,12 +241,12 @@ impl Model {
         model.scene.loads = loads;
         let forces = model.discrete.forces(&model.scene)?;
         model.plan.set_loads([self.loads.len(), forces.len()]);
-        model.respond(&forces)?;
+        model.respond(forces)?;
         Ok(model)
     }
 
     /// Takes the loads of the scene, of these nodal forces.
-    fn respond(&mut self, forces: &[Vec<Vec<f64>>]) -> Result<(), ContactError> {
+    fn respond(&mut self, forces: Vec<Vec<Vec<f64>>>) -> Result<(), ContactError> {
         let Self {
             scene, tfeti, bodies, ..
         } = &*self;
@@ -257,12 +257,12 @@ impl Model {
                 NO_LOAD * scene.analysis.largest_factor(&load.history).0
             }
         };
-        let no_load = scene.loads.iter().zip(forces).map(no_load).collect();
-        let response = |(load, forces): (&Load, &Vec<Vec<f64>>)| {
+        let no_load = scene.loads.iter().zip(&forces).map(no_load).collect();
+        let response = |(load, forces): (&Load, Vec<Vec<f64>>)| {
             let mut response = if self.discrete.points.is_empty() {
-                tfeti.torn_load(forces)?
+                tfeti.torn_load(&forces)?
             } else {
-                tfeti.load_response(forces)?
+                tfeti.load_response(&forces)?
             };
             // strain that makes no stress is in balance, and no rounding is to push a body that nothing holds
             if load.is_eigenstrain() {
