@@ -24,7 +24,7 @@ fn backward(end: f64, steps: usize) -> Analysis {
     Analysis::quasistatic(end, steps)
 }
 
-/// What another program finds at a step: a pressure that grows, and a temperature that passes from one end to the other.
+/// What another program finds at a step: a pressure that grows, and a warm place that moves along the block.
 fn found(step: usize, mesh: &TetMesh) -> Vec<Load> {
     let front = 0.6 * step as f64;
     let rises = mesh
