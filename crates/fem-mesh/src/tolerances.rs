@@ -52,6 +52,8 @@ pub(crate) const EDGE_STEPS: i32 = 6;
 /// former, and the part of its longest edge below which coordinates there are equal.
 pub(crate) const OBLIQUE: f64 = 0.9;
 pub(crate) const SAME_PLACE: f64 = 1e-9;
+/// Components of unit normals that are one, of facets that make a plane face: files have nine digits.
+pub(crate) const ONE_FACE: f64 = 1e-6;
 /// Part of its box that a part fills which is a box but for rounding.
 pub(crate) const BOX: f64 = 1.0 - 1e-6;
 /// How much longer some cells are along an axis than others, each relative to itself, where a mesh is graded along it:

@@ -129,6 +129,7 @@ type Grading = ([f64; 3], [Option<Vec<f64>>; 3]);
 const NO_SHARES: [Option<Vec<f64>>; 3] = [const { None }; 3];
 const NO_GRADING: Grading = ([1.0; 3], NO_SHARES);
 
+/// The grading along the axes of a frame.
 fn shares(mesh: &TetMesh, frame: Option<&Frame>) -> Grading {
     let lengths = |tet: usize| {
         let (low, high) = extent(corners(mesh, frame, tet));

@@ -1,7 +1,7 @@
 //! The directions along which a body is cut.
 
 use crate::mesh::{TetMesh, extent};
-use crate::tolerances::{FILLED, OBLIQUE, SAME_PLACE};
+use crate::tolerances::{FILLED, OBLIQUE, ONE_FACE, SAME_PLACE};
 use crate::vec3::{self, Vec3};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use std::collections::BTreeMap;
@@ -22,16 +22,16 @@ impl Frame {
             let (low, high) = extent(points.map(|p| axes.map(|axis| vec3::dot(axis, p))));
             vec3::sub(high, low)
         };
-        let size = |axes: &[Vec3; 3]| edges(axes).iter().product::<f64>();
-        let plain = size(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]);
+        let size = |edges: &Vec3| edges.iter().product::<f64>();
+        let plain = size(&edges(&[[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]));
         let volume: f64 = tets.iter().map(|&tet| mesh.volume(tet as usize)).sum();
         if volume >= FILLED * plain {
             return None;
         }
-        let found = [faces(mesh, groups, tets), inertia(mesh, tets)].map(|axes| (size(&axes), axes));
-        let (size, axes) = if found[0].0 <= found[1].0 { found[0] } else { found[1] };
-        let longest = edges(&axes).into_iter().fold(0.0, f64::max);
-        (size < OBLIQUE * plain).then(|| Self {
+        let [by_faces, by_inertia] = [faces(mesh, groups, tets), inertia(mesh, tets)].map(|axes| (edges(&axes), axes));
+        let (edges, axes) = if size(&by_faces.0) <= size(&by_inertia.0) { by_faces } else { by_inertia };
+        let longest = edges.into_iter().fold(0.0, f64::max);
+        (size(&edges) < OBLIQUE * plain).then(|| Self {
             axes,
             unit: (SAME_PLACE * longest).log2().ceil().exp2(),
         })
@@ -54,7 +54,7 @@ fn faces(mesh: &TetMesh, groups: &[u32], tets: &[u32]) -> [Vec3; 3] {
                 let vector = vec3::area_vector(&[1, 2, 3].map(|k| corners[(face + k) % 4]));
                 let area = vec3::norm(vector);
                 let normal = vec3::scale(area.recip(), vector);
-                let key = normal.map(|n| (n * 1e6).round() as i64);
+                let key = normal.map(|n| (n / ONE_FACE).round() as i64);
                 // both sides of a plate are one face
                 let turned = key.map(|k| -k);
                 let (key, normal) = if turned > key { (turned, vec3::scale(-1.0, normal)) } else { (key, normal) };
