@@ -199,8 +199,7 @@ impl Couplings {
                         "another coupling says how the sides of its contact move, too",
                     ));
                 }
-                let tags = tied.tags.iter().chain(&tied.partner);
-                Ok(distinct(tags.flat_map(|tag| scene.mesh.nodes_on(*tag))))
+                Ok(distinct(tied.side_tags().flat_map(|tag| scene.mesh.nodes_on(tag))))
             }
         }
     }

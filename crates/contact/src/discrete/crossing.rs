@@ -14,7 +14,7 @@ use std::collections::{HashMap, HashSet};
 /// Nodes at which other contacts have conditions that may nearly depend on those of one between linear meshes, or of a
 /// group that goes on in one another: friction of either acts along normals of the other. Of two between bodies the
 /// first keeps its conditions.
-pub(super) fn crossing<'a>(scene: &'a Scene, group: &[usize]) -> HashSet<u32> {
+pub(super) fn crossing(scene: &Scene, group: &[usize]) -> HashSet<u32> {
     let (index, own) = (group[0], &scene.contacts[group[0]]);
     if own.tied || own.partner.is_empty() || scene.mesh.order() == 2 {
         return HashSet::new();
@@ -27,10 +27,9 @@ pub(super) fn crossing<'a>(scene: &'a Scene, group: &[usize]) -> HashSet<u32> {
         keeps && rough && !contact.tied && own.span.meets(&contact.span, times)
     };
     let others = scene.contacts.iter().enumerate().filter(crosses);
-    let sides = |contact: &'a Contact| contact.tags.iter().chain(&contact.partner).copied();
-    let own: HashSet<FacetTag> = group.iter().flat_map(|k| sides(&scene.contacts[*k])).collect();
-    let tags: HashSet<FacetTag> = others.flat_map(|(_, contact)| sides(contact)).collect();
-    let (shared, others): (HashSet<FacetTag>, HashSet<FacetTag>) = tags.into_iter().partition(|t| own.contains(t));
+    let tags: HashSet<FacetTag> = others.flat_map(|(_, contact)| contact.side_tags()).collect();
+    let has = |tag: &FacetTag| group.iter().any(|k| scene.contacts[*k].side_tags().any(|t| t == *tag));
+    let (shared, others): (HashSet<FacetTag>, HashSet<FacetTag>) = tags.into_iter().partition(has);
     let mut out: HashSet<u32> = others.into_iter().flat_map(|tag| scene.mesh.nodes_on(tag)).collect();
     out.extend(folds(&scene.mesh, &shared));
     out

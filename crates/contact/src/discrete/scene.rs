@@ -11,7 +11,7 @@ use super::supports::Supports;
 use super::turn::check_turn;
 use super::united::pair;
 use crate::error::ContactError;
-use crate::scene::{Pose, Scene, check_laws};
+use crate::scene::{Contact, Pose, Scene, check_laws};
 use crate::tolerances::ROUNDING;
 use signorini_fem_mesh::{Decomposition, FacetTag, Surface};
 use signorini_tfeti::internal::{independent_equations, prescribed_points};
@@ -83,7 +83,7 @@ impl DiscreteScene {
         if !ties.is_empty() {
             // a bonded node does not move against the other body; nodes behind its side do
             let tied = scene.contacts.iter().filter(|c| c.tied && scene.acts(c.span));
-            let tags: HashSet<FacetTag> = tied.flat_map(|c| c.tags.iter().chain(&c.partner)).copied().collect();
+            let tags: HashSet<FacetTag> = tied.flat_map(Contact::side_tags).collect();
             let sides = scene.mesh.facets().iter().filter(|f| tags.contains(&f.tag));
             let sides: HashSet<u32> = sides.flat_map(|f| f.nodes).collect();
             let nodes = ties.iter().flat_map(|t| t.sides.nodes()).map(|n| n.0);

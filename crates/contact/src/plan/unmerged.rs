@@ -2,7 +2,7 @@
 
 use crate::discrete::{DiscreteScene, Extents};
 use crate::report::Warning;
-use crate::scene::Scene;
+use crate::scene::{Contact, Scene};
 use signorini_fem_mesh::FacetTag;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -25,10 +25,7 @@ pub(super) fn unmerged(scene: &Scene, discrete: &DiscreteScene) -> Option<Warnin
         .iter()
         .flat_map(|f| f.nodes)
         .for_each(|n| free[n as usize] = true);
-    let tags: HashSet<FacetTag> = (scene.contacts.iter())
-        .flat_map(|c| c.tags.iter().chain(&c.partner))
-        .copied()
-        .collect();
+    let tags: HashSet<FacetTag> = scene.contacts.iter().flat_map(Contact::side_tags).collect();
     let sides = || mesh.facets().iter().filter(|f| tags.contains(&f.tag));
     sides().flat_map(|f| f.nodes).for_each(|n| free[n as usize] = false);
     let terms = scene.equations.iter().flat_map(|e| &e.terms);

@@ -378,6 +378,11 @@ impl Contact {
         &self.tags
     }
 
+    /// The tags of both sides.
+    pub(crate) fn side_tags(&self) -> impl Iterator<Item = FacetTag> {
+        self.tags.iter().chain(&self.partner).copied()
+    }
+
     /// The contact normal.
     pub(crate) fn normal(&self) -> ContactNormal {
         self.normal

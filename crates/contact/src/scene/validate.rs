@@ -133,7 +133,7 @@ impl Scene {
     }
 
     fn check(&self, index: usize, contact: &Contact) -> Result<(), ContactError> {
-        for &tag in contact.tags.iter().chain(&contact.partner) {
+        for tag in contact.side_tags() {
             if self.mesh.nodes_on(tag).is_empty() {
                 return Err(self.unknown_tag(Part::Contact(index), tag));
             }
