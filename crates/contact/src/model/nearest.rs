@@ -25,9 +25,10 @@ pub(crate) fn nearest(columns: &[DMatrix<f64>; 2], wanted: &[DVector<f64>; 2]) -
     let opened = -(room * &steps);
     let rounding = ROUNDING * target.amax().max(gap.amax());
     for _ in 0..STEPS {
-        let over = room * &way - gap;
+        // what rounding leaves of room without play, between a floor and a ceiling, is none: it may be overlapped by that
+        let over = (room * &way - gap).add_scalar(-rounding);
         let most = over.max();
-        if most <= rounding {
+        if most <= 0.0 {
             break;
         }
         // the shortest step over linear inequalities from non-negative least squares (Lawson and Hanson, chapter 23)
@@ -78,6 +79,11 @@ mod tests {
         let wanted = [DVector::from_vec(vec![3.0]), DVector::from_vec(vec![-0.5])];
         let found = nearest(&[one, both], &wanted).expect("a place");
         assert!((found - DVector::from_vec(vec![3.0, 0.5])).norm() < 1e-9);
+        // between two walls without play, which rounding has moved into each other
+        let walls = DMatrix::from_row_slice(2, 2, &[0.0, 1.0, 0.0, -1.0]);
+        let wanted = [vec![8e-3, 1e-12], vec![0.0, -1e-15]].map(DVector::from_vec);
+        let found = nearest(&[near.clone(), walls], &wanted).expect("a place");
+        assert!((found - DVector::from_vec(vec![8e-3, 0.0])).norm() < 1e-13);
         let none = DVector::from_vec(vec![-1.0, -1.0, 1.0]);
         assert!(nearest(&[near.clone(), room.clone()], &[DVector::zeros(2), none]).is_none());
     }

@@ -1,6 +1,7 @@
 //! Loads that go back to zero: bodies that only contact holds stand where next to no load leaves them, or are locked.
 
 use crate::common::*;
+use signorini_fem_mesh::Eigenstrain;
 
 /// A plug between rigid sides that open upwards by a tenth, pushed down, then let go in so many steps.
 fn plug(coefficient: f64, steps: usize) -> Scene {
@@ -393,4 +394,43 @@ fn leaves_that_are_let_go_are_without_forces() {
     println!("{products:?}");
     assert!(results[2].summary.normal_force > 1.0 && results[3].summary.normal_force == 0.0);
     assert!(products[3] < 250, "{products:?}");
+}
+
+/// A block between a floor and a ceiling without play slides and is let go. Where rounding had moved the two into each
+/// other there was no room for it: it went back to where it was before it slid.
+#[test]
+fn between_a_floor_and_a_ceiling_a_block_stays_where_it_slid() {
+    let table = |values: [f64; 4]| {
+        let times = values.into_iter().enumerate().map(|(k, v)| (k as f64 + 1.0, v));
+        History::table([(0.0, 0.0)].into_iter().chain(times).collect()).expect("history")
+    };
+    let push = || table([0.5, 1.0, 0.5, 0.0]);
+    let rough = |contact: Contact| contact.with_friction(Friction::coulomb(0.1));
+    for seed in 1..9 {
+        let mesh = Brick::new([1.0; 3], [2; 3])
+            .perturbed(0.15, seed)
+            .build()
+            .expect("mesh");
+        let warm = Load::eigenstrain(Eigenstrain::expansion(-5e-3));
+        let scene = Scene::new(mesh, uniform(1.0, 0.0))
+            .with_load(Load::pressure(brick::Z_MAX, 1e-2).with_history(push()))
+            .with_load(Load::traction(brick::Z_MAX, [5e-4, 2e-4, 0.0]).with_history(push()))
+            .with_load(warm.with_history(table([1.0, -1.0, 1.0, 0.0])))
+            .with_contact(rough(Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0, 0.0, 1.0])))
+            .with_contact(rough(Contact::rigid(brick::Z_MAX)))
+            .with_analysis(Analysis::quasistatic(4.0, 4));
+        let (_, results) = run(scene, Settings::default());
+        let mean = |k: usize| {
+            let u = results[k].displacement.as_chunks::<3>().0;
+            u.iter().map(|u| u[0]).sum::<f64>() / u.len() as f64
+        };
+        // what it expands by moves its centre by a twentieth of that
+        assert!(
+            (mean(3) - mean(2)).abs() < 0.1 * mean(2),
+            "{seed}: {:e} {:e}",
+            mean(2),
+            mean(3)
+        );
+        assert!(results[3].summary.normal_force.abs() < 1e-9 * results[2].summary.normal_force);
+    }
 }
