@@ -73,7 +73,8 @@ pub(super) fn check_penetration(
     Ok(())
 }
 
-/// How deep a point is because an earlier step left it there, m, as far as solvers do; `None` where that step is not
+/// How deep a point is because an earlier step left it there, m, as far as solvers do, or as the last step had it: with
+/// compliance a point is deep, and so may be a mean of which supports held a good part. `None` where that step is not
 /// solved yet.
 fn slack(
     scene: &Scene,
@@ -99,10 +100,19 @@ fn slack(
     let before = scene.stage_steps().start.checked_sub(1);
     let pose = before.and_then(|step| poses[point.surface].get(step));
     let gap = point.gap_after(scene, pose.unwrap_or(&Pose::default()))?;
-    let along = fixed
-        .normal
-        .iter()
-        .filter(|(case, _)| supports.left.contains(&(*case as usize)));
-    let depth = along.map(|(_, value)| value).sum::<f64>() - gap;
-    Ok(Some(depth.clamp(0.0, most)))
+    let place = |factor: &dyn Fn(usize) -> f64| -> f64 {
+        let along = fixed.normal.iter();
+        along.map(|&(case, value)| factor(case as usize) * value).sum()
+    };
+    let is_left = |case: usize| supports.left.contains(&case);
+    let left = place(&|case| f64::from(u8::from(is_left(case)))) - gap;
+    let slack = left.clamp(0.0, most);
+    // as deep as it was, with others that moved then, if the contact acted: that step was judged
+    let time = before.and_then(|step| scene.analysis.time(step));
+    let acted = time.filter(|time| scene.contacts[point.surface].span.has(*time));
+    let was = acted.map(|time| {
+        let factor = |case| if is_left(case) { 1.0 } else { supports.motions[case].value(time) };
+        place(&factor) - gap
+    });
+    Ok(Some(was.map_or(slack, |was| was.max(slack))))
 }

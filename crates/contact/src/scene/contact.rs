@@ -322,7 +322,8 @@ impl Contact {
     /// of other codes (N/m³, the slope of a linear pressure-overclosure).
     ///
     /// Contacts that meet at a node with the same normal need the same compliances and gaps. A node that a support
-    /// holds along the normal must still not be inside the obstacle, since no pressure is known there.
+    /// holds along the normal must still not be inside the obstacle, since no pressure is known there; one that
+    /// [starts](crate::Support::with_start) holds nodes as deep as it finds them.
     pub fn with_normal_compliance(mut self, compliance: f64) -> Self {
         self.compliance[0] = compliance;
         self

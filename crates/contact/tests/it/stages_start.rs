@@ -268,3 +268,35 @@ fn supports_that_start_lead_into_no_obstacle() {
     let error = into(9e-7).unwrap_err();
     assert!(matches!(error, ContactError::SupportInObstacle { .. }), "{error}");
 }
+
+/// As deep as it is left is, beside a clamp, a mean around a corner of quadratic facets, and what presses on a rough
+/// surface. They were refused in the middle of the run.
+#[test]
+fn supports_start_where_contact_has_left_their_nodes() {
+    for (quadratic, compliance, friction) in [
+        (true, 0.0, 0.0),
+        (true, 0.0, 0.3),
+        (false, 1e-2, 0.0),
+        (false, 1e-2, 0.3),
+    ] {
+        let mesh = block([2.0, 1.0, 1.0], [2, 1, 1]);
+        let mesh = if quadratic { mesh.raise_order().expect("mesh") } else { mesh };
+        let floor = Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(friction));
+        for side in [brick::X_MAX, brick::Y_MAX] {
+            let scene = Scene::new(mesh.clone(), uniform(1.0, 0.3))
+                .with_support(Support::fixed(brick::X_MIN))
+                .with_support(Support::fixed(side).with_start(2.0))
+                .with_load(Load::pressure(brick::Z_MAX, 1e-3).with_history(ramp()))
+                .with_contact(floor.clone().with_normal_compliance(compliance))
+                .with_analysis(Analysis::quasistatic(4.0, 4));
+            let (simulation, results) = run(scene, Settings::default());
+            let [before, after] = [1, 3].map(|k| results[k].displacement.as_chunks::<3>().0);
+            let largest = before.iter().map(|u| norm(u)).fold(0.0, f64::max);
+            for node in simulation.scene().mesh().nodes_on(side) {
+                let [from, to] = [before, after].map(|u| u[node as usize]);
+                let moved = norm(&[0, 1, 2].map(|c| to[c] - from[c])) / largest;
+                assert!(moved < 1e-5, "{quadratic}, {compliance}, {friction}: {moved:e}");
+            }
+        }
+    }
+}
