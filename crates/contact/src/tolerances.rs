@@ -418,6 +418,10 @@ pub(crate) const HELD_BY_TILT: f64 = 0.2;
 /// rather a mistake in units.
 pub(crate) const LARGE_GAP: f64 = 1.0;
 
+/// Overlap of bodies that nobody told, over that, above which it is rather one of their places: press fits have a
+/// thousandth, and steel yields before it is strained by a hundredth.
+pub(crate) const LARGE_OVERLAP: f64 = 0.01;
+
 /// Overlaps over [`ROUNDING`] that coordinates written with eleven digits make; they are closed without a word.
 pub(crate) const DIGITS: f64 = 30.0;
 

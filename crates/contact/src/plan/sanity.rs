@@ -4,8 +4,8 @@ use super::never;
 use super::unmerged::unmerged;
 use crate::discrete::{ContactPoint, DiscreteScene, Extents, FacetedOverlaps, SurfaceSide, creases, of_contact};
 use crate::report::Warning;
-use crate::scene::{Contact, ContactNormal, Coupling, Equation, Friction, Load, Scene, Support};
-use crate::tolerances::{LARGE_COEFFICIENT, LARGE_GAP, LOCKING};
+use crate::scene::{Contact, ContactNormal, Coupling, Equation, Friction, Gap, Load, Scene, Support};
+use crate::tolerances::{LARGE_COEFFICIENT, LARGE_GAP, LARGE_OVERLAP, LOCKING};
 use signorini_fem_mesh::History;
 use std::collections::HashSet;
 
@@ -25,6 +25,7 @@ pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> 
         locking(scene, &present),
         idle_contact(scene, discrete),
         large_gap(scene, discrete),
+        large_overlap(scene, discrete),
         closed,
         pressing,
         crease_between(scene, discrete),
@@ -125,6 +126,35 @@ fn large_gap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
         place: point.position,
         gap: point.gap,
         extent: extents.at(point.node()),
+    })
+}
+
+/// The deepest overlap that is measured between bodies, if it strains one more than a press fit does.
+fn large_overlap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
+    let is_measured = |p: &&ContactPoint| {
+        let contact = &scene.contacts[p.surface];
+        !contact.tied
+            && !contact.partner.is_empty()
+            && contact.gap_history.is_none()
+            && matches!(contact.gap, Gap::Measured)
+    };
+    let deepest = discrete
+        .points
+        .iter()
+        .filter(is_measured)
+        .min_by(|a, b| a.gap.total_cmp(&b.gap))?;
+    // a body is no smaller than its parts: that is enough for most scenes
+    let most = |extent: f64| discrete.rounding.max(LARGE_OVERLAP * extent);
+    if -deepest.gap <= most(Extents::of_part(&scene.mesh, &discrete.decomposition, deepest.node())) {
+        return None;
+    }
+    let extent = Extents::new(&scene.mesh, &discrete.decomposition).at(deepest.node());
+    (-deepest.gap > most(extent)).then(|| Warning::LargeOverlap {
+        contact: deepest.surface,
+        node: deepest.node(),
+        place: deepest.position,
+        overlap: -deepest.gap,
+        extent,
     })
 }
 

@@ -17,6 +17,7 @@ signorini_fem_mesh::errors! {
     ///
     /// The thresholds are a tenth of the body for displacements, 0.05 for its rotation, 5 % for strains, an edge of a
     /// facet for slips, 0.1 for the turn of normals, the angle of a crease, a fifth of the loads for what tilted facets hold, the body for gaps,
+    /// a hundredth of it for overlaps,
     /// a tenth of an overlap for the distance of facets from their curve, 3 for coefficients, 0.45 for Poisson's ratios
     /// of linear tetrahedra and 10 % for the error of the mesh. A body is as long as the longest side of the box around
     /// it; its rotation is that which fits the displacements of its nodes best. Strain is measured per tetrahedron by
@@ -70,6 +71,11 @@ signorini_fem_mesh::errors! {
             "contact {contact} begins {:.3e} {} its obstacle even at the nearest node, {node} at {}, and the body is \
             {extent:.3e} long; look at the unit of the gap and at the places of the bodies",
             gap.abs(), if *gap < 0.0 { "inside" } else { "from" }, told(place);
+        LargeOverlap { contact: usize, node: u32, place: [f64; 3], overlap: f64, extent: f64 } =
+            "contact {contact} begins {overlap:.3e} inside what it touches at node {node}, {}, {:.1} % of the {extent:.3e} that \
+            the body there is long; so measured, it presses, whatever the loads are: look at the places of the bodies, or \
+            tell the gap (with_gap, 0 for sides that touch, negative for a press fit)",
+            told(place), 100.0 * overlap / extent;
         FacetedOverlap { contact: usize, node: u32, place: [f64; 3], overlap: f64, sagitta: f64 } =
             "contact {contact} begins {overlap:.3e} inside what it touches at node {node}, {}, between facets that are \
             {sagitta:.3e} beside the curve that they stand for, which is measured with it and presses all the same: tell \
@@ -148,6 +154,7 @@ impl Warning {
                 vec![Part::Step(*step), Part::Node(*node), Part::Contact(*contact)]
             }
             Self::LargeGap { contact, node, .. }
+            | Self::LargeOverlap { contact, node, .. }
             | Self::FacetedOverlap { contact, node, .. }
             | Self::ClosedOverlaps { contact, node, .. }
             | Self::CreaseBetween { contact, node, .. }

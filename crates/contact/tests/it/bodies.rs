@@ -276,3 +276,41 @@ fn a_ball_joint_carries_its_share() {
     let (_, results) = run(held, at(1e-9));
     assert!(norm(&results[0].displacement) > 0.0);
 }
+
+/// A brick that begins inside another one presses, though hardly anybody means it: said once, unless a gap is told.
+#[test]
+fn a_body_far_inside_another_one_is_told() {
+    let base = block([2.0, 2.0, 1.0], [3, 3, 2]);
+    let overlaps = |depth: f64, told: &dyn Fn(Contact) -> Contact| {
+        let mesh = with_second(&lifted(&block([1.0; 3], [2; 3]), 1.0 - depth), &base);
+        let contact = Contact::between(brick::Z_MIN, second(brick::Z_MAX));
+        let scene = Scene::new(mesh, uniform(1e9, 0.3))
+            .with_support(Support::fixed(second(brick::Z_MIN)))
+            .with_support(Support::fixed(brick::Z_MAX))
+            .with_load(Load::pressure(second(brick::Y_MAX), 1.0))
+            .with_contact(told(contact));
+        let plan = Plan::new(&scene, &Settings::default()).expect("plan");
+        let large = |w: &&Warning| matches!(w, Warning::LargeOverlap { .. });
+        plan.warnings().iter().find(large).cloned()
+    };
+    let measured = |contact: Contact| contact;
+    let warning = overlaps(0.05, &measured).expect("a warning");
+    let Warning::LargeOverlap {
+        contact: 0,
+        overlap,
+        extent,
+        ..
+    } = warning
+    else {
+        panic!("{warning}");
+    };
+    // of the body that keeps the points, that with the larger facets
+    assert!((overlap - 0.05).abs() < 1e-12 && extent == 2.0, "{warning}");
+    assert!(
+        warning.to_string().contains("5.000e-2 inside") && warning.to_string().contains(" 2.5 %"),
+        "{warning}"
+    );
+    assert_eq!(overlaps(0.01, &measured), None);
+    assert_eq!(overlaps(0.05, &|contact| contact.with_gap(-0.05)), None);
+    assert_eq!(overlaps(0.05, &|contact| contact.with_gap(0.0)), None);
+}
