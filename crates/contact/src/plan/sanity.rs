@@ -106,56 +106,67 @@ fn idle_contact(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
 
 /// The first contact whose nearest point is further away than its body is long.
 fn large_gap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
-    let mut nearest: Vec<Option<&ContactPoint>> = vec![None; scene.contacts.len()];
-    for point in &discrete.points {
-        let best = &mut nearest[point.surface];
-        if best.is_none_or(|known| point.gap.abs() < known.gap.abs()) {
-            *best = Some(point);
-        }
-    }
-    // a body is no smaller than its parts: that is enough for most scenes
-    let part = |node: u32| Extents::of_part(&scene.mesh, &discrete.decomposition, node);
-    let far = |p: &&ContactPoint| p.gap.abs() > discrete.rounding.max(LARGE_GAP * part(p.node()));
-    let mut far = nearest.into_iter().flatten().filter(far).peekable();
-    far.peek()?;
-    let extents = Extents::new(&scene.mesh, &discrete.decomposition);
-    let point = far.find(|p| p.gap.abs() > LARGE_GAP * extents.at(p.node()))?;
+    let nearest = least_of_contacts(scene, discrete, f64::abs);
+    let (point, extent) = beyond(scene, discrete, LARGE_GAP, nearest)?;
     Some(Warning::LargeGap {
         contact: point.surface,
         node: point.node(),
         place: point.position,
         gap: point.gap,
-        extent: extents.at(point.node()),
+        extent,
     })
 }
 
-/// The deepest overlap that is measured between bodies, if it strains one more than a press fit does.
+/// The first contact whose deepest overlap is measured between bodies and strains one more than a press fit does.
 fn large_overlap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
     let is_measured = |p: &&ContactPoint| {
         let contact = &scene.contacts[p.surface];
-        !contact.tied
-            && !contact.partner.is_empty()
-            && contact.gap_history.is_none()
-            && matches!(contact.gap, Gap::Measured)
+        let between = !contact.tied && !contact.partner.is_empty();
+        between && contact.gap_history.is_none() && matches!(contact.gap, Gap::Measured)
     };
-    let deepest = discrete
-        .points
-        .iter()
-        .filter(is_measured)
-        .min_by(|a, b| a.gap.total_cmp(&b.gap))?;
-    // a body is no smaller than its parts: that is enough for most scenes
-    let most = |extent: f64| discrete.rounding.max(LARGE_OVERLAP * extent);
-    if -deepest.gap <= most(Extents::of_part(&scene.mesh, &discrete.decomposition, deepest.node())) {
-        return None;
-    }
-    let extent = Extents::new(&scene.mesh, &discrete.decomposition).at(deepest.node());
-    (-deepest.gap > most(extent)).then(|| Warning::LargeOverlap {
-        contact: deepest.surface,
-        node: deepest.node(),
-        place: deepest.position,
-        overlap: -deepest.gap,
+    let mut deepest = least_of_contacts(scene, discrete, |gap| gap);
+    deepest.retain(|p| p.gap < 0.0 && is_measured(p));
+    let (point, extent) = beyond(scene, discrete, LARGE_OVERLAP, deepest)?;
+    Some(Warning::LargeOverlap {
+        contact: point.surface,
+        node: point.node(),
+        place: point.position,
+        overlap: -point.gap,
         extent,
     })
+}
+
+/// The point of each contact whose gap is least as `size` has it.
+fn least_of_contacts<'a>(
+    scene: &Scene,
+    discrete: &'a DiscreteScene,
+    size: impl Fn(f64) -> f64,
+) -> Vec<&'a ContactPoint> {
+    let mut least: Vec<Option<&ContactPoint>> = vec![None; scene.contacts.len()];
+    for point in &discrete.points {
+        let best = &mut least[point.surface];
+        if best.is_none_or(|known| size(point.gap) < size(known.gap)) {
+            *best = Some(point);
+        }
+    }
+    least.into_iter().flatten().collect()
+}
+
+/// The first of the points at a gap beyond that part of the length of its body, and that length.
+fn beyond<'a>(
+    scene: &Scene,
+    discrete: &DiscreteScene,
+    part: f64,
+    points: Vec<&'a ContactPoint>,
+) -> Option<(&'a ContactPoint, f64)> {
+    // a body is no smaller than its parts: that is enough for most scenes
+    let of_part = |node: u32| Extents::of_part(&scene.mesh, &discrete.decomposition, node);
+    let far = |p: &&ContactPoint| p.gap.abs() > discrete.rounding.max(part * of_part(p.node()));
+    let mut far = points.into_iter().filter(far).peekable();
+    far.peek()?;
+    let extents = Extents::new(&scene.mesh, &discrete.decomposition);
+    far.map(|p| (p, extents.at(p.node())))
+        .find(|(p, extent)| p.gap.abs() > part * extent)
 }
 
 /// Overlaps about as deep as facets are beside the curve that they stand for: those that are closed, and those that
