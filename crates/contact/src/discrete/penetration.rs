@@ -43,8 +43,7 @@ pub(super) fn check_penetration(
             };
             let point = &points[fixed.point];
             let gap = point.gap_after(scene, poses[point.surface].get(step).unwrap_or(&rest))?;
-            let along = fixed.normal.iter();
-            let displacement: f64 = along.map(|&(case, value)| factors[case as usize] * value).sum();
+            let displacement = displacement(fixed, |case| factors[case]);
             let depth = displacement - gap;
             let allowed = rounding + slack + DEPTH * gap.abs().max(displacement.abs());
             if depth > allowed && deepest.is_none_or(|d| depth > d.0) {
@@ -100,19 +99,21 @@ fn slack(
     let before = scene.stage_steps().start.checked_sub(1);
     let pose = before.and_then(|step| poses[point.surface].get(step));
     let gap = point.gap_after(scene, pose.unwrap_or(&Pose::default()))?;
-    let place = |factor: &dyn Fn(usize) -> f64| -> f64 {
-        let along = fixed.normal.iter();
-        along.map(|&(case, value)| factor(case as usize) * value).sum()
-    };
     let is_left = |case: usize| supports.left.contains(&case);
-    let left = place(&|case| f64::from(u8::from(is_left(case)))) - gap;
+    let left = displacement(fixed, |case| f64::from(u8::from(is_left(case)))) - gap;
     let slack = left.clamp(0.0, most);
     // as deep as it was, with others that moved then, if the contact acted: that step was judged
     let time = before.and_then(|step| scene.analysis.time(step));
     let acted = time.filter(|time| scene.contacts[point.surface].span.has(*time));
     let was = acted.map(|time| {
         let factor = |case| if is_left(case) { 1.0 } else { supports.motions[case].value(time) };
-        place(&factor) - gap
+        displacement(fixed, factor) - gap
     });
     Ok(Some(was.map_or(slack, |was| was.max(slack))))
+}
+
+/// How far a point is displaced along its normal, m, where the motions have these factors.
+fn displacement(fixed: &PrescribedPoint, factor: impl Fn(usize) -> f64) -> f64 {
+    let along = fixed.normal.iter();
+    along.map(|&(case, value)| factor(case as usize) * value).sum()
 }

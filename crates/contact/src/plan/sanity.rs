@@ -106,7 +106,7 @@ fn idle_contact(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
 
 /// The first contact whose nearest point is further away than its body is long.
 fn large_gap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
-    let nearest = least_of_contacts(scene, discrete, f64::abs);
+    let nearest = (0..scene.contacts.len()).filter_map(|index| least_gap(discrete, index, f64::abs));
     let (point, extent) = beyond(scene, discrete, LARGE_GAP, nearest)?;
     Some(Warning::LargeGap {
         contact: point.surface,
@@ -119,13 +119,13 @@ fn large_gap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
 
 /// The first contact whose deepest overlap is measured between bodies and strains one more than a press fit does.
 fn large_overlap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
-    let is_measured = |p: &&ContactPoint| {
-        let contact = &scene.contacts[p.surface];
+    let is_measured = |(_, contact): &(usize, &Contact)| {
         let between = !contact.tied && !contact.partner.is_empty();
         between && contact.gap_history.is_none() && matches!(contact.gap, Gap::Measured)
     };
-    let mut deepest = least_of_contacts(scene, discrete, |gap| gap);
-    deepest.retain(|p| p.gap < 0.0 && is_measured(p));
+    let measured = scene.contacts.iter().enumerate().filter(is_measured);
+    let deepest = measured.filter_map(|(index, _)| least_gap(discrete, index, |gap| gap));
+    let deepest = deepest.filter(|point| point.gap < 0.0);
     let (point, extent) = beyond(scene, discrete, LARGE_OVERLAP, deepest)?;
     Some(Warning::LargeOverlap {
         contact: point.surface,
@@ -136,20 +136,10 @@ fn large_overlap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
     })
 }
 
-/// The point of each contact whose gap is least as `size` has it.
-fn least_of_contacts<'a>(
-    scene: &Scene,
-    discrete: &'a DiscreteScene,
-    size: impl Fn(f64) -> f64,
-) -> Vec<&'a ContactPoint> {
-    let mut least: Vec<Option<&ContactPoint>> = vec![None; scene.contacts.len()];
-    for point in &discrete.points {
-        let best = &mut least[point.surface];
-        if best.is_none_or(|known| size(point.gap) < size(known.gap)) {
-            *best = Some(point);
-        }
-    }
-    least.into_iter().flatten().collect()
+/// The point of a contact whose gap is least as `size` has it.
+fn least_gap(discrete: &DiscreteScene, index: usize, size: fn(f64) -> f64) -> Option<&ContactPoint> {
+    let points = &discrete.points[of_contact(&discrete.points, index)];
+    points.iter().min_by(|a, b| size(a.gap).total_cmp(&size(b.gap)))
 }
 
 /// The first of the points at a gap beyond that part of the length of its body, and that length.
@@ -157,12 +147,12 @@ fn beyond<'a>(
     scene: &Scene,
     discrete: &DiscreteScene,
     part: f64,
-    points: Vec<&'a ContactPoint>,
+    points: impl Iterator<Item = &'a ContactPoint>,
 ) -> Option<(&'a ContactPoint, f64)> {
     // a body is no smaller than its parts: that is enough for most scenes
     let of_part = |node: u32| Extents::of_part(&scene.mesh, &discrete.decomposition, node);
     let far = |p: &&ContactPoint| p.gap.abs() > discrete.rounding.max(part * of_part(p.node()));
-    let mut far = points.into_iter().filter(far).peekable();
+    let mut far = points.filter(far).peekable();
     far.peek()?;
     let extents = Extents::new(&scene.mesh, &discrete.decomposition);
     far.map(|p| (p, extents.at(p.node())))

@@ -16,12 +16,12 @@ signorini_fem_mesh::errors! {
     /// [plain](Self::plain) one.
     ///
     /// The thresholds are a tenth of the body for displacements, 0.05 for its rotation, 5 % for strains, an edge of a
-    /// facet for slips, 0.1 for the turn of normals, the angle of a crease, a fifth of the loads for what tilted facets hold, the body for gaps,
-    /// a hundredth of it for overlaps,
-    /// a tenth of an overlap for the distance of facets from their curve, 3 for coefficients, 0.45 for Poisson's ratios
-    /// of linear tetrahedra and 10 % for the error of the mesh. A body is as long as the longest side of the box around
-    /// it; its rotation is that which fits the displacements of its nodes best. Strain is measured per tetrahedron by
-    /// the Frobenius norm; at clamped edges the strain of linear theory grows without bound as the mesh is refined.
+    /// facet for slips, 0.1 for the turn of normals, the angle of a crease, a fifth of the loads for what tilted facets
+    /// hold, the body for gaps, a hundredth of it for overlaps, a tenth of an overlap for the distance of facets from
+    /// their curve, 3 for coefficients, 0.45 for Poisson's ratios of linear tetrahedra and 10 % for the error of the
+    /// mesh. A body is as long as the longest side of the box around it; its rotation is that which fits the
+    /// displacements of its nodes best. Strain is measured per tetrahedron by the Frobenius norm; at clamped edges the
+    /// strain of linear theory grows without bound as the mesh is refined.
     ///
     /// Fields: `step` from 0; `node`, `tet`, `contact` and `region` are numbers in mesh and scene; `place` and lengths
     /// in m (of a tetrahedron its centroid), `turn` in degrees, other figures relative, `mode` a motion in words.
