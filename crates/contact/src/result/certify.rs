@@ -162,6 +162,7 @@ mod tests {
         let measured = Measured {
             model: &model,
             problem: &problem,
+            tolerance: Settings::default().tolerance,
             lambda: &lambda,
             rows: &lambda,
             u: &u,
@@ -264,6 +265,7 @@ mod tests {
             let measured = Measured {
                 model: &model,
                 problem: &problem,
+                tolerance: Settings::default().tolerance,
                 lambda: &lambda,
                 rows: &rows,
                 u: &vec![1e-3; torn],

@@ -30,12 +30,12 @@ pub(crate) struct Recovered {
 }
 
 impl Recovered {
-    /// From multipliers and rigid amplitudes, in the memory of an `old` one; one product with F.
+    /// From multipliers and rigid amplitudes, found to the tolerance of the settings, in the memory of an `old` one;
+    /// one product with F.
     pub(crate) fn new(
-        model: &Model,
-        problem: &StepProblem,
-        lambda: &[f64],
-        alpha: &[f64],
+        (model, problem): (&Model, &StepProblem),
+        tolerance: f64,
+        [lambda, alpha]: [&[f64]; 2],
         old: Self,
     ) -> Result<Self, ContactError> {
         let tfeti = &model.tfeti;
@@ -52,6 +52,7 @@ impl Recovered {
         let measured = Measured {
             model,
             problem,
+            tolerance,
             lambda,
             rows: &rows,
             u: &torn,

@@ -2,8 +2,8 @@
 
 use crate::model::Model;
 use crate::state::Peak;
-use crate::step::StepProblem;
-use crate::tolerances::{FORCE_ROUNDING, REST, SMALL_FORCE};
+use crate::step::{StepProblem, force_rounding};
+use crate::tolerances::{LEAST_TOLERANCE, REST, SMALL_FORCE};
 use signorini_qp::vector;
 use signorini_tfeti::internal::RIGID;
 
@@ -11,6 +11,8 @@ use signorini_tfeti::internal::RIGID;
 pub(super) struct Measured<'a> {
     pub(super) model: &'a Model,
     pub(super) problem: &'a StepProblem,
+    /// Of the settings.
+    pub(super) tolerance: f64,
     pub(super) lambda: &'a [f64],
     /// `B u`, and what springs and contact give way, in row units.
     pub(super) rows: &'a [f64],
@@ -105,7 +107,7 @@ pub(super) fn sizes(m: &Measured<'_>) -> Vec<Sizes> {
         own.displacement = own.displacement.max(REST * peak.displacement);
         // likewise where no force acts, or next to none on the contact surface
         // and where displacements leave nothing of a force but rounding errors
-        let rounding = FORCE_ROUNDING * own.stiff.sqrt();
+        let rounding = force_rounding(m.tolerance.max(LEAST_TOLERANCE)) * own.stiff.sqrt();
         let outer = own.forces.sqrt().max(REST * peak.multipliers).max(rounding);
         own.contact_force = own
             .contact_force

@@ -9,4 +9,4 @@ pub(crate) mod example;
 mod problem;
 mod slip_bounds;
 
-pub(crate) use problem::{StepProblem, entry_or_zero};
+pub(crate) use problem::{StepProblem, entry_or_zero, force_rounding};

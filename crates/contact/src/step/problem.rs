@@ -276,7 +276,7 @@ impl StepProblem {
     /// those of contact.
     pub(crate) fn least(&self, tolerance: f64) -> [f64; 2] {
         let sizes: [fn(&Peak) -> f64; 2] = [|p| p.multipliers, |p| p.force];
-        let rounded = FORCE_ROUNDING.max(REACHED / tolerance);
+        let rounded = force_rounding(tolerance);
         sizes.map(|size| match self.peaks.len() {
             0 | 1 => self.at_rest(0, rounded, size),
             n => (0..n)
@@ -317,6 +317,12 @@ impl StepProblem {
         }
         force
     }
+}
+
+/// Part of displacement times stiffness that forces are measured against at least, where errors of this part of them
+/// are asked for.
+pub(crate) fn force_rounding(tolerance: f64) -> f64 {
+    FORCE_ROUNDING.max(REACHED / tolerance)
 }
 
 /// A value by row of a table that may end before; zero there.

@@ -99,7 +99,8 @@ fn a_body_that_is_lowered_touches_at_the_right_step() {
 #[test]
 fn a_rigid_motion_costs_little() {
     let motion = [1e-3, -2e-3, 5e-4];
-    for contact in [false, true] {
+    let cases = [(false, Settings::default()), (true, Settings::default()), (true, at(1e-10))];
+    for (contact, settings) in cases {
         let mut scene = Scene::new(block([2.0, 1.0, 1.0], [8, 4, 4]), steel())
             .with_support(Support::fixed(brick::X_MIN).with_motion(motion, ramp()))
             .with_support(Support::fixed(brick::X_MAX).with_motion(motion, ramp()))
@@ -109,10 +110,11 @@ fn a_rigid_motion_costs_little() {
             let floor = Contact::rigid(brick::Z_MIN).with_gap(1e-2);
             scene = scene.with_contact(floor.with_friction(Friction::coulomb(0.3)));
         }
-        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        let what = format!("contact {contact} to {:e}", settings.tolerance());
+        let mut simulation = Simulation::new(scene, settings).expect("set-up");
         while !simulation.is_finished() {
             let result = step(&mut simulation);
-            assert_cheap(&result, &format!("contact {contact}"));
+            assert_cheap(&result, &what);
             for u in result.displacement.chunks_exact(3) {
                 for (u, m) in u.iter().zip(motion) {
                     assert!((u - result.time * m).abs() < 1e-12, "{u:e}");
