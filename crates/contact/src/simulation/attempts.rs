@@ -147,7 +147,12 @@ impl Simulation {
         }
         let (model, problem) = (&self.model, &self.problem);
         let lambda = problem.multipliers(&self.iterate.lambda);
-        let recovered = Recovered::new((model, problem), self.settings.tolerance, [&lambda, &self.iterate.alpha], old)?;
+        let recovered = Recovered::new(
+            (model, problem),
+            self.settings.tolerance,
+            [&lambda, &self.iterate.alpha],
+            old,
+        )?;
         report.counters.products += 1;
         let stands = self.stand(state, recovered, Targets::new())?;
         if stands.certificate.largest() <= self.settings.tolerance {

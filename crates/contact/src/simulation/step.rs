@@ -139,7 +139,12 @@ impl Simulation {
         let mut report = solved?;
         let old = std::mem::take(&mut self.spare);
         let lambda = problem.multipliers(&iterate.lambda);
-        let recovered = Recovered::new((model, problem), self.settings.tolerance, [&lambda, &iterate.alpha], old);
+        let recovered = Recovered::new(
+            (model, problem),
+            self.settings.tolerance,
+            [&lambda, &iterate.alpha],
+            old,
+        );
         model.tfeti.check_processes()?;
         let recovered = recovered?;
         report.counters.products += 1;

@@ -229,7 +229,12 @@ impl Simulation {
             }
         }
         let lambda = problem.multipliers(from.lambda);
-        let placed = Recovered::new((model, problem), self.settings.tolerance, [&lambda, &alpha], Recovered::default())?;
+        let placed = Recovered::new(
+            (model, problem),
+            self.settings.tolerance,
+            [&lambda, &alpha],
+            Recovered::default(),
+        )?;
         Ok(Some((alpha, placed)))
     }
 

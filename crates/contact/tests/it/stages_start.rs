@@ -300,3 +300,44 @@ fn supports_start_where_contact_has_left_their_nodes() {
         }
     }
 }
+
+/// Under a constant load nothing moves where a support starts, though it holds a part of the mean that a contact row
+/// takes: of quadratic elements on a floor, and of meshes that do not match.
+#[test]
+fn supports_that_start_under_a_constant_load_move_nothing() {
+    let upper = |cells| block([2.0, 1.0, 1.0], cells);
+    let lower = block([2.0, 1.0, 0.5], [5, 3, 1]);
+    let lower = lower.map_points(|x| [x[0], x[1], x[2] - 0.5]).expect("moved");
+    let lower = lower.map_tags(|tag| FacetTag(tag.0 + 10));
+    let pair = upper([4, 2, 2]).append(&lower).expect("bodies");
+    let base = FacetTag(brick::Z_MIN.0 + 10);
+    let seat = FacetTag(brick::Z_MAX.0 + 10);
+    let quadratic = |mesh: &TetMesh| mesh.raise_order().expect("order 2");
+    let floor = Contact::rigid(brick::Z_MIN);
+    let between = Contact::between(brick::Z_MIN, seat);
+    let cases = [
+        (quadratic(&upper([2, 1, 1])), floor, false),
+        (quadratic(&pair), between.clone(), true),
+        (pair, between, true),
+    ];
+    for (mesh, contact, two) in cases {
+        let loaded = History::table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, 1.0)]).expect("table");
+        let mut scene = Scene::new(mesh, uniform(1e9, 0.3))
+            .with_contact(contact.with_friction(Friction::coulomb(0.3)))
+            .with_load(Load::pressure(brick::Z_MAX, 1e6).with_history(loaded.clone()))
+            .with_load(Load::force(brick::X_MAX, [2e5, 0.0, 0.0]).with_history(loaded))
+            .with_support(Support::fixed(brick::X_MIN).with_start(1.0))
+            .with_analysis(Analysis::quasistatic(2.0, 2));
+        if two {
+            scene = scene.with_support(Support::fixed(base));
+            scene = scene.with_support(Support::fixed(FacetTag(brick::X_MIN.0 + 10)).with_start(1.0));
+        }
+        let (simulation, steps) = run(scene, at(1e-8));
+        let order = simulation.scene().mesh().order();
+        let [before, after] = [0, 1].map(|k| &steps[k].displacement);
+        assert_close(after, before, 1e-7, &format!("order {order}, two bodies {two}"));
+        let result = simulation.result().expect("steps");
+        let reaction = norm(&result.reactions().supports[0].resultant.force);
+        assert!(reaction < 10.0, "{reaction:e}");
+    }
+}

@@ -99,7 +99,11 @@ fn a_body_that_is_lowered_touches_at_the_right_step() {
 #[test]
 fn a_rigid_motion_costs_little() {
     let motion = [1e-3, -2e-3, 5e-4];
-    let cases = [(false, Settings::default()), (true, Settings::default()), (true, at(1e-10))];
+    let cases = [
+        (false, Settings::default()),
+        (true, Settings::default()),
+        (true, at(1e-10)),
+    ];
     for (contact, settings) in cases {
         let mut scene = Scene::new(block([2.0, 1.0, 1.0], [8, 4, 4]), steel())
             .with_support(Support::fixed(brick::X_MIN).with_motion(motion, ramp()))

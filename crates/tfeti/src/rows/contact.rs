@@ -98,6 +98,8 @@ struct Space {
     /// Of each node its coefficient, signed, on the mean of its copies (as a unit vector of these), and the projector
     /// on what supports leave free.
     nodes: Vec<(f64, Matrix3<f64>)>,
+    /// Of each node the projector on what supports hold, but from where a solve has left it.
+    held: Vec<Matrix3<f64>>,
     /// Of each node what it adds by the turn of its side, as the coefficient; none where no side turns.
     turns: Vec<Matrix3<f64>>,
     /// Scale of a row of length one if there are no supports.
@@ -114,14 +116,20 @@ impl Space {
         let scale = sum.sqrt().recip();
         let mut prescribed: Vec<(u32, [f64; 3])> = Vec::new();
         let mut nodes = Vec::with_capacity(2);
+        let mut held = Vec::with_capacity(2);
         let mut turns = point.turns();
         for (k, (node, weight)) in point.nodes().enumerate() {
             let fixed = supports.at(node);
-            let mut free = Matrix3::identity();
+            let [mut free, mut own] = [Matrix3::identity(), Matrix3::zeros()];
             for direction in fixed.iter().flat_map(|f| &f.directions) {
                 let d = Vector3::from(direction.direction);
-                free -= d * d.transpose();
+                let along = d * d.transpose();
+                free -= along;
+                if !direction.left {
+                    own += along;
+                }
             }
+            held.push(own);
             nodes.push((scale * squares(node).sqrt() * weight, free));
             for (case, value) in fixed.map(FixedNode::prescribed).unwrap_or_default() {
                 let sum = entry(&mut prescribed, case, [0.0; 3]);
@@ -139,6 +147,7 @@ impl Space {
         let gram = nodes.iter().map(|(c, free)| free * (c * c)).sum();
         Self {
             nodes,
+            held,
             turns,
             scale,
             gram,
@@ -177,7 +186,8 @@ impl Space {
 
     /// Directions that supports fix at all nodes, and those in which they hold both sides, or one beside an obstacle: a
     /// node or a good part of a mean, along `normal` and at right angles to it. There, at a clamp or a plane of
-    /// symmetry that cuts both, a row would see no slip and no gap, but how displacements bend beside the plane.
+    /// symmetry that cuts both, a row would see no slip and no gap, but how displacements bend beside the plane. What is
+    /// held from where a solve has left it is in balance with the row.
     fn fixed(&self, point: &ContactConstraint, normal: Vector3<f64>) -> Vec<Vector3<f64>> {
         let eigen = SymmetricEigen::new(self.gram);
         let zero = FIXED * self.nodes.iter().map(|(c, _)| c * c).sum::<f64>();
@@ -186,8 +196,7 @@ impl Space {
         let (own, all) = (point.side.nodes().len(), self.nodes.len());
         if all > 2 || own > 1 {
             let along = |d: &Vector3<f64>| d * d.transpose();
-            let shares = point.nodes().zip(&self.nodes);
-            let shares = shares.map(|((_, w), (_, free))| (Matrix3::identity() - free) * w);
+            let shares = point.nodes().zip(&self.held).map(|((_, w), held)| held * w);
             let shares: Vec<Matrix3<f64>> = shares.collect();
             let is_pair = all > own;
             let other: Matrix3<f64> = match is_pair {
@@ -197,7 +206,7 @@ impl Space {
             };
             let least = point.side.held_from();
             let (own, least_of_other) = match own {
-                1 => (Matrix3::identity() - self.nodes[0].1, least),
+                1 => (self.held[0], least),
                 // the directions that supports hold at a good part of a mean
                 _ => {
                     let held = SymmetricEigen::new(shares[..own].iter().sum::<Matrix3<f64>>());

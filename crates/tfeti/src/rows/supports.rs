@@ -50,13 +50,20 @@ pub struct Motion {
     /// How far they may be off, m: where a solve has left nodes. Equations that supports say, too, then need not agree
     /// with them better. Zero for given ones.
     pub off: f64,
+    /// Whether they begin where a solve has left the nodes. Then contact that the support meets in part keeps its rows,
+    /// and its forces.
+    pub begins_there: bool,
 }
 
 impl Motion {
     /// Given displacements.
     pub fn new(case: u32, values: Vec<[f64; 3]>) -> Self {
-        let off = 0.0;
-        Self { case, values, off }
+        Self {
+            case,
+            values,
+            off: 0.0,
+            begins_there: false,
+        }
     }
 
     fn check(&self, support: usize, nodes: usize, supports: usize) -> Result<(), TfetiError> {
@@ -160,6 +167,8 @@ pub struct FixedDirection {
     pub direction: [f64; 3],
     /// `(case, value in metres)` along the direction, cases ascending, no zeros.
     pub(super) values: Vec<(u32, f64)>,
+    /// Whether it is held from where a solve has left it.
+    pub(super) left: bool,
     /// Position in the list of the first support that fixes it.
     pub support: usize,
 }
@@ -262,6 +271,7 @@ impl MergedSupports {
         let cases = supports.len().max(motions);
         for (s, support) in supports.iter().enumerate().filter(|(_, support)| holding(support)) {
             let of_nodes = unit_directions(s, support)?;
+            let left = support.motions.iter().any(|m| m.begins_there);
             for motion in &support.motions {
                 motion.check(s, support.nodes.len(), cases)?;
                 merged.cases = merged.cases.max(motion.case as usize + 1);
@@ -282,7 +292,7 @@ impl MergedSupports {
                 let entry = fixed.entry(node).or_insert_with(new);
                 let directions = if of_nodes.len() == 1 { &of_nodes[0] } else { &of_nodes[k] };
                 for direction in directions {
-                    add_direction(entry, s, *direction, &motions)?;
+                    add_direction(entry, (s, left), *direction, &motions)?;
                 }
             }
         }
@@ -334,7 +344,7 @@ fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<Vec<[f64; 3]>>
 /// Orthonormalises a direction against those already fixed, and adds it if something is left.
 fn add_direction(
     fixed_node: &mut FixedNode,
-    support: usize,
+    (support, left): (usize, bool),
     direction: [f64; 3],
     motions: &[(u32, [f64; 3])],
 ) -> Result<(), TfetiError> {
@@ -373,6 +383,7 @@ fn add_direction(
         fixed_node.directions.push(FixedDirection {
             direction,
             values,
+            left,
             support,
         });
         return Ok(());
