@@ -152,10 +152,12 @@ impl ActiveSetSolver {
             return self.stay(task, iterate, report);
         }
         report.status = match iterate.attempt {
-            Attempt::Brief => {
+            Attempt::Brief | Attempt::Apart => {
                 // whichever an earlier step has left in use a restart does not know
                 self.use_explicit(false, task, &mut report);
-                step_status(self.active_sets(task, iterate, (EASY, CIRCLES), &mut report)?)
+                // that nothing presses is soon found, however many products a linear problem takes
+                let most = if iterate.attempt == Attempt::Brief { EASY } else { usize::MAX };
+                step_status(self.active_sets(task, iterate, (most, CIRCLES), &mut report)?)
             }
             _ => step_status(self.active_sets_or_explicit(task, iterate, &mut report)?),
         };
@@ -166,8 +168,8 @@ impl ActiveSetSolver {
             }
             // another start comes before another method
             return match iterate.attempt {
-                Attempt::Brief => self.stay(task, iterate, report),
-                Attempt::First | Attempt::Apart if report.status.is_lost() => self.stay(task, iterate, report),
+                Attempt::Brief | Attempt::Apart => self.stay(task, iterate, report),
+                Attempt::First if report.status.is_lost() => self.stay(task, iterate, report),
                 _ => self.fall_back(task, iterate, report),
             };
         }
