@@ -185,7 +185,7 @@ const UPPER_BOTTOM: FacetTag = FacetTag(44);
 const LOWER_TOP: FacetTag = FacetTag(45);
 const LOWER_BOTTOM: FacetTag = FacetTag(46);
 const LOWER_END: FacetTag = FacetTag(47);
-const UPPER_END: FacetTag = FacetTag(48);
+pub(crate) const UPPER_END: FacetTag = FacetTag(48);
 
 /// Boxes of cells of one length unit: what is inside, told by centroids, and tags of its boundary.
 fn carved(
@@ -213,6 +213,11 @@ const CELL: f64 = 0.005;
 
 /// Two plates, the lower one held at its left end, and a bolt of 10 mm with play in their holes.
 pub(crate) fn joint(friction: f64, order: usize) -> Scene {
+    joint_with(friction, order, None)
+}
+
+/// The same, perhaps with a washer below the head, of facets with these tags above and below.
+pub(crate) fn joint_with(friction: f64, order: usize, washer: Option<[FacetTag; 2]>) -> Scene {
     let plate = |z: f64, left: f64, top: FacetTag, bottom: FacetTag, end: FacetTag| {
         let hole = |p: [f64; 3]| p[0].abs() > 2.0 * CELL || p[1].abs() > 2.0 * CELL;
         carved(([left, -4.0 * CELL, z], [10, 8, 2]), hole, move |p, n| match n {
@@ -235,18 +240,36 @@ pub(crate) fn joint(friction: f64, order: usize) -> Scene {
         },
     );
     let bolt = cut_at(&bolt, 2, 0.5 * CELL);
-    let mesh = lower
-        .append(&upper)
-        .and_then(|both| both.append(&bolt))
-        .expect("one mesh");
+    let (bolt, ring) = match washer {
+        None => (bolt, None),
+        Some([above, below]) => {
+            let lift = |p: [f64; 3]| if p[2] > 1.5 * CELL { CELL } else { 0.0 };
+            let bolt = bolt.map_points(|p| [p[0], p[1], p[2] + lift(p)]).expect("longer");
+            let hole = |p: [f64; 3]| p[0].abs() > 2.0 * CELL || p[1].abs() > 2.0 * CELL;
+            let corner = [-4.0 * CELL, -4.0 * CELL, 2.0 * CELL];
+            let ring = carved((corner, [8, 8, 1]), hole, move |_, n| match n {
+                [_, _, z] if z > 0.9 => Some(above),
+                [_, _, z] if z < -0.9 => Some(below),
+                _ => None,
+            });
+            (bolt, Some(ring))
+        }
+    };
+    let mesh = [&upper, &bolt].into_iter().chain(&ring);
+    let mesh = mesh.fold(lower, |all, part| all.append(part).expect("one mesh"));
     let mesh = if order == 2 { mesh.raise_order().expect("order 2") } else { mesh };
     let rough = |a, b| Contact::between(a, b).with_friction(Friction::coulomb(friction));
-    Scene::new(mesh, uniform(YOUNG, 0.3))
+    let scene = Scene::new(mesh, uniform(YOUNG, 0.3))
         .with_support(Support::fixed(LOWER_END))
         .with_contact(Contact::tied(FIRST, SECOND))
-        .with_contact(rough(UPPER_BOTTOM, LOWER_TOP))
-        .with_contact(rough(UNDER_HEAD, UPPER_TOP))
-        .with_contact(rough(ABOVE_NUT, LOWER_BOTTOM))
+        .with_contact(rough(UPPER_BOTTOM, LOWER_TOP));
+    let scene = match washer {
+        None => scene.with_contact(rough(UNDER_HEAD, UPPER_TOP)),
+        Some([above, below]) => scene
+            .with_contact(rough(UNDER_HEAD, above))
+            .with_contact(rough(below, UPPER_TOP)),
+    };
+    scene.with_contact(rough(ABOVE_NUT, LOWER_BOTTOM))
 }
 
 /// The bolt tightened to 10 kN until 1 s, then a force on the upper plate until 2 s.
