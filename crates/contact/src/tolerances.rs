@@ -414,6 +414,12 @@ pub(crate) const LONG_SLIP: f64 = 1.0;
 pub(crate) const TILT_MATTERS: f64 = 0.01;
 pub(crate) const HELD_BY_TILT: f64 = 0.2;
 
+/// Of a motion of bodies that slide wherever they are pressed: what normals and slip across it block, over what they
+/// block of others, up to which it is neutral (elastic slip turns by a thousandth); and the least way that it has, over
+/// the longest slip, from which on it is told.
+pub(crate) const NEUTRAL: f64 = 1e-4;
+pub(crate) const NEUTRAL_WAY: f64 = 0.5;
+
 /// Distance of the nearest point of a contact, over the longest side of the box around the body, above which it is
 /// rather a mistake in units.
 pub(crate) const LARGE_GAP: f64 = 1.0;

@@ -59,6 +59,10 @@ signorini_fem_mesh::errors! {
             of facets that stand for a curve: smooth sides would slide there, and the finer the mesh the less they hold; \
             support the body against it, give it friction that suffices, or give one side as an Obstacle to see what \
             holds", 100.0 * share;
+        NeutralPlace { step: usize, body: usize, node: u32, mode: String, range: f64 } =
+            "step {step}: body {body} (with node {node}) slides wherever it is pressed, and along {mode} nothing decides \
+            its place: any other on a way of {range:.3e} has the same forces; look at these and at the other bodies, or give \
+            its sides unlike coefficients, of which the larger one keeps it";
         NarrowContact { step: usize, contact: usize, node: u32, place: [f64; 3], overlap: f64, way: f64 } =
             "step {step}: at node {node}, {}, the sides of contact {contact} are about {overlap:.3e} inside each other, beside \
             a way of {way:.3e}: quadratic facets feel contact in the mean over the facets around a node, so \
@@ -133,7 +137,8 @@ impl Warning {
         match self.plain() {
             Self::LargeDisplacement { step, node, .. }
             | Self::LargeRotation { step, node, .. }
-            | Self::HeldByTilt { step, node, .. } => {
+            | Self::HeldByTilt { step, node, .. }
+            | Self::NeutralPlace { step, node, .. } => {
                 vec![Part::Step(*step), Part::Node(*node)]
             }
             Self::LargeStrain { step, tet, .. } | Self::CoarseMesh { step, tet, .. } => {
@@ -180,6 +185,7 @@ impl Warning {
             Self::EdgeOverlap { overlap, .. } => format!("overlap of {overlap:.1e}"),
             Self::NarrowContact { overlap, .. } => format!("overlap at an edge of {overlap:.1e}"),
             Self::HeldByTilt { share, .. } => format!("{:.0} % held by the tilt of facets", 100.0 * share),
+            Self::NeutralPlace { range, .. } => format!("a place not determined on {range:.1e}"),
             Self::TurnedNormal { turn, .. } => format!("normal turned by {turn:.1} degrees"),
             _ => return None,
         })

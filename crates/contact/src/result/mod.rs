@@ -10,6 +10,7 @@
 mod certificate;
 mod certify;
 mod narrow;
+mod neutral;
 mod points;
 mod reactions;
 mod recovered;

@@ -3,6 +3,7 @@
 //! Looked at when it is asked for, and only for the kinds that have not been met.
 
 use super::narrow::{View, narrow_contact, views};
+use super::neutral::neutral_motion;
 use super::points::ContactState;
 use super::recovered::Recovered;
 use super::tilt::{held_by_tilt, spreads};
@@ -129,6 +130,9 @@ pub(crate) fn warnings(
     });
     look(|w| matches!(w, Warning::HeldByTilt { .. }), &|| {
         held_by_tilt(model, &lengths.spreads, problem, recovered, step)
+    });
+    look(|w| matches!(w, Warning::NeutralPlace { .. }), &|| {
+        neutral_motion(model, &lengths.extents, recovered, step)
     });
     out
 }

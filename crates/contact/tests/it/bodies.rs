@@ -314,3 +314,53 @@ fn a_body_far_inside_another_one_is_told() {
     assert_eq!(overlaps(0.05, &|contact| contact.with_gap(-0.05)), None);
     assert_eq!(overlaps(0.05, &|contact| contact.with_gap(0.0)), None);
 }
+
+/// A shim between plates that slide on each other: with one coefficient on both sides it may be anywhere on their way,
+/// which is told; the smaller one of two lets it go.
+#[test]
+fn a_shim_that_slides_on_both_sides_has_no_place() {
+    const WAY: f64 = 1e-4;
+    const TOP: FacetTag = FacetTag(56);
+    let shim = block([0.8, 0.8, 0.1], [3, 3, 1]);
+    let plate = block([1.0, 1.0, 0.4], [4, 4, 2]).map_tags(|tag| FacetTag(tag.0 + 50));
+    let plate = plate
+        .map_points(|x| [x[0] - 0.1, x[1] - 0.1, x[2] + 0.1])
+        .expect("moved");
+    let [under, side] = [brick::Z_MIN, brick::X_MIN].map(|tag| FacetTag(tag.0 + 50));
+    assert_eq!(TOP.0, brick::Z_MAX.0 + 50);
+    let mesh = shim.append(&plate).expect("bodies");
+    for (below, above, expected) in [(0.3, 0.3, true), (0.3, 0.25, false), (0.25, 0.3, false)] {
+        let pressed = History::table(vec![(0.0, 0.0), (1.0, 1.0), (3.0, 1.0)]).expect("table");
+        let drawn = History::table(vec![(0.0, 0.0), (1.0, 0.0), (3.0, 2.0)]).expect("table");
+        let rough = |contact: Contact, coefficient| contact.with_friction(Friction::coulomb(coefficient));
+        let scene = Scene::new(mesh.clone(), steel())
+            .with_contact(rough(Contact::rigid(brick::Z_MIN), below))
+            .with_contact(rough(Contact::between(brick::Z_MAX, under).with_gap(0.0), above))
+            .with_load(Load::pressure(TOP, 1e6).with_history(pressed))
+            .with_support(Support::components(side, [true, false, false]).with_motion([WAY, 0.0, 0.0], drawn))
+            .with_analysis(Analysis::quasistatic(3.0, 3));
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        while !simulation.is_finished() {
+            assert_certified(&step(&mut simulation), "shim");
+        }
+        let result = simulation.result().expect("steps");
+        let found = result.warnings();
+        let neutral = found.iter().find(|w| matches!(w.plain(), Warning::NeutralPlace { .. }));
+        assert_eq!(neutral.is_some(), expected, "{below} {above}: {found:?}");
+        if let Some(Warning::NeutralPlace {
+            step,
+            body,
+            mode,
+            range,
+            ..
+        }) = neutral
+        {
+            assert_eq!((*step, *body), (2, 0), "{mode}");
+            assert!(
+                mode.contains("(1.000, 0.000, 0.000)") || mode.contains("(-1.000, 0.000, 0.000)"),
+                "{mode}"
+            );
+            assert!((range / WAY - 1.0).abs() < 0.01, "{range:e}");
+        }
+    }
+}
