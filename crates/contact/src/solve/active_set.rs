@@ -154,9 +154,11 @@ impl ActiveSetSolver {
         report.status = match iterate.attempt {
             Attempt::Brief | Attempt::Apart => {
                 // whichever an earlier step has left in use a restart does not know
-                self.use_explicit(false, task, &mut report);
+                let brief = iterate.attempt == Attempt::Brief;
+                let hard = brief && self.is_hard(iterate);
+                self.use_explicit(hard, task, &mut report);
                 // that nothing presses is soon found, however many products a linear problem takes
-                let most = if iterate.attempt == Attempt::Brief { EASY } else { usize::MAX };
+                let most = if brief { EASY } else { usize::MAX };
                 step_status(self.active_sets(task, iterate, (most, CIRCLES), &mut report)?)
             }
             _ => step_status(self.active_sets_or_explicit(task, iterate, &mut report)?),
@@ -211,8 +213,7 @@ impl ActiveSetSolver {
         let step = |x: &[f64]| costs.map_or(usize::MAX, |costs| costs.step(carrying(x)));
         let at_once = |x: &[f64]| costs.is_some_and(|costs| costs.forming.saturating_add(step(x)) <= AT_ONCE);
         let mut status = Status::IterationLimit;
-        // after a hard step the next one may be easy, which is looked at where its inverse would cost more
-        if cost.is_none_or(|cost| iterate.effort < cost || step(&iterate.lambda) > EASY) {
+        if !self.is_hard(iterate) {
             self.use_explicit(false, task, report);
             // bodies that supports hold find a path out of circles
             let brief = !self.space.loose().is_empty() && at_once(&iterate.lambda);
@@ -274,6 +275,15 @@ impl ActiveSetSolver {
             }
         }
         Ok(status)
+    }
+
+    /// Whether an earlier step was worth forming F. The next one may be easy all the same, which is looked at where its
+    /// inverse would cost more.
+    fn is_hard(&self, iterate: &Iterate) -> bool {
+        self.explicit_cost.is_some_and(|costs| {
+            let carrying = iterate.lambda[..self.contact].iter().filter(|v| **v != 0.0);
+            iterate.effort >= costs.forming.max(LITTLE) && costs.step(carrying.count()) <= EASY
+        })
     }
 
     /// Looks for a start by interior points, with a formed F. None is no error.
