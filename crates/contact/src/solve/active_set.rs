@@ -269,10 +269,6 @@ impl ActiveSetSolver {
                     }
                 }
             }
-            if is_open(status) {
-                // the next step may need it
-                iterate.effort = 0;
-            }
         }
         Ok(status)
     }
