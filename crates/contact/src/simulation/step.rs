@@ -175,7 +175,9 @@ impl Simulation {
         let [last, before] = &state.multiplier;
         start_vector(last, Some(before), coarse, along, &mut iterate.multiplier);
         iterate.known_rows.clear();
-        if attempt != Attempt::Rest && state.sliding.iter().any(|s| *s) {
+        // without contact forces nothing slides
+        let rubs = !matches!(attempt, Attempt::Rest | Attempt::Apart);
+        if rubs && state.sliding.iter().any(|s| *s) {
             iterate
                 .known_rows
                 .extend_from_slice(&iterate.lambda[model.contact_rows()]);
