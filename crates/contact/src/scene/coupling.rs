@@ -138,8 +138,9 @@ impl Coupling {
     }
 
     /// These of its motions are free, or loaded, at steps until a time, s, and from then on held as they are at the
-    /// last of these, or at zero: a bolt is tightened by a force, and then keeps its length. Loads in their directions
-    /// act on nothing then. Between the two steps the scene is set up anew.
+    /// last of these, or at zero: a bolt is tightened by a force, and then keeps its length. Let the time be the end of a
+    /// step, or it is locked before its load is all there. Loads in their directions act on nothing then. Between the
+    /// two steps the scene is set up anew.
     pub fn with_lock(mut self, locked: [bool; 6], time: f64) -> Self {
         self.lock = Some((locked, time));
         self
