@@ -134,7 +134,7 @@ fn hold_where_they_are(
             let largest = support.left.iter().map(|u| norm(*u)).fold(0.0, f64::max);
             own.motions.push(Motion {
                 off: LEFT_OFF * largest,
-                begins_there: support.fading.is_none(),
+                left: support.fading.is_none(),
                 ..Motion::new(motions.len() as u32 - 1, support.left.clone())
             });
         }

@@ -7,7 +7,7 @@
 
 use super::points::ContactState;
 use super::recovered::Recovered;
-use crate::model::{Model, loose_motions_of, slide};
+use crate::model::{ConstrainedPoint, Model, loose_motions_of, slide};
 use crate::report::Warning;
 use crate::scene::{Contact, ContactNormal};
 use crate::step::StepProblem;
@@ -47,6 +47,15 @@ fn spread(mesh: &TetMesh, surface: &Surface) -> Vec<Matrix3<f64>> {
         .collect()
 }
 
+/// How motions move the sides of a point relative to each other.
+pub(super) fn ways(model: &Model, point: &ConstrainedPoint, motions: &[&FreeMotion]) -> Vec<[f64; 3]> {
+    let way = |motion: &&FreeMotion| {
+        let along = |node: u32, d: &[f64; 3]| vector::dot(&model.moved_by(motion, node), d);
+        AXES.map(|axis| point.contact.sides.way(&axis, along))
+    };
+    motions.iter().map(way).collect()
+}
+
 /// The body of which this is most so, at the end of a step.
 pub(super) fn held_by_tilt(
     model: &Model,
@@ -78,11 +87,7 @@ pub(super) fn held_by_tilt(
         // what normals block of the motions, less what facets blur, and what normal forces do along them
         let (mut blocked, mut work) = (DMatrix::zeros(count, count), DVector::zeros(count));
         for (point, state, blur) in blurred {
-            let way = |motion: &&FreeMotion| {
-                let along = |node: u32, d: &[f64; 3]| vector::dot(&model.moved_by(motion, node), d);
-                Vector3::from(AXES.map(|axis| point.contact.sides.way(&axis, along)))
-            };
-            let ways: Vec<Vector3<f64>> = motions.iter().map(way).collect();
+            let ways: Vec<Vector3<f64>> = ways(model, point, &motions).into_iter().map(Vector3::from).collect();
             let normal = Vector3::from(state.normal);
             for i in 0..count {
                 work[i] += state.normal_force * normal.dot(&ways[i]);

@@ -218,8 +218,8 @@ pub(crate) fn joint(friction: f64, order: usize) -> Scene {
 
 /// The same, perhaps with a washer below the head, of facets with these tags above and below.
 pub(crate) fn joint_with(friction: f64, order: usize, washer: Option<[FacetTag; 2]>) -> Scene {
+    let hole = |p: [f64; 3]| p[0].abs() > 2.0 * CELL || p[1].abs() > 2.0 * CELL;
     let plate = |z: f64, left: f64, top: FacetTag, bottom: FacetTag, end: FacetTag| {
-        let hole = |p: [f64; 3]| p[0].abs() > 2.0 * CELL || p[1].abs() > 2.0 * CELL;
         carved(([left, -4.0 * CELL, z], [10, 8, 2]), hole, move |p, n| match n {
             [_, _, z] if z > 0.9 => Some(top),
             [_, _, z] if z < -0.9 => Some(bottom),
@@ -245,7 +245,6 @@ pub(crate) fn joint_with(friction: f64, order: usize, washer: Option<[FacetTag; 
         Some([above, below]) => {
             let lift = |p: [f64; 3]| if p[2] > 1.5 * CELL { CELL } else { 0.0 };
             let bolt = bolt.map_points(|p| [p[0], p[1], p[2] + lift(p)]).expect("longer");
-            let hole = |p: [f64; 3]| p[0].abs() > 2.0 * CELL || p[1].abs() > 2.0 * CELL;
             let corner = [-4.0 * CELL, -4.0 * CELL, 2.0 * CELL];
             let ring = carved((corner, [8, 8, 1]), hole, move |_, n| match n {
                 [_, _, z] if z > 0.9 => Some(above),

@@ -50,9 +50,9 @@ pub struct Motion {
     /// How far they may be off, m: where a solve has left nodes. Equations that supports say, too, then need not agree
     /// with them better. Zero for given ones.
     pub off: f64,
-    /// Whether they begin where a solve has left the nodes. Then contact that the support meets in part keeps its rows,
-    /// and its forces.
-    pub begins_there: bool,
+    /// Whether a solve has left the nodes there, and they go on from it. Then contact that the support meets in part
+    /// keeps its rows, and its forces.
+    pub left: bool,
 }
 
 impl Motion {
@@ -62,7 +62,7 @@ impl Motion {
             case,
             values,
             off: 0.0,
-            begins_there: false,
+            left: false,
         }
     }
 
@@ -271,7 +271,7 @@ impl MergedSupports {
         let cases = supports.len().max(motions);
         for (s, support) in supports.iter().enumerate().filter(|(_, support)| holding(support)) {
             let of_nodes = unit_directions(s, support)?;
-            let left = support.motions.iter().any(|m| m.begins_there);
+            let left = support.motions.iter().any(|m| m.left);
             for motion in &support.motions {
                 motion.check(s, support.nodes.len(), cases)?;
                 merged.cases = merged.cases.max(motion.case as usize + 1);
