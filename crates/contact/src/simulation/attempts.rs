@@ -57,7 +57,8 @@ impl Simulation {
         let loose = self.model.loose_motions()?;
         let held = loose.is_empty();
         // forces of bodies that supports hold may vanish with the loads, too
-        let ends = |start| self.problem.is_unloaded(&self.model, start);
+        let (problem, model) = (&self.problem, &self.model);
+        let ends = |start| problem.is_unloaded(model, start) || problem.is_back(&model.scene, start);
         let may_vanish = if held {
             way.increment().start.is_some_and(ends)
         } else {

@@ -159,6 +159,9 @@ impl ActiveSetSolver {
                 self.use_explicit(hard, task, &mut report);
                 // that nothing presses is soon found, however many products a linear problem takes
                 let most = if brief { EASY } else { usize::MAX };
+                if !brief {
+                    self.work.trust_start();
+                }
                 step_status(self.active_sets(task, iterate, (most, CIRCLES), &mut report)?)
             }
             _ => step_status(self.active_sets_or_explicit(task, iterate, &mut report)?),

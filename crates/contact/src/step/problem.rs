@@ -153,6 +153,12 @@ impl StepProblem {
         self.factors.iter().all(|f| *f == 0.0) && (0..self.factors.len()).any(acted)
     }
 
+    /// Whether all that acts is back at zero, and was not at that time.
+    pub(crate) fn is_back(&self, scene: &Scene, before: f64) -> bool {
+        let at_zero = |time: f64| scene.histories().all(|(_, history)| history.value(time) == 0.0);
+        at_zero(self.time) && !at_zero(before)
+    }
+
     /// Whether nothing that acts has changed since a time.
     pub(crate) fn rests(&self, scene: &Scene, since: f64) -> bool {
         let stays = |history: &History| history.value(since) == history.value(self.time);

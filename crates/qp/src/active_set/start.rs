@@ -19,6 +19,8 @@ impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run
         self.path.unknown = !self.is_known();
         let told = std::mem::take(&mut self.at.work.told);
         self.guess();
+        // what nothing touches hangs on its springs
+        self.at.on_springs = told && !self.is_known();
         if told {
             self.at.work.active.foresee_guess();
             // what slides all over stops a mode, too
