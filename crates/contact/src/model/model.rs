@@ -166,6 +166,16 @@ impl Model {
         })
     }
 
+    /// How rigid motions move the sides of a point relative to each other.
+    pub(crate) fn ways(&self, point: &ConstrainedPoint, motions: &[&FreeMotion]) -> Vec<[f64; 3]> {
+        const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let way = |motion: &&FreeMotion| {
+            let along = |node: u32, d: &[f64; 3]| dot(&self.moved_by(motion, node), d);
+            AXES.map(|axis| point.contact.sides.way(&axis, along))
+        };
+        motions.iter().map(way).collect()
+    }
+
     /// The rigid motions that supports leave to the bodies.
     pub(crate) fn loose_motions(&self) -> Result<&[FreeMotion], ContactError> {
         if let Some(known) = self.loose_motions.get() {

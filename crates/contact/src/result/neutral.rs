@@ -7,7 +7,6 @@
 
 use super::points::{ContactState, PointState};
 use super::recovered::Recovered;
-use super::tilt::ways;
 use crate::discrete::Extents;
 use crate::model::{ConstrainedPoint, Model, slide};
 use crate::report::Warning;
@@ -31,7 +30,7 @@ pub(super) fn neutral_motion(model: &Model, extents: &Extents, recovered: &Recov
     }
     let ways = pressed
         .iter()
-        .map(|(point, state)| (*state, ways(model, point, &motions)));
+        .map(|(point, state)| (*state, model.ways(point, &motions)));
     let moved = ways.filter(|(_, ways)| ways.iter().any(|way| *way != [0.0; 3]));
     let moved: Vec<Moved<'_>> = moved.collect();
     let eigen = SymmetricEigen::new(blocked(&moved, motions.len()));

@@ -7,7 +7,7 @@
 
 use super::points::ContactState;
 use super::recovered::Recovered;
-use crate::model::{ConstrainedPoint, Model, loose_motions_of, slide};
+use crate::model::{Model, loose_motions_of, slide};
 use crate::report::Warning;
 use crate::scene::{Contact, ContactNormal};
 use crate::step::StepProblem;
@@ -15,9 +15,6 @@ use crate::tolerances::{HELD_BY_TILT, ROUNDING, TILT_MATTERS};
 use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, Vector3};
 use signorini_fem_mesh::{Surface, TetMesh};
 use signorini_qp::vector;
-use signorini_tfeti::FreeMotion;
-
-const AXES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
 
 /// Of the nodes of each contact surface the mean square of what the normals of the facets around it have more than its
 /// own; empty where supports hold all bodies, or obstacles give the normals.
@@ -45,15 +42,6 @@ fn spread(mesh: &TetMesh, surface: &Surface) -> Vec<Matrix3<f64>> {
     sums.into_iter()
         .map(|(area, sum)| sum / f64::max(area, f64::MIN_POSITIVE))
         .collect()
-}
-
-/// How motions move the sides of a point relative to each other.
-pub(super) fn ways(model: &Model, point: &ConstrainedPoint, motions: &[&FreeMotion]) -> Vec<[f64; 3]> {
-    let way = |motion: &&FreeMotion| {
-        let along = |node: u32, d: &[f64; 3]| vector::dot(&model.moved_by(motion, node), d);
-        AXES.map(|axis| point.contact.sides.way(&axis, along))
-    };
-    motions.iter().map(way).collect()
 }
 
 /// The body of which this is most so, at the end of a step.
@@ -87,7 +75,7 @@ pub(super) fn held_by_tilt(
         // what normals block of the motions, less what facets blur, and what normal forces do along them
         let (mut blocked, mut work) = (DMatrix::zeros(count, count), DVector::zeros(count));
         for (point, state, blur) in blurred {
-            let ways: Vec<Vector3<f64>> = ways(model, point, &motions).into_iter().map(Vector3::from).collect();
+            let ways: Vec<Vector3<f64>> = model.ways(point, &motions).into_iter().map(Vector3::from).collect();
             let normal = Vector3::from(state.normal);
             for i in 0..count {
                 work[i] += state.normal_force * normal.dot(&ways[i]);

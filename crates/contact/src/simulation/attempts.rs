@@ -40,7 +40,8 @@ impl Simulation {
     }
 
     /// The attempts, and one without contact forces where loads do no work on what contact alone stops: first, if
-    /// bodies stood apart, else after a brief one. So it is after that where all loads end.
+    /// bodies stood apart, else after a brief one. So it is after that where all loads end,
+    /// or all that acts is back at zero.
     fn with_apart(
         &self,
         mut attempts: Vec<Start>,
@@ -146,14 +147,7 @@ impl Simulation {
             self.spare = old;
             return Ok(None);
         }
-        let (model, problem) = (&self.model, &self.problem);
-        let lambda = problem.multipliers(&self.iterate.lambda);
-        let recovered = Recovered::new(
-            (model, problem),
-            self.settings.tolerance,
-            [&lambda, &self.iterate.alpha],
-            old,
-        )?;
+        let recovered = self.recover([&self.iterate.lambda, &self.iterate.alpha], old)?;
         report.counters.products += 1;
         let stands = self.stand(state, recovered, Targets::new())?;
         if stands.certificate.largest() <= self.settings.tolerance {

@@ -138,17 +138,18 @@ impl Simulation {
         model.tfeti.check_processes()?;
         let mut report = solved?;
         let old = std::mem::take(&mut self.spare);
-        let lambda = problem.multipliers(&iterate.lambda);
-        let recovered = Recovered::new(
-            (model, problem),
-            self.settings.tolerance,
-            [&lambda, &iterate.alpha],
-            old,
-        );
+        let recovered = self.recover([&self.iterate.lambda, &self.iterate.alpha], old);
         model.tfeti.check_processes()?;
         let recovered = recovered?;
         report.counters.products += 1;
         Ok((report, recovered))
+    }
+
+    /// What follows from multipliers of a solver and rigid amplitudes, in the memory of an `old` one.
+    pub(super) fn recover(&self, [found, alpha]: [&[f64]; 2], old: Recovered) -> Result<Recovered, ContactError> {
+        let lambda = self.problem.multipliers(found);
+        let of = (&*self.model, &*self.problem);
+        Recovered::new(of, self.settings.tolerance, [&lambda, alpha], old)
     }
 
     /// Start vectors of an increment: zero, the last vectors, or the line through the last two.

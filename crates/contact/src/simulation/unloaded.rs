@@ -210,7 +210,7 @@ impl Simulation {
         from: &Standing<'_>,
         targets: &Targets,
     ) -> Result<Option<(Vec<f64>, Recovered)>, ContactError> {
-        let (model, problem) = (&self.model, &self.problem);
+        let model = &self.model;
         if motions.is_empty() || targets.is_empty() {
             return Ok(None);
         }
@@ -228,13 +228,7 @@ impl Simulation {
                 return Ok(None);
             }
         }
-        let lambda = problem.multipliers(from.lambda);
-        let placed = Recovered::new(
-            (model, problem),
-            self.settings.tolerance,
-            [&lambda, &alpha],
-            Recovered::default(),
-        )?;
+        let placed = self.recover([from.lambda, &alpha], Recovered::default())?;
         Ok(Some((alpha, placed)))
     }
 

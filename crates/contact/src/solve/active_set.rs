@@ -9,6 +9,7 @@ use super::iterate::{Attempt, Iterate, Task, is_coulomb, step_status};
 use super::not_determined::not_determined;
 use super::preconditioner::SelectedPreconditioner;
 use super::release::Exchanges;
+use super::row_scale::row_scale;
 use super::smalse::SmalseSolver;
 use crate::error::ContactError;
 use crate::model::Model;
@@ -18,9 +19,8 @@ use crate::settings::{Preconditioner, Settings};
 use crate::status::StepStatus;
 use crate::tolerances::{
     AT_ONCE, BEFORE_INSIDE, CIRCLES, CONTRADICTION, EASY, EXPLICIT_PRODUCTS, INSIDE, LINEAR_AT_MOST, LINEAR_SLACK,
-    LITTLE, SHARED_ROWS, STIFF_GRADED, STIFF_MEANS, STIFF_ROWS,
+    LITTLE,
 };
-use signorini_fem_mesh::decomposition::is_strongly_graded;
 use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetWorkspace};
 use signorini_qp::{
     ActiveSetSettings, EqualityProjector, MovingSet, ProductSet, QpError, Status, SymmetricOperator, active_set,
@@ -69,27 +69,7 @@ impl ActiveSetSolver {
             None => (model.tfeti.dual(), model.tfeti.coarse()),
         };
         let preconditioner = SelectedPreconditioner::new(model, settings.preconditioner, part.as_ref())?;
-        let mut scale = vec![0.0; dual.dim()];
-        model.tfeti.row_stiffness(0..contact, &mut scale[..contact]);
-        let mut compliance = vec![0.0; contact];
-        model.tfeti.row_compliance(0..contact, &mut compliance);
-        let flat = || scale.iter().zip(&compliance).any(|(k, c)| k * c > STIFF_ROWS);
-        let stiff = match model.scene.mesh.order() {
-            2 => STIFF_MEANS,
-            _ if flat() && is_strongly_graded(&model.scene.mesh) => STIFF_GRADED,
-            _ => STIFF_ROWS,
-        };
-        for (scale, compliance) in scale.iter_mut().zip(compliance) {
-            *scale = scale.min(stiff / compliance);
-        }
-        let gluing = model.tfeti.gluing();
-        for (scale, own) in scale.iter_mut().zip(gluing.contact_compliance()) {
-            *scale /= 1.0 + own * *scale;
-        }
-        let shared = |row: usize| gluing.node(row).is_some_and(|n| gluing.is_dependent(n));
-        for (_, scale) in scale.iter_mut().enumerate().take(contact).filter(|s| shared(s.0)) {
-            *scale *= SHARED_ROWS;
-        }
+        let scale = row_scale(model, dual.dim());
         let space = ActiveSetProjector::new(coarse, contact, model.tfeti.row_weights())?;
         let free = space.factor().free_motions();
         if model.points.is_empty() && !free.is_empty() {
@@ -152,17 +132,16 @@ impl ActiveSetSolver {
             return self.stay(task, iterate, report);
         }
         report.status = match iterate.attempt {
-            Attempt::Brief | Attempt::Apart => {
+            Attempt::Brief => {
                 // whichever an earlier step has left in use a restart does not know
-                let brief = iterate.attempt == Attempt::Brief;
-                let hard = brief && self.is_hard(iterate);
-                self.use_explicit(hard, task, &mut report);
+                self.use_explicit(self.is_hard(iterate), task, &mut report);
+                step_status(self.active_sets(task, iterate, (EASY, CIRCLES), &mut report)?)
+            }
+            Attempt::Apart => {
                 // that nothing presses is soon found, however many products a linear problem takes
-                let most = if brief { EASY } else { usize::MAX };
-                if !brief {
-                    self.work.trust_start();
-                }
-                step_status(self.active_sets(task, iterate, (most, CIRCLES), &mut report)?)
+                self.use_explicit(false, task, &mut report);
+                self.work.trust_start();
+                step_status(self.active_sets(task, iterate, (usize::MAX, CIRCLES), &mut report)?)
             }
             _ => step_status(self.active_sets_or_explicit(task, iterate, &mut report)?),
         };
@@ -210,10 +189,8 @@ impl ActiveSetSolver {
         report: &mut StepReport,
     ) -> Result<Status, ContactError> {
         let costs = self.explicit_cost;
-        let cost = costs.map(|costs| costs.forming.max(LITTLE));
-        let contact = self.contact;
-        let carrying = |x: &[f64]| x[..contact].iter().filter(|v| **v != 0.0).count();
-        let step = |x: &[f64]| costs.map_or(usize::MAX, |costs| costs.step(carrying(x)));
+        let (cost, contact) = (self.cost(), self.contact);
+        let step = |x: &[f64]| costs.map_or(usize::MAX, |costs| costs.step(carrying(&x[..contact])));
         let at_once = |x: &[f64]| costs.is_some_and(|costs| costs.forming.saturating_add(step(x)) <= AT_ONCE);
         let mut status = Status::IterationLimit;
         if !self.is_hard(iterate) {
@@ -253,7 +230,7 @@ impl ActiveSetSolver {
                 self.begin_again(iterate);
             }
             if self.use_explicit(true, task, report) {
-                let dear = costs.is_some_and(|costs| costs.inside(carrying(&iterate.lambda)) > EASY);
+                let dear = costs.is_some_and(|costs| costs.inside(carrying(&iterate.lambda[..contact])) > EASY);
                 let patience = if dear { CIRCLES } else { BEFORE_INSIDE };
                 status = self.active_sets(task, iterate, (EXPLICIT_PRODUCTS, patience), report)?;
                 if is_open(status) {
@@ -276,13 +253,17 @@ impl ActiveSetSolver {
         Ok(status)
     }
 
+    /// The effort from which on forming F pays; `None` if that is not to be.
+    fn cost(&self) -> Option<usize> {
+        self.explicit_cost.map(|costs| costs.forming.max(LITTLE))
+    }
+
     /// Whether an earlier step was worth forming F. The next one may be easy all the same, which is looked at where its
     /// inverse would cost more.
     fn is_hard(&self, iterate: &Iterate) -> bool {
-        self.explicit_cost.is_some_and(|costs| {
-            let carrying = iterate.lambda[..self.contact].iter().filter(|v| **v != 0.0);
-            iterate.effort >= costs.forming.max(LITTLE) && costs.step(carrying.count()) <= EASY
-        })
+        let carrying = carrying(&iterate.lambda[..self.contact]);
+        let cheap = self.explicit_cost.is_some_and(|costs| costs.step(carrying) <= EASY);
+        cheap && self.cost().is_some_and(|cost| iterate.effort >= cost)
     }
 
     /// Looks for a start by interior points, with a formed F. None is no error.
@@ -494,6 +475,11 @@ impl ActiveSetSolver {
         iterate.multiplier.clear();
         Ok(report.resumed(second))
     }
+}
+
+/// How many contact rows carry a force.
+fn carrying(contact: &[f64]) -> usize {
+    contact.iter().filter(|v| **v != 0.0).count()
 }
 
 fn is_finite(x: &[f64]) -> bool {
