@@ -163,6 +163,10 @@ pub(crate) const LARGE: usize = 8000;
 pub(crate) const PRODUCT: u64 = 1_500_000;
 pub(crate) const SOLVE_READS: usize = 25_000;
 pub(crate) const OPERATIONS: f64 = 3e5;
+/// Unknowns of bodies that rows join from which on their free motions are looked for by inverse iteration, and its
+/// steps: each leaves a thousandth of a motion that rows stop by a ten-millionth of the largest.
+pub(crate) const LARGE_GROUP: usize = 300;
+pub(crate) const INVERSE_STEPS: usize = 4;
 /// Operations from which on a front of a coarse factor is eliminated in parts, numbers of an update from which on it is
 /// added in parts, and columns of a part: whole blocks of six.
 pub(crate) const LARGE_FRONT: f64 = 1e8;

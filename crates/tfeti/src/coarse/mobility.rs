@@ -6,16 +6,22 @@
 //! that share an edge or a node only are bodies of their own: the rows between them leave a hinge free.
 
 use crate::coarse::joints::{joint_rows, rigid_pairs};
+use crate::coarse::matrix::CoarseMatrix;
 use crate::linalg::entry;
+use crate::linalg::sparse::{Columns, SolveMemory, SparseCholesky, Symbolic};
 use crate::rows::gluing::{CopyEntry, Gluing};
 use crate::subdomain::kernel::{Kernel, displacement, mean};
 use crate::subdomain::matrices::Subdomains;
-use crate::tolerances::{FREE, MOVING, NO_ACTION};
-use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
-use signorini_fem_mesh::internal::{DisjointSets, Lists, count_of};
+use crate::tolerances::{FREE, INVERSE_STEPS, LARGE_GROUP, MOVING, NO_ACTION};
+use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use signorini_fem_mesh::internal::{DisjointSets, Lists, count_of, distinct};
 use signorini_fem_mesh::vec3::{dot, sub};
+use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
+
+/// What a row does to the motions of bodies.
+type Row = Vec<(usize, [f64; 6])>;
 
 /// A rigid motion of the bodies that the rows of positive weight do not stop.
 #[derive(Debug, Clone, PartialEq)]
@@ -69,23 +75,110 @@ pub(crate) struct Mobility {
     centres: Vec<[f64; 3]>,
     subdomains: Arc<Subdomains>,
     /// Interface rows between bodies (hinges): what they do to their motions.
-    joints: Vec<Vec<(usize, [f64; 6])>>,
+    joints: Vec<Row>,
 }
 
-/// Bodies that rows join, and the Gram matrix of the actions of the rows on them.
-#[derive(Debug, Default)]
-struct Group {
-    bodies: Vec<usize>,
-    gram: DMatrix<f64>,
-}
+/// Gram matrix of the actions of rows on bodies that they join.
+struct Gram(Columns);
 
-impl Group {
-    /// Whether all eigenvalues are larger than those of free motions, for certain.
-    fn is_held(&self) -> bool {
-        let least = (FREE * self.gram.trace()).max(NO_ACTION);
-        let mut left = self.gram.clone();
-        (0..left.nrows()).for_each(|k| left[(k, k)] -= least);
-        Cholesky::new(left).is_some()
+impl Gram {
+    /// Rows act on bodies by their places among `count`.
+    fn new<'a>(count: usize, place: &[u32], rows: impl Iterator<Item = &'a Row> + Clone) -> Self {
+        let mut lower: Vec<Vec<u32>> = (0..count as u32).map(|k| vec![k]).collect();
+        let pairs = |row: &'a Row| row.iter().flat_map(move |a| row.iter().map(move |b| (a, b)));
+        let places = rows.clone().flat_map(pairs).map(|(a, b)| [place[a.0], place[b.0]]);
+        places
+            .filter(|[a, b]| a > b)
+            .for_each(|[a, b]| lower[b as usize].push(a));
+        let columns = lower.into_iter().map(|list| (distinct(list), Vec::new()));
+        let matrix = CoarseMatrix::of_columns(columns);
+        let mut values = vec![0.0; matrix.pattern().rows.len()];
+        for ((a, ga), (b, gb)) in rows.flat_map(pairs).filter(|(a, b)| place[a.0] >= place[b.0]) {
+            matrix.add_block(place[*a], place[*b], &ga.map(|v| gb.map(|w| v * w)), &mut values);
+        }
+        let pattern = matrix.pattern().clone();
+        Self(Columns { values, ..pattern })
+    }
+
+    fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> {
+        let column = |j| {
+            let (rows, values) = self.0.column(j);
+            rows.iter().zip(values).map(move |(&i, &v)| (i, j, v))
+        };
+        (0..self.0.dim).flat_map(column)
+    }
+
+    /// The largest sum of a row: no eigenvalue is larger.
+    fn bound(&self) -> f64 {
+        let mut sums = vec![0.0; self.0.dim];
+        for (i, j, v) in self.entries() {
+            sums[j] += v.abs();
+            if i / 6 != j / 6 {
+                sums[i] += v.abs();
+            }
+        }
+        sums.into_iter().fold(0.0, f64::max)
+    }
+
+    /// A factor of the matrix with more on its diagonal.
+    fn factor(&self, more: f64) -> Option<SparseCholesky> {
+        let mut matrix = self.0.clone();
+        let diagonal = (0..matrix.dim).filter_map(|k| self.0.find(k, k));
+        diagonal.for_each(|k| matrix.values[k] += more);
+        let pattern = Symbolic::new(&matrix, 6).ok()?;
+        SparseCholesky::new(&pattern, &matrix).ok()
+    }
+
+    /// Orthonormal motions that the rows leave free.
+    fn free(&self) -> Vec<DVector<f64>> {
+        // most are held, which a factor tells sooner than eigenvalues
+        let (dim, bound) = (self.0.dim, self.bound());
+        if self.factor(-(FREE * bound).max(NO_ACTION)).is_some() {
+            return Vec::new();
+        }
+        if let Some(found) = (dim > LARGE_GROUP).then(|| self.few_free(bound)).flatten() {
+            return found;
+        }
+        let mut dense = DMatrix::zeros(dim, dim);
+        for (i, j, v) in self.entries() {
+            (dense[(i, j)], dense[(j, i)]) = (v, v);
+        }
+        let eigen = SymmetricEigen::new(dense);
+        let least = (FREE * eigen.eigenvalues.max()).max(NO_ACTION);
+        let free = (0..dim).filter(|&k| eigen.eigenvalues[k] <= least);
+        free.map(|k| eigen.eigenvectors.column(k).into()).collect()
+    }
+
+    /// The same by inverse iteration, where they are few among many bodies.
+    fn few_free(&self, bound: f64) -> Option<Vec<DVector<f64>>> {
+        let (dim, least) = (self.0.dim, FREE * bound);
+        let factor = self.factor(10.0 * least)?;
+        let mut count = 8;
+        while 8 * count <= dim {
+            let mut memory = SolveMemory::new(factor.need(count));
+            // without structure
+            let mut x = DMatrix::from_fn(dim, count, |i, j| (1e4 * ((i * count + j + 1) as f64).sin()).fract());
+            for _ in 0..INVERSE_STEPS {
+                factor.solve(x.as_mut_slice(), count, &mut memory);
+                x = x.qr().q();
+            }
+            let mut product = DMatrix::zeros(dim, count);
+            for (i, j, v) in self.entries() {
+                let both = [(i, j), (j, i)];
+                for &(i, j) in &both[..if i / 6 == j / 6 { 1 } else { 2 }] {
+                    (0..count).for_each(|k| product[(i, k)] += v * x[(j, k)]);
+                }
+            }
+            let small = SymmetricEigen::new(x.tr_mul(&product));
+            let free: Vec<usize> = (0..count).filter(|&k| small.eigenvalues[k] <= least).collect();
+            if free.len() < count {
+                let way = |k: &usize| small.eigenvectors.column(*k);
+                let found = free.iter().all(|k| (&product * way(k)).norm() <= 10.0 * least);
+                return found.then(|| free.iter().map(|k| &x * way(k)).collect());
+            }
+            count *= 4;
+        }
+        None
     }
 }
 
@@ -190,49 +283,34 @@ impl Mobility {
     /// Motions that the rows leave free; each row is the list of its actions on bodies, times the root of its weight.
     ///
     /// Bodies that no row joins are judged one by one: what is little is little for a body, not for all of them.
-    pub(crate) fn free(&self, rows: impl Iterator<Item = Vec<(usize, [f64; 6])>>) -> Vec<FreeMotion> {
-        let rows: Vec<_> = rows.chain(self.joints.iter().cloned()).collect();
+    pub(crate) fn free(&self, rows: impl Iterator<Item = Row>) -> Vec<FreeMotion> {
+        let rows = rows.chain(self.joints.iter().cloned()).filter(|row| !row.is_empty());
+        let rows: Vec<Row> = rows.collect();
         let mut sets = DisjointSets::new(self.bodies.len());
         for row in &rows {
             sets.join_all(row.iter().map(|action| action.0));
         }
         let of = sets.numbers();
-        let mut groups: Vec<Group> = (0..count_of(&of)).map(|_| Group::default()).collect();
-        let of: Vec<usize> = of.into_iter().map(|group| group as usize).collect();
+        let groups = Lists::by_number(&of);
         let mut place = vec![0; of.len()];
-        for (body, &group) in of.iter().enumerate() {
-            place[body] = groups[group].bodies.len();
-            groups[group].bodies.push(body);
+        for (&body, k) in groups.iter().flat_map(|group| group.iter().zip(0..)) {
+            place[body as usize] = k;
         }
-        for group in &mut groups {
-            let dim = 6 * group.bodies.len();
-            group.gram = DMatrix::zeros(dim, dim);
-        }
-        for row in &rows {
-            for (a, ga) in row {
-                let gram = &mut groups[of[*a]].gram;
-                for (b, gb) in row {
-                    for i in 0..6 {
-                        for j in 0..6 {
-                            gram[(6 * place[*a] + i, 6 * place[*b] + j)] += ga[i] * gb[j];
-                        }
-                    }
-                }
-            }
-        }
+        let keys: Vec<u32> = rows.iter().map(|row| of[row[0].0]).collect();
+        let rows_of = Lists::by_key(groups.count(), &keys);
         let mut out = Vec::new();
-        // most groups are held, which a factor tells sooner than eigenvalues
-        for group in groups.into_iter().filter(|group| !group.is_held()) {
-            let eigen = SymmetricEigen::new(group.gram);
-            let largest = eigen.eigenvalues.iter().fold(0.0_f64, |m, v| m.max(*v));
-            for (k, value) in eigen.eigenvalues.iter().enumerate() {
-                if *value <= (FREE * largest).max(NO_ACTION) {
-                    let mut vector = vec![0.0; 6 * self.bodies.len()];
-                    for (c, v) in eigen.eigenvectors.column(k).iter().enumerate() {
-                        vector[6 * group.bodies[c / 6] + c % 6] = *v;
-                    }
-                    out.push(self.describe(&vector));
+        for (g, group) in groups.iter().enumerate() {
+            let gram = Gram::new(
+                group.len(),
+                &place,
+                rows_of.of(g).iter().map(|&row| &rows[row as usize]),
+            );
+            for own in gram.free() {
+                let mut vector = vec![0.0; 6 * self.bodies.len()];
+                for (c, v) in own.iter().enumerate() {
+                    vector[6 * group[c / 6] as usize + c % 6] = *v;
                 }
+                out.push(self.describe(&vector));
             }
         }
         out
@@ -266,16 +344,32 @@ impl Mobility {
     /// As many springs on coarse amplitudes as there are free motions, such that no free motion escapes them:
     /// `(subdomain, six coefficients)`.
     pub(crate) fn springs(&self, free: &[FreeMotion]) -> Vec<(usize, [f64; 6])> {
-        // Gaussian elimination with full pivoting on the amplitudes of each body's first subdomain.
-        let mut rows: Vec<Vec<f64>> = free
-            .iter()
-            .map(|m| {
-                self.bodies
-                    .iter()
-                    .flat_map(|b| m.amplitudes[6 * b.first..6 * b.first + 6].to_vec())
-                    .collect()
-            })
-            .collect();
+        let moved = |m: &FreeMotion| m.bodies.iter().map(|b| self.part_of[b.subdomain]).collect::<Vec<u32>>();
+        let mut sets = DisjointSets::new(self.bodies.len());
+        for motion in free {
+            sets.join_all(moved(motion).into_iter().map(|body| body as usize));
+        }
+        let of = sets.numbers();
+        // the motions, and the bodies, of each set
+        let mut groups: BTreeMap<u32, (Vec<&FreeMotion>, Vec<u32>)> = BTreeMap::new();
+        for motion in free {
+            let bodies = moved(motion);
+            let group = groups.entry(bodies.first().map_or(0, |body| of[*body as usize]));
+            let group = group.or_default();
+            group.0.push(motion);
+            group.1.extend(bodies);
+        }
+        let of_group = |(motions, bodies): &(Vec<&FreeMotion>, Vec<u32>)| self.springs_of(motions, bodies);
+        groups.values().flat_map(of_group).collect()
+    }
+
+    /// The same for motions of some bodies: Gaussian elimination with full pivoting on the amplitudes of each body's
+    /// first subdomain.
+    fn springs_of(&self, free: &[&FreeMotion], bodies: &[u32]) -> Vec<(usize, [f64; 6])> {
+        let bodies = distinct(bodies.iter().copied()).into_iter();
+        let first: Vec<usize> = bodies.map(|body| self.bodies[body as usize].first).collect();
+        let row = |m: &&FreeMotion| first.iter().flat_map(|s| m.amplitudes[6 * s..][..6].to_vec()).collect();
+        let mut rows: Vec<Vec<f64>> = free.iter().map(row).collect();
         let mut springs = Vec::with_capacity(free.len());
         for k in 0..rows.len() {
             let mut best = (k, 0, 0.0);
@@ -297,7 +391,7 @@ impl Mobility {
             }
             let mut spring = [0.0; 6];
             spring[column % 6] = 1.0;
-            springs.push((self.bodies[column / 6].first, spring));
+            springs.push((first[column / 6], spring));
         }
         springs
     }

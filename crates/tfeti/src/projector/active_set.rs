@@ -260,7 +260,8 @@ impl SplitParts {
             Basis::Split(base) => base.allows(&weights.lines),
             Basis::Model(model, _) => model.allows(&weights.lines),
         };
-        let usable = |basis: &&Basis| allows(basis) && coarse.0.free_motions(Some(&weights)).is_empty();
+        let free = coarse.0.free_motions(Some(&weights));
+        let usable = |basis: &&Basis| allows(basis) && free.is_empty();
         if let Some(basis) = self.basis.as_ref().filter(usable) {
             self.contact.set(&weights.diagonal[..self.contact_rows], &weights.lines);
             let (contact, fronts) = (&self.contact, &mut self.fronts);
@@ -275,10 +276,10 @@ impl SplitParts {
                 }
             };
             if let Ok(factor) = factor {
-                return Ok(CoarseFactor::new(coarse.clone(), factor, Some(weights), Vec::new()));
+                return Ok(CoarseFactor::new(coarse.clone(), factor, Some(weights), free));
             }
         }
-        coarse.factor_weighted(weights)
+        coarse.factor_with(Some(weights), free)
     }
 }
 

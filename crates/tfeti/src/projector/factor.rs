@@ -50,7 +50,7 @@ impl Coarse {
     /// # Errors
     /// [`TfetiError::CoarseSingular`] if a pivot is not positive, [`TfetiError::TooLarge`].
     pub fn factor(&self) -> Result<CoarseFactor, TfetiError> {
-        self.factor_with(None)
+        self.factor_with(None, self.0.free_motions(None))
     }
 
     /// Factor of `G W G^T`.
@@ -63,14 +63,19 @@ impl Coarse {
     /// [`TfetiError::Setting`] and [`TfetiError::Length`] for unusable weights, and those of [`factor`](Self::factor).
     pub fn factor_weighted(&self, weights: RowWeights) -> Result<CoarseFactor, TfetiError> {
         weights.validate(self.0.gluing.ranges())?;
-        self.factor_with(Some(weights))
+        let free = self.0.free_motions(Some(&weights));
+        self.factor_with(Some(weights), free)
     }
 
-    fn factor_with(&self, weights: Option<RowWeights>) -> Result<CoarseFactor, TfetiError> {
+    /// The same with the free motions.
+    pub(super) fn factor_with(
+        &self,
+        weights: Option<RowWeights>,
+        free: Vec<FreeMotion>,
+    ) -> Result<CoarseFactor, TfetiError> {
         let data = &self.0;
         let modes = ModeTable::new(&data.subdomains);
         let mut matrix = data.matrix.assemble(&data.gluing, &modes, weights.as_ref());
-        let free = data.free_motions(weights.as_ref());
         if weights.is_none()
             && free.is_empty()
             && let Some(factor) = self.shared_factor(&matrix.values)

@@ -1,9 +1,11 @@
 //! Projectors, orthonormal coarse rows, free motions and the spectrum on the kernel of `G`.
 
-use crate::common::{Brick, column, distance, dot, noise, norm};
-use signorini_fem_mesh::{Decomposition, brick};
+use crate::common::{Brick, column, distance, dot, noise, norm, steel};
+use signorini_fem_mesh::{Decomposition, SurfaceFrame, TetMesh, brick};
 use signorini_qp::{Equality, SymmetricOperator};
-use signorini_tfeti::{CoarseFactor, Directions, NodeSupport, RowWeights, TfetiBuilder};
+use signorini_tfeti::{
+    CoarseFactor, ContactConstraint, Directions, NodeSupport, RowWeights, TangentialRows, TfetiBuilder,
+};
 
 #[test]
 fn coarse_projectors_and_particular_solutions() {
@@ -197,4 +199,71 @@ fn products_go_through_globs_as_through_rows() {
             assert!(distance(&gy, &ry) < 1e-13 * norm(&ry));
         }
     }
+}
+
+/// Loose blocks in a row on a floor, which each may touch, as the next one: judged and held one by one, or together.
+#[test]
+fn many_loose_bodies_are_held_one_by_one() {
+    const COUNT: usize = 300;
+    let one = brick::Brick::new([1.0; 3], [1, 1, 1]).build().unwrap();
+    let nodes = one.points().len() as u32;
+    let (mut points, mut tets, mut parts, mut contact) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let frame = |normal| SurfaceFrame::from_normal(normal).unwrap();
+    let right = one.nodes_on(brick::X_MAX);
+    let left = right.iter().map(|n| {
+        let [_, y, z] = one.points()[*n as usize];
+        one.points().iter().position(|p| *p == [0.0, y, z]).unwrap() as u32
+    });
+    let pairs: Vec<(u32, u32)> = right.iter().copied().zip(left).collect();
+    for k in 0..COUNT as u32 {
+        points.extend(one.points().iter().map(|[x, y, z]| [x + f64::from(k), *y, *z]));
+        tets.extend(one.tets().iter().map(|tet| tet.map(|n| n + k * nodes)));
+        parts.extend(one.tets().iter().map(|_| k));
+        let floor = one.nodes_on(brick::Z_MIN).into_iter();
+        contact.extend(floor.map(|n| ContactConstraint::new(n + k * nodes, frame([0.0, 0.0, -1.0]))));
+        let next = |(a, b): &(u32, u32)| {
+            let partner = Some(b + (k + 1) * nodes);
+            ContactConstraint::new(a + k * nodes, frame([1.0, 0.0, 0.0])).with_partner(partner)
+        };
+        contact.extend(pairs.iter().filter(|_| k + 1 < COUNT as u32).map(next));
+    }
+    let contact: Vec<_> = contact.into_iter().map(|c| c.with_friction(true)).collect();
+    let mesh = TetMesh::new(points, tets, Vec::new()).unwrap();
+    let decomposition = Decomposition::from_parts(&mesh, &parts).unwrap();
+    let materials = steel();
+    let builder = TfetiBuilder::new(&mesh, &decomposition, &materials);
+    let system = builder.with_contact(&contact).build().unwrap();
+    let coarse = system.coarse();
+    let rows = system.gluing().ranges().contact().end;
+    let mut weights = vec![1.0; coarse.dim()];
+    assert!(
+        coarse.free_motions(None).unwrap().is_empty(),
+        "friction holds all together"
+    );
+    // every tenth block may slide across the row
+    for rows in system.gluing().contact() {
+        let slides = system.gluing().row(rows.row).iter().any(|entry| entry.0 % 10 == 4);
+        if let (TangentialRows::Disc { row, .. }, true) = (rows.tangential, slides) {
+            weights[row..row + 2].fill(0.0);
+        }
+    }
+    let sliding = coarse
+        .free_motions(Some(&RowWeights::diagonal(weights.clone())))
+        .unwrap();
+    assert_eq!(sliding.len(), COUNT / 10);
+    let mut moved = vec![0.0; coarse.dim()];
+    for motion in &sliding {
+        coarse.apply_transpose(&motion.amplitudes, &mut moved, &mut coarse.scratch());
+        let held = moved.iter().zip(&weights).map(|(moved, weight)| moved * weight);
+        assert!(held.fold(0.0, |most: f64, moved| most.max(moved.abs())) < 1e-9);
+        assert!(norm(&moved) > 0.1);
+    }
+    weights[..rows].fill(0.0);
+    let factor = coarse.factor_weighted(RowWeights::diagonal(weights)).unwrap();
+    assert_eq!(factor.free_motions().len(), 6 * COUNT);
+    assert!(factor.free_motions().iter().all(|motion| motion.bodies.len() == 1));
+    // nothing acts, so that nothing is what is in balance
+    let mut x = vec![0.0; coarse.dim()];
+    factor.particular(&vec![0.0; coarse.rows()], &mut x, &mut coarse.scratch());
+    assert!(x.iter().all(|x| *x == 0.0));
 }
