@@ -4,7 +4,7 @@ use crate::linalg::sparse::FactorError;
 use crate::processes::communicator::CommunicationError;
 
 signorini_fem_mesh::errors! {
-    /// Errors of the set-up. Every message names the place and, where there is one, the remedy.
+    /// Errors of the set-up. A message names the place where it is known, and the remedy where there is one.
     #[derive(Clone, PartialEq)]
     TfetiError from { Communication(CommunicationError) } {
         Singular { subdomain: usize, pivot: usize } =
@@ -16,22 +16,25 @@ signorini_fem_mesh::errors! {
             what is soft: look at the units of its materials and at its smallest elements, or use subdomains of more \
             even stiffness";
         Collinear { subdomain: usize } =
-            "subdomain {subdomain}: its nodes lie on one line, so it has fewer than six rigid motions";
+            "subdomain {subdomain}: its nodes lie on one line, so it has fewer than six rigid motions; use another \
+            decomposition, or a coupling of more nodes";
         Material { element: usize, message: String } = "tetrahedron {element}: {message}";
         Equation { equation: usize, node: Option<u32>, others: Vec<usize>, reason: &'static str } =
             "equation {equation}{}{}: {reason}", node.map_or(String::new(), |n| format!(", node {n}")), beside(others);
         Spring { node: u32, stiffness: f64 } =
-            "spring at node {node}: its stiffness is {stiffness}; it must be positive, and neither so small nor so \
-            large that its inverse overflows or vanishes";
+            "spring at node {node}: its direction must be a unit vector, and its stiffness, {stiffness}, positive and \
+            neither so small nor so large that its inverse overflows or vanishes";
         RigidSupport { subdomain: usize } =
             "subdomain {subdomain}: what is held of a rigid motion must be a displacement along a unit vector or a \
-            rotation about one, of a subdomain without elements, at a finite point, with finite values";
+            rotation about one, of a subdomain without elements, at a finite point, with finite values of cases that \
+            are numbered from 0 without gaps";
         UnknownNode { place: String, node: u32, nodes: usize } =
             "{place}: node {node} does not exist, the mesh has nodes 0..{nodes}";
         EmptySupport { support: usize, what: &'static str } =
             "support {support} has no {what}; remove it or give it some";
-        BadDirection { support: usize, direction: usize } =
-            "support {support}: direction {direction} is zero or not finite";
+        BadDirection { support: usize, node: Option<u32>, direction: usize } =
+            "support {support}{}: direction {direction} is zero or not finite",
+            node.map_or(String::new(), |n| format!(", node {n}"));
         MotionLength { support: usize, found: usize, nodes: usize } =
             "support {support}: {found} prescribed displacements for {nodes} nodes; give one for all or one for each";
         DirectionLists { support: usize, found: usize, nodes: usize } =
@@ -75,7 +78,8 @@ signorini_fem_mesh::errors! {
             numbered; use smaller subdomains";
         DependentRows { node: u32 } =
             "node {node}: its rows depend on one another, no preconditioner can scale them; give each contact once";
-        TooLarge { what: &'static str, count: usize } = "{what} = {count} is more than the 32-bit tables can number";
+        TooLarge { what: &'static str, count: usize } =
+            "{what}: {count} are more than tables can number or hold";
     }
 }
 

@@ -12,6 +12,10 @@ pub(crate) const SAME: f64 = 1e-12;
 pub(crate) const TRANSLATE: f64 = 1e-12;
 /// Directions: the share that is left of one that depends on others, or that supports fix.
 pub(crate) const FIXED: f64 = 1e-8;
+/// Directions that supports fix at a node, and a contact normal there: sine of the angle up to which two are one. Of
+/// coordinates with six or seven digits normals of facets in one plane differ by up to 1e-5; facets of a round surface
+/// meet at more.
+pub(crate) const ONE_DIRECTION: f64 = 1e-4;
 /// Share of the mean of a side of several nodes from which on supports hold that side.
 pub(crate) const HELD: f64 = 0.25;
 /// The same where both sides are means, in a mesh of order 2: of a corner on a plane that supports hold it is a quarter
@@ -52,11 +56,11 @@ pub(crate) const FREE: f64 = 1e-11;
 /// The same of bodies whose rows, of length about one, cancel: contact of a body with itself leaves the squares of
 /// rounding, up to 1e-28.
 pub(crate) const NO_ACTION: f64 = 1e-20;
-/// Layers of a grid: largest difference of positions within one, relative to the extent.
-pub(crate) const LAYER: f64 = 1e-6;
 /// The same of springs where supports hold a subdomain, from which on a motion is held: eigenvalues between the two
 /// make no matrix that is safe to invert.
 pub(crate) const HELD_MOTION: f64 = 1e-3;
+/// Layers of a grid: largest difference of positions within one, relative to the extent.
+pub(crate) const LAYER: f64 = 1e-6;
 /// Components of a free motion that is described, or that contact rows stop, relative to its length.
 pub(crate) const MOVING: f64 = 1e-9;
 /// Work on a free motion, relative to the norms of both, above which a load is not in balance with it.
@@ -130,6 +134,17 @@ pub(crate) const STIFFER: f64 = 30.0;
 /// Steps of Lanczos' method for the largest eigenvalue that a lumped block leaves: it is 1 % short at most on boxes of
 /// 4 to 12 cells.
 pub(crate) const LANCZOS: usize = 8;
+/// Stiffness of a spring over that of the stiffest node from which on it holds: below, contact is to balance what it can
+/// (softer by ten it took 4 times the products of a stiff one, softer by 100 the limit).
+pub(crate) const SOFT_SPRING: f64 = 1e-4;
+/// The same from which on it is in the projector: below, a factor would find it singular.
+pub(crate) const NO_HOLD: f64 = 1e-13;
+/// Least scale of the row of a spring: softer ones are still seen as holding.
+pub(crate) const SOFTEST: f64 = 1e-3;
+/// Part of a direction of a row beside those of the same node, over its length, below which it is one of them.
+pub(crate) const SAME_DIRECTION: f64 = 1e-9;
+/// Displacement cases from which on a number is none: they are numbered without gaps, and tables have a list for each.
+pub(crate) const CASES: u32 = 1 << 20;
 
 // ---- what is worth a table, a cut or a thread; seconds are those of one core ----
 
@@ -215,13 +230,3 @@ pub(crate) const NODE: usize = 90;
 pub(crate) const BORDER: usize = 12;
 /// What a group of a subdomain's factor costs a solve besides its tiles, in tiles.
 pub(crate) const GROUP: usize = 4;
-
-/// Stiffness of a spring over that of the stiffest node from which on it holds: below, contact is to balance what it can
-/// (softer by ten it took 4 times the products of a stiff one, softer by 100 the limit).
-pub(crate) const SOFT_SPRING: f64 = 1e-4;
-/// The same from which on it is in the projector: below, a factor would find it singular.
-pub(crate) const NO_HOLD: f64 = 1e-13;
-/// Least scale of the row of a spring: softer ones are still seen as holding.
-pub(crate) const SOFTEST: f64 = 1e-3;
-/// Part of a direction of a row beside those of the same node, over its length, below which it is one of them.
-pub(crate) const SAME_DIRECTION: f64 = 1e-9;

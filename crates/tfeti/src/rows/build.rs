@@ -11,10 +11,10 @@ use crate::rows::rigid::RigidRow;
 use crate::rows::side::ContactConstraint;
 use crate::rows::supports::{MergedSupports, NodalSpring, check_node};
 use crate::subdomain::copy_stiffness::CopyStiffness;
-use crate::tolerances::{SAME, SOFTEST};
+use crate::tolerances::{SAME, SOFTEST, UNIT};
 use signorini_fem_mesh::Decomposition;
 use signorini_fem_mesh::decomposition::NodeCopy;
-use signorini_fem_mesh::vec3::{combine, dot};
+use signorini_fem_mesh::vec3::{combine, dot, norm};
 
 impl Gluing {
     /// Builds the rows. `stiffness` weighs the copies of a node in contact and support rows. Those that hold rigid
@@ -353,7 +353,8 @@ impl Builder<'_> {
             check_node(node, self.decomposition.nodes(), || format!("spring {k}"))?;
             let copies = self.decomposition.copies(node as usize);
             let compliance = 1.0 / (self.stiffness.squares(copies) * stiffness);
-            if !(compliance.is_finite() && compliance > 0.0) {
+            let turned = (norm(spring.direction) - 1.0).abs();
+            if !(compliance.is_finite() && compliance > 0.0 && turned <= UNIT) {
                 return Err(TfetiError::Spring { node, stiffness });
             }
             self.stiffness.unit_shares(copies, &mut self.shares);

@@ -4,7 +4,7 @@ use crate::error::TfetiError;
 use crate::linalg::entry;
 use crate::rows::side::{ContactConstraint, check_constraints};
 use crate::rows::supports::{FixedNode, MergedSupports};
-use crate::tolerances::{ANGLE, FIXED, HELD_OF_OTHER};
+use crate::tolerances::{ANGLE, FIXED, HELD_OF_OTHER, ONE_DIRECTION};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use signorini_fem_mesh::vec3::dot;
 
@@ -288,7 +288,7 @@ impl AllRows {
         let factors = [1.0, point.stretch];
         let fixed = space.fixed(point, normal);
         let along: Vector3<f64> = fixed.iter().map(|d| *d * d.dot(&normal)).sum();
-        if fixed.len() == 3 || (normal - along).norm() <= FIXED {
+        if fixed.len() == 3 || (normal - along).norm() <= ONE_DIRECTION {
             let value = |(case, v): &(u32, [f64; 3])| (*case, dot(*v, point.frame.normal));
             self.prescribed.push(PrescribedPoint {
                 point: index,

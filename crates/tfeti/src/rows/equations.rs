@@ -12,7 +12,7 @@ use super::supports::{MergedSupports, check_node};
 use crate::error::TfetiError;
 use crate::linalg::entry;
 use crate::rows::contact::contact_rows;
-use crate::tolerances::{AGREEING, ALMOST, COEFFICIENTS, FIXED, PIVOTAL};
+use crate::tolerances::{AGREEING, ALMOST, CASES, COEFFICIENTS, FIXED, PIVOTAL};
 use signorini_fem_mesh::Decomposition;
 use signorini_fem_mesh::internal::DisjointSets;
 use signorini_fem_mesh::vec3::{dot, is_finite, norm, scale, sub};
@@ -74,6 +74,9 @@ impl FreeEquation {
         let finite = all().all(|(_, vector)| is_finite(*vector));
         if !(finite && values.iter().all(|v| v.1.is_finite())) {
             return refuse("its coefficients and its value over the largest of them must be finite");
+        }
+        if given.values.iter().any(|v| v.0 >= CASES) {
+            return refuse("its displacement case is too large; number the cases from 0 without gaps");
         }
         let subdomains = decomposition.subdomains();
         let is_place = |s: &u32| {

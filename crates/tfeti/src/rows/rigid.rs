@@ -2,7 +2,7 @@
 
 use super::gluing::CopyEntry;
 use crate::error::TfetiError;
-use crate::tolerances::{ON_A_LINE, RIGID};
+use crate::tolerances::{CASES, ON_A_LINE, RIGID, UNIT};
 use nalgebra::{SMatrix, SVector};
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, far_apart, norm, sub};
 use signorini_fem_mesh::{Decomposition, TetMesh};
@@ -67,8 +67,11 @@ impl RigidSupport {
         let forces = forces.ok_or(TfetiError::Collinear { subdomain })?;
         let square: f64 = forces.iter().map(|(_, f)| dot(*f, *f)).sum();
         let scale = (RIGID / square).sqrt();
-        let bad = self.values.iter().any(|v| !v.1.is_finite());
-        if bad || !(scale.is_finite() && scale > 0.0) {
+        let good = |v: &(u32, f64)| v.0 < CASES && v.1.is_finite();
+        // one is a unit vector, the other one zero
+        let sizes = (norm(force) - 1.0).abs().min((norm(moment) - 1.0).abs());
+        let one = sizes <= UNIT && (force == [0.0; 3] || moment == [0.0; 3]);
+        if !(one && self.values.iter().all(good) && scale.is_finite() && scale > 0.0) {
             return Err(TfetiError::RigidSupport { subdomain });
         }
         let entry = |(local, force): (usize, Vec3)| CopyEntry {

@@ -2,7 +2,7 @@
 
 use crate::error::TfetiError;
 use crate::linalg::entry;
-use crate::tolerances::{AGREEING, FIXED};
+use crate::tolerances::{AGREEING, FIXED, ONE_DIRECTION};
 use signorini_fem_mesh::vec3::{dot, norm};
 use std::collections::BTreeMap;
 
@@ -324,21 +324,26 @@ fn unit_directions(s: usize, support: &NodeSupport) -> Result<Vec<Vec<[f64; 3]>>
             nodes,
         });
     }
-    for (k, direction) in of_nodes.iter_mut().flat_map(|list| list.iter_mut().enumerate()) {
-        // Scaled first, so that neither tiny nor huge vectors lose their length.
-        let largest = direction.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
-        let finite = direction.iter().all(|v| v.is_finite());
-        if !finite || largest == 0.0 {
-            return Err(TfetiError::BadDirection {
+    for (at, list) in of_nodes.iter_mut().enumerate() {
+        let node = of_each.then(|| support.nodes[at]);
+        for (k, direction) in list.iter_mut().enumerate() {
+            *direction = unit_direction(*direction).ok_or(TfetiError::BadDirection {
                 support: s,
+                node,
                 direction: k,
-            });
+            })?;
         }
-        let scaled = direction.map(|v| v / largest);
-        let length = norm(scaled);
-        *direction = scaled.map(|v| v / length);
     }
     Ok(of_nodes)
+}
+
+/// `None` if it is zero or not finite.
+fn unit_direction(direction: [f64; 3]) -> Option<[f64; 3]> {
+    // scaled first, so that neither tiny nor huge vectors lose their length
+    let largest = direction.iter().fold(0.0_f64, |m, v| m.max(v.abs()));
+    let scaled = direction.map(|v| v / largest);
+    let length = norm(scaled);
+    length.is_finite().then(|| scaled.map(|v| v / length))
 }
 
 /// Orthonormalises a direction against those already fixed, and adds it if something is left.
@@ -373,7 +378,7 @@ fn add_direction(
         }
     }
     let length = norm(rest);
-    if length > FIXED {
+    if length > ONE_DIRECTION {
         values.sort_by_key(|v| v.0);
         values.retain(|v| v.1.abs() > f64::EPSILON * size);
         for value in &mut values {
@@ -388,7 +393,9 @@ fn add_direction(
         });
         return Ok(());
     }
-    if let Some(&(case, difference)) = values.iter().find(|v| v.1.abs() > AGREEING * size) {
+    // what is left of it has its part in the value
+    let agreeing = (AGREEING + length) * size;
+    if let Some(&(case, difference)) = values.iter().find(|v| v.1.abs() > agreeing) {
         return Err(TfetiError::ContradictorySupports {
             node: fixed_node.node,
             first,

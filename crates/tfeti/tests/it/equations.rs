@@ -164,3 +164,22 @@ fn many_are_judged_in_little_time() {
         assert!(!found.contains(&count));
     }
 }
+
+/// A case is a number of one, not of bytes.
+#[test]
+fn equations_of_too_large_a_case_are_refused() {
+    let of = |case| {
+        let values = vec![(case, 1.0)];
+        let equation = NodalEquation {
+            values,
+            ..alike(8, 9, 1.0)
+        };
+        system(&[equation]).err()
+    };
+    assert_eq!(of(3), None);
+    let error = of(u32::MAX);
+    assert!(
+        matches!(error, Some(TfetiError::Equation { equation: 0, .. })),
+        "{error:?}"
+    );
+}

@@ -133,6 +133,14 @@ fn what_is_refused() {
     for bad in [held(6), nowhere, RigidSupport { values, ..held(0) }] {
         assert_eq!(refused(bad), TfetiError::RigidSupport { subdomain });
     }
+    let [x, long] = [1.0, 2.0].map(|v| [v, 0.0, 0.0]);
+    for direction in [[long, [0.0; 3]], [x, x], [[f64::NAN, 0.0, 0.0], x]] {
+        let bad = RigidSupport { direction, ..held(0) };
+        assert_eq!(refused(bad), TfetiError::RigidSupport { subdomain });
+    }
+    let values = vec![(u32::MAX, 1.0)];
+    let late = RigidSupport { values, ..held(0) };
+    assert_eq!(refused(late), TfetiError::RigidSupport { subdomain });
 }
 
 /// However little of a contact row is elastic, the weights of all others stay what they are.

@@ -159,6 +159,7 @@ fn bad_input_is_named() {
             err(&[support], &[]),
             TfetiError::BadDirection {
                 support: 0,
+                node: None,
                 direction: 0
             }
         ));

@@ -1,9 +1,10 @@
 //! Rows of `B` at supports: contact nodes that are supported too, doubled supports, prescribed motions.
 
 use crate::common::{Brick, dot, gluing, gram, is_orthonormal, smallest_eigenvalue};
-use signorini_fem_mesh::{SurfaceFrame, brick};
+use signorini_fem_mesh::{SurfaceFrame, brick, vec3};
 use signorini_tfeti::internal::{MergedSupports, prescribed_points};
 use signorini_tfeti::{ContactConstraint, Directions, Gluing, Motion, NodeSupport, TangentialRows, TfetiError};
+use std::collections::BTreeMap;
 
 #[test]
 fn partial_supports_reduce_the_tangential_space() {
@@ -249,4 +250,71 @@ fn what_an_oblique_support_and_a_rough_obstacle_may_exchange() {
     }
     let plain = gluing(&b, &[], &b.contact(true)).unwrap();
     assert!(plain.dependencies().is_empty());
+}
+
+/// Seven digits of coordinates tell the normals of two supports on one inclined plane apart, but mean one.
+#[test]
+fn supports_on_one_inclined_plane_hold_no_more_than_one() {
+    let flat = brick::Brick::new([2.0, 1.0, 0.2], [16, 8, 2]).build().unwrap();
+    let (sin, cos) = 0.5_f64.sin_cos();
+    let seven = |v: f64| (v * 1e6).round() / 1e6;
+    let points = flat.points().iter().map(|[x, y, z]| {
+        let [x, y, z] = [1.0 + cos * x - sin * z, y + 0.1 * x, sin * x + cos * z];
+        [x, y, z].map(seven)
+    });
+    let points: Vec<[f64; 3]> = points.collect();
+    // normals at the nodes of each half of the bottom, which share an edge
+    let mut normals = [BTreeMap::new(), BTreeMap::new()];
+    for facet in flat.facets().iter().filter(|facet| facet.tag == brick::Z_MIN) {
+        let half = usize::from(facet.nodes.iter().any(|n| flat.points()[*n as usize][0] > 1.0));
+        let area = vec3::area_vector(&facet.nodes.map(|n| points[n as usize]));
+        for node in facet.nodes {
+            let sum = normals[half].entry(node).or_insert([0.0; 3]);
+            *sum = vec3::add(*sum, area);
+        }
+    }
+    let moved = |half: usize, by: [f64; 3]| {
+        let lists = normals[half].values().map(|n| vec![*n]).collect();
+        let nodes = normals[half].keys().copied().collect();
+        NodeSupport::partial(nodes, Directions::EachNode(lists)).with_motion(Motion::new(0, vec![by]))
+    };
+    let merged = |by: [[f64; 3]; 2]| MergedSupports::new(&[moved(0, by[0]), moved(1, by[1])], points.len());
+    let w = [1e-3, 2e-3, -4e-3];
+    let supports = merged([w; 2]).unwrap();
+    let seam: Vec<u32> = normals[0]
+        .keys()
+        .filter(|n| normals[1].contains_key(n))
+        .copied()
+        .collect();
+    let angle = |n: &u32| {
+        let [a, b] = [0, 1].map(|half| vec3::unit(normals[half][n]));
+        vec3::norm(vec3::cross(a, b))
+    };
+    let largest = seam.iter().map(angle).fold(0.0, f64::max);
+    assert!(seam.len() == 9 && (1e-7..1e-5).contains(&largest), "{largest:e}");
+    for node in &seam {
+        let directions = supports.directions(*node);
+        assert_eq!(directions.len(), 1, "node {node}: the edge is free along the plane");
+    }
+    // a plane that moves away from the other one is refused
+    let off = merged([w, [1e-3, 2e-3, -3.9e-3]]).unwrap_err();
+    assert!(
+        matches!(
+            off,
+            TfetiError::ContradictorySupports {
+                first: 0,
+                second: 1,
+                ..
+            }
+        ),
+        "{off}"
+    );
+    // contact on the plane has no force of its own
+    let frame = SurfaceFrame::from_normal(vec3::unit(normals[1][&seam[4]])).unwrap();
+    let contact = [ContactConstraint::new(seam[4], frame)];
+    assert_eq!(prescribed_points(&contact, &supports).unwrap().len(), 1);
+    // facets of a cylinder of a degree each meet at an angle that is meant
+    let one = |tilt: f64| NodeSupport::partial(vec![0], Directions::Vectors(vec![[tilt.sin(), 0.0, tilt.cos()]]));
+    let seam = MergedSupports::new(&[one(0.0), one(0.0087)], 8).unwrap();
+    assert_eq!(seam.directions(0).len(), 2);
 }
