@@ -6,6 +6,7 @@ use crate::linalg::sparse::Symbolic;
 use crate::subdomain::cost::{ClassReport, InverseSettings, Size, choose};
 use crate::subdomain::inverse::Inverse;
 use crate::subdomain::matrices::{ClassMatrices, Subdomains};
+use crate::subdomain::packed::counts;
 use rayon::prelude::*;
 
 /// Generalised inverse of a class.
@@ -42,10 +43,18 @@ pub(crate) fn invert(
     };
     let each = || (0..bases.len()).into_par_iter();
     let patterns: Vec<Option<Symbolic>> = each().map(symbolic).collect::<Result<_, _>>()?;
-    let stored = |pattern: &Option<Symbolic>| pattern.as_ref().map_or(0, Symbolic::stored) as f64;
-    let mut factors: Vec<f64> = patterns.iter().map(stored).collect();
-    subdomains.ownership.complete(&mut factors);
-    let size = |k: usize| Size::new(&classes[k], map.classes[k].nodes.len(), factors[k] as usize);
+    let counted = |k: usize| match (subdomains.held(k), &patterns[k]) {
+        (Some(own), Some(pattern)) => counts(&classes[k], &own.stiffness, pattern),
+        _ => [0; 2],
+    };
+    let counted: Vec<[usize; 2]> = each().map(counted).collect();
+    let numbers = [0, 1].map(|which| {
+        let mut numbers: Vec<f64> = counted.iter().map(|both| both[which] as f64).collect();
+        subdomains.ownership.complete(&mut numbers);
+        numbers
+    });
+    let numbers = |k: usize| [0, 1].map(|which| numbers[which][k] as usize);
+    let size = |k: usize| Size::new(&classes[k], map.classes[k].nodes.len(), numbers(k));
     let sizes: Vec<Size> = (0..bases.len()).map(size).collect();
     let dense = choose(&sizes, settings)?;
     let inverse = |k: usize| {

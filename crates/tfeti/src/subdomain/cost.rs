@@ -86,19 +86,22 @@ pub(crate) struct Size {
     pub(crate) boundary: usize,
     /// Members.
     pub(crate) members: usize,
-    /// Numbers stored for the sparse factor.
+    /// Numbers of the sparse factor, and those stored for products with one column, if they are counted.
     pub(crate) factor: usize,
+    pub(crate) packed: usize,
 }
 
 impl Size {
     /// From the nodes that `B` touches and the numbers of the factor; a rigid class has no matrices.
-    pub(crate) fn new(class: &Class, nodes: usize, factor: usize) -> Self {
-        let [dim, boundary, factor] = if class.is_rigid { [0; 3] } else { [3 * class.nodes, 3 * nodes, factor] };
+    pub(crate) fn new(class: &Class, nodes: usize, [factor, packed]: [usize; 2]) -> Self {
+        let all = [3 * class.nodes, 3 * nodes, factor, packed];
+        let [dim, boundary, factor, packed] = if class.is_rigid { [0; 4] } else { all };
         Self {
             dim,
             boundary,
             members: class.members.len(),
             factor,
+            packed,
         }
     }
 
@@ -118,7 +121,8 @@ impl Size {
     }
 
     fn bytes(&self, dense: bool) -> u64 {
-        8 * (self.factor + if dense { self.boundary * self.boundary } else { 0 }) as u64
+        let own = if self.is_packed(dense) { self.packed } else { self.factor };
+        8 * (own + if dense { self.boundary * self.boundary } else { 0 }) as u64
     }
 
     /// Seconds of a product of all members with a dense matrix: arithmetic for shared matrices, streaming for single
@@ -177,7 +181,7 @@ pub(crate) fn choose(sizes: &[Size], settings: &InverseSettings) -> Result<Vec<b
                 break;
             }
             dense[k] = false;
-            needed -= boundary(&sizes[k]);
+            needed = needed - sizes[k].bytes(true) + sizes[k].bytes(false);
         }
     }
     if needed > limit { Err(TfetiError::Memory { needed, limit }) } else { Ok(dense) }
@@ -194,6 +198,7 @@ mod tests {
             boundary: 456,
             members: 188,
             factor: 39_740,
+            packed: 41_000,
         };
         assert!(shared.prefers_dense(2000, true));
         let single = Size { members: 1, ..shared };
@@ -215,6 +220,7 @@ mod tests {
             boundary: 456,
             members: 188,
             factor: 39_740,
+            packed: 41_000,
         };
         let sparse = size.bytes(false);
         let limited = InverseSettings::default().with_memory_limit(sparse);

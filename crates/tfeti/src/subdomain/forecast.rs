@@ -77,7 +77,7 @@ impl<'a> Forecast<'a> {
         });
         let analysed: Vec<(Columns, Symbolic)> = analysed.collect::<Result<_, _>>()?;
         let (mut sizes, mut copies, mut others) = (Vec::with_capacity(list.len()), 0, 0);
-        for (class, (_, symbolic)) in list.iter().zip(&analysed) {
+        for (class, (pattern, symbolic)) in list.iter().zip(&analysed) {
             let mut boundary = vec![false; class.nodes];
             for &s in &class.members {
                 for (mark, &node) in boundary.iter_mut().zip(&subdomains[s as usize].nodes) {
@@ -88,18 +88,14 @@ impl<'a> Forecast<'a> {
             }
             let boundary = boundary.iter().filter(|b| **b).count();
             copies += class.members.len() * boundary;
-            sizes.push(Size::new(class, boundary, symbolic.stored()));
+            sizes.push(Size::new(class, boundary, packed::counts(class, pattern, symbolic)));
         }
         let dense = choose(&sizes, settings).unwrap_or_else(|_| vec![false; sizes.len()]);
-        let report = |(k, size): (usize, &Size)| {
-            let mut report = size.report(dense[k]);
-            if size.is_packed(dense[k]) {
-                let (pattern, symbolic) = &analysed[k];
-                report.bytes = 8 * packed::stored(pattern, &symbolic.order()) as u64;
-            }
-            report
-        };
-        let classes: Vec<ClassReport> = sizes.iter().enumerate().map(report).collect();
+        let classes: Vec<ClassReport> = sizes
+            .iter()
+            .zip(dense)
+            .map(|(size, dense)| size.report(dense))
+            .collect();
         // interface blocks and their entries: k - 1 Helmert rows over 2 to k copies
         let counts = (0..decomposition.nodes()).map(|n| decomposition.copies(n).len());
         let (blocks, entries) = counts.filter(|k| *k > 1).fold((0, 0), |(blocks, entries), k| {

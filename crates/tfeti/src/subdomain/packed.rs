@@ -1,9 +1,10 @@
 //! A sparse factor stored for solves with one right-hand side.
 
 use crate::linalg::elimination::{Group, grouped, patterns};
-use crate::linalg::sparse::{Columns, MemoryNeed, SparseCholesky, quotient};
+use crate::linalg::sparse::{Columns, MemoryNeed, SparseCholesky, Symbolic, quotient};
 use crate::linalg::supernodes::{Supernodes, Way};
 use crate::linalg::tiles::Tile;
+use crate::subdomain::class::Class;
 use crate::subdomain::kernel::{Kernel, add_wrench, displacement};
 use crate::tolerances::GROUP;
 
@@ -35,8 +36,17 @@ fn group(matrix: &Columns, order: &[u32]) -> Vec<Group> {
     grouped(0..blocks.len(), &patterns(&graph, &blocks), |_, _| true, cost)
 }
 
+/// Numbers stored for a factor of a class, and, if that has one member, for products with one column.
+pub(crate) fn counts(class: &Class, pattern: &Columns, symbolic: &Symbolic) -> [usize; 2] {
+    let single = class.members.len() == 1 && !class.is_rigid;
+    [
+        symbolic.stored(),
+        if single { stored(pattern, &symbolic.order()) } else { 0 },
+    ]
+}
+
 /// Numbers stored for a factor of a matrix with this pattern and order of elimination.
-pub(super) fn stored(matrix: &Columns, order: &[u32]) -> usize {
+fn stored(matrix: &Columns, order: &[u32]) -> usize {
     let of = |g: &Group| {
         let (width, height) = (g.columns.len(), g.columns.len() + g.below.len());
         Supernodes::tiles_of(NODE * width, NODE * height)
@@ -97,12 +107,13 @@ impl PackedFactor {
                 let g = &pattern[k];
                 let own = NODE * g.columns.start..NODE * g.columns.end;
                 if j == own.start {
-                    rows_at.fill(usize::MAX);
-                    rows_of.clear();
+                    for b in rows_of.drain(..) {
+                        rows_at[NODE * b as usize..][..NODE].fill(usize::MAX);
+                    }
+                    rows_of.extend(g.columns.clone().map(|b| b as u32));
                     rows_of.extend_from_slice(&g.below);
-                    rows_of.sort_unstable_by_key(|&b| new[b as usize]);
-                    let own = g.columns.clone().map(|b| b as u32);
-                    for (p, b) in own.chain(rows_of.iter().copied()).enumerate() {
+                    rows_of[g.columns.len()..].sort_unstable_by_key(|&b| new[b as usize]);
+                    for (p, &b) in rows_of.iter().enumerate() {
                         for c in 0..NODE {
                             rows_at[NODE * b as usize + c] = NODE * p + c;
                         }

@@ -179,9 +179,10 @@ impl<'a> TfetiBuilder<'a> {
         );
         let ((inverses, classes), coarse) = (inverses?, coarse?);
         exchange.check()?;
-        let coarse_bytes = match self.forecast.and_then(|f| f.coarse.filter(|_| levels)) {
-            Some(found) => found.bytes,
-            None => 8 * coarse.0.symbolic()?.stored() as u64,
+        let coarse_bytes = if levels {
+            self.forecast.and_then(|f| f.coarse).map_or(0, |found| found.bytes)
+        } else {
+            8 * coarse.0.symbolic()?.stored() as u64
         };
         let factors = inverses.iter().flatten().count();
         let report = SetupReport {

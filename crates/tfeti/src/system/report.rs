@@ -11,7 +11,8 @@ pub struct SetupReport {
     pub classes: Vec<ClassReport>,
     /// Bytes of the inverses and factors of subdomains, of several processes those that this one holds.
     pub inverse_bytes: u64,
-    /// Bytes of the coarse factors: of two levels as many as were forecast, else of a factor of the whole matrix.
+    /// Bytes of the coarse factors: of two levels as many as were forecast, 0 without a forecast, else of a factor of the
+    /// whole matrix.
     pub coarse_bytes: u64,
     /// Bytes of the gather tables.
     pub table_bytes: u64,

@@ -3,8 +3,8 @@
 use crate::common::steel;
 use signorini_fem_mesh::{Decomposition, TetMesh, brick};
 use signorini_qp::SymmetricOperator;
-use signorini_tfeti::internal::{Forecast, Rate};
-use signorini_tfeti::{InverseSettings, NodeSupport, Tfeti, TfetiBuilder};
+use signorini_tfeti::internal::{Forecast, InverseKind, Rate};
+use signorini_tfeti::{InverseSettings, NodeSupport, Tfeti, TfetiBuilder, TfetiError};
 
 /// A forecast is compared with a system that was built without it, and with one that took over what it found.
 fn both(mesh: &TetMesh, decomposition: &Decomposition, share: bool, mut check: impl FnMut(&Forecast<'_>, &Tfeti)) {
@@ -78,4 +78,27 @@ fn the_coarse_factor_of_very_small_subdomains_is_counted() {
 fn this_machine_has_a_rate() {
     let rate = Rate::measure();
     assert!(rate.flops > 1e7 && rate.numbers > 1e6, "{rate:?}");
+}
+
+/// A limit that the forecast keeps is kept by the set-up, too: of one body that is stored for one column.
+#[test]
+fn forecast_and_set_up_keep_the_same_limit() {
+    let mesh = brick::Brick::new([3.0, 1.0, 1.0], [24, 8, 8]).build().unwrap();
+    let decomposition = Decomposition::whole(&mesh);
+    let materials = steel();
+    let supports = [NodeSupport::fixed(mesh.nodes_on(brick::X_MIN))];
+    let forecast = |limit: u64| {
+        let settings = InverseSettings::default().with_kind(InverseKind::Sparse);
+        let settings = settings.with_memory_limit(limit);
+        let touched = |node| supports[0].nodes.contains(&node);
+        Forecast::new(&mesh, &decomposition, &materials, true, &settings, &[], touched).unwrap()
+    };
+    let needed = forecast(u64::MAX).inverse_bytes;
+    let build = |limit| {
+        let found = forecast(limit);
+        TfetiBuilder::of_forecast(&found).with_supports(&supports).build()
+    };
+    assert_eq!(build(needed).unwrap().report().inverse_bytes, needed);
+    let (limit, refused) = (needed - 1, build(needed - 1).err());
+    assert_eq!(refused, Some(TfetiError::Memory { needed, limit }));
 }
