@@ -57,17 +57,13 @@ impl Communicator for World {
         self.size
     }
 
-    fn gather(&self, values: &mut [f64], parts: &[Range<usize>]) -> Result<(), CommunicationError> {
-        self.gather_while(values, parts, &mut || ())
-    }
-
     fn gather_while(
         &self,
         values: &mut [f64],
         parts: &[Range<usize>],
         work: &mut dyn FnMut(),
     ) -> Result<(), CommunicationError> {
-        let numbers = values.len();
+        let numbers = parts.iter().map(Range::len).max().unwrap_or(0);
         if Count::try_from(numbers).is_err() {
             work();
             return Err(CommunicationError::TooLong { numbers });

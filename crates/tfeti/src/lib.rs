@@ -17,7 +17,8 @@
 //! are forces on the body; a normal multiplier is at most zero. The residual of the rows is `B u - c = F lambda - d +
 //! G^T alpha`.
 //!
-//! Everything is immutable once built; operators allocate nothing, their work memory belongs to the caller. Products
+//! Everything is immutable once built; the work memory of operators belongs to the caller, and they allocate nothing
+//! but messages to other processes. Products
 //! run in parallel on the current rayon pool (best called from one of its threads) and are bit-identical for any number
 //! of threads.
 //! Functions that take an index or a vector panic, like slices, if it is out of range or too short.

@@ -29,7 +29,7 @@ pub(crate) struct CoarseData {
     /// Of a factor of the whole matrix, made when it is first asked for.
     symbolic: Arc<OnceLock<Symbolic>>,
     pub(crate) mobility: Arc<Mobility>,
-    /// Whether the support rows alone hold all bodies.
+    /// Whether what is no contact row holds all bodies.
     supports_suffice: bool,
 }
 
@@ -40,8 +40,11 @@ pub struct CoarseScratch {
     pub(crate) sides: Vec<Wrench>,
     /// Motions by subdomain.
     pub(crate) motions: Vec<[f64; 6]>,
-    pub(crate) first: Vec<f64>,
-    pub(crate) second: Vec<f64>,
+    /// The right side of a solve, then what solves it.
+    pub(crate) side: Vec<f64>,
+    /// A right side, or amplitudes, that another solve leaves alone.
+    pub(crate) kept: Vec<f64>,
+    /// A vector of rows.
     pub(crate) dual: Vec<f64>,
     /// For sparse factors.
     pub(crate) memory: SolveMemory,
@@ -146,8 +149,8 @@ impl Coarse {
         CoarseScratch {
             sides: vec![Wrench::default(); self.0.tables.work()],
             motions: vec![[0.0; 6]; rows / 6],
-            first: vec![0.0; rows],
-            second: vec![0.0; rows],
+            side: vec![0.0; rows],
+            kept: vec![0.0; rows],
             dual: vec![0.0; self.dim()],
             memory: SolveMemory::new(MemoryNeed::NONE),
             digits: Digits::Double,

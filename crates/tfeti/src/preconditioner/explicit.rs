@@ -60,6 +60,7 @@ struct OthersScratch {
     memory: SolveMemory,
     /// In the order of the factor.
     half: Vec<f64>,
+    contact: Vec<f64>,
 }
 
 /// What steps with a formed `F` cost, in products of a solve; the same for any number of processes.
@@ -295,6 +296,7 @@ impl ExplicitInverse {
         OthersScratch {
             memory: SolveMemory::new(self.factor.need(1)),
             half: vec![0.0; self.rows],
+            contact: vec![0.0; self.contact],
         }
     }
 
@@ -311,14 +313,15 @@ impl ExplicitInverse {
 
     /// The rows behind the contact rows from those, after [`forward`](Self::forward).
     fn backward(&self, x: &mut [f64], s: &mut OthersScratch) {
-        let contact = x[..self.contact].to_vec();
+        s.contact.copy_from_slice(&x[..self.contact]);
+        let contact = &s.contact;
         let own = &mut s.half[self.rows - self.contact..];
         for (j, value) in own.iter_mut().enumerate() {
             let column = &self.corner[j * (self.contact + 1)..(j + 1) * self.contact];
             *value = vector::dot(column, &contact[j..]);
         }
         self.factor.half_solve_transpose(&mut s.half, x, &mut s.memory);
-        x[..self.contact].copy_from_slice(&contact);
+        x[..self.contact].copy_from_slice(contact);
     }
 
     fn solve(&self, x: &mut [f64], s: &mut ExplicitScratch) {

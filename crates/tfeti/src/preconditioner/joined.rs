@@ -73,7 +73,10 @@ impl JoinedGroups {
         let node = |k: usize| gluing.node(rows[k.min(rows.len() - 1)] as usize).unwrap_or_default();
         let dependent = |error| match error {
             FactorError::Pivot(k) => TfetiError::DependentRows { node: node(k) },
-            FactorError::Pattern => TfetiError::pattern(FactorError::Pattern, 0),
+            FactorError::Pattern => TfetiError::TooLarge {
+                what: "rows of contact points that share nodes",
+                count: rows.len(),
+            },
         };
         let symbolic = Symbolic::new(&matrix, 1).map_err(dependent)?;
         let factor = SparseCholesky::new(&symbolic, &matrix).map_err(dependent)?;

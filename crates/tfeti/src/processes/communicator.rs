@@ -16,7 +16,7 @@ signorini_fem_mesh::errors! {
         NoRank { rank: usize, size: usize } =
             "the communicator is rank {rank} of {size}; ranks are numbered from 0, each less than their number";
         TooLong { numbers: usize } =
-            "{numbers} numbers are more than one message can hold; use more ranks";
+            "the {numbers} numbers of one rank are more than a message can hold; use more ranks";
     }
 }
 
@@ -33,26 +33,17 @@ pub trait Communicator: Debug + Send + Sync {
     fn size(&self) -> usize;
 
     /// Completes `values`: on entry those in `parts[rank]` are set, on return those in the parts of all ranks. Parts
-    /// follow one another, one a rank, and may be empty.
+    /// follow one another, one a rank, and may be empty. Meanwhile, or first, it does `work`, once, which needs none of
+    /// the values: a rank that is early waits for the others that much less.
     ///
     /// # Errors
-    /// [`CommunicationError`]; what is in the parts of other ranks is then undefined.
-    fn gather(&self, values: &mut [f64], parts: &[Range<usize>]) -> Result<(), CommunicationError>;
-
-    /// The same, and `work` meanwhile, which needs none of the values: a rank that is early waits for the others that
-    /// much less. Without an own implementation the work is done first.
-    ///
-    /// # Errors
-    /// As [`gather`](Self::gather); the work is done in any case.
+    /// [`CommunicationError`]; what is in the parts of other ranks is then undefined. The work is done in any case.
     fn gather_while(
         &self,
         values: &mut [f64],
         parts: &[Range<usize>],
         work: &mut dyn FnMut(),
-    ) -> Result<(), CommunicationError> {
-        work();
-        self.gather(values, parts)
-    }
+    ) -> Result<(), CommunicationError>;
 }
 
 /// One process: nothing to gather.
@@ -68,7 +59,13 @@ impl Communicator for Alone {
         1
     }
 
-    fn gather(&self, _: &mut [f64], _: &[Range<usize>]) -> Result<(), CommunicationError> {
+    fn gather_while(
+        &self,
+        _: &mut [f64],
+        _: &[Range<usize>],
+        work: &mut dyn FnMut(),
+    ) -> Result<(), CommunicationError> {
+        work();
         Ok(())
     }
 }

@@ -101,9 +101,6 @@ impl Exchange {
         if self.ranks() == 1 {
             return;
         }
-        if let Some(parts) = self.in_order(pieces) {
-            return self.gather(values, &parts);
-        }
         let of = |rank: usize| pieces.iter().filter(move |piece| piece.0 == rank).map(|p| p.1.clone());
         let mut at = 0;
         let part = |rank: usize| {
@@ -126,21 +123,5 @@ impl Exchange {
             values[range].copy_from_slice(own);
             rest = tail;
         }
-    }
-
-    /// The part of each rank, where each has set consecutive numbers, in the order of the ranks: then nothing is
-    /// packed.
-    fn in_order(&self, pieces: &[(usize, Range<usize>)]) -> Option<Vec<Range<usize>>> {
-        let (mut parts, mut end) = (Vec::with_capacity(self.ranks()), 0);
-        for (rank, range) in pieces {
-            if *rank + 1 < parts.len() || range.start != end {
-                return None;
-            }
-            parts.resize(rank + 1, end..end);
-            end = range.end;
-            parts[*rank].end = end;
-        }
-        parts.resize(self.ranks(), end..end);
-        Some(parts)
     }
 }

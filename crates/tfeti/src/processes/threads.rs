@@ -23,10 +23,6 @@ impl Communicator for ThreadRank {
         self.to.len()
     }
 
-    fn gather(&self, values: &mut [f64], parts: &[Range<usize>]) -> Result<(), CommunicationError> {
-        self.gather_while(values, parts, &mut || ())
-    }
-
     fn gather_while(
         &self,
         values: &mut [f64],

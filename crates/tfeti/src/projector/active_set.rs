@@ -108,6 +108,7 @@ impl ActiveSetProjector {
             });
         }
         if let Some(metric) = &metric {
+            TfetiError::check_length("row weights", metric.len(), coarse.dim())?;
             RowWeights::diagonal(metric.clone()).validate(ranges)?;
         }
         let weights = vec![0.0; contact_rows];
@@ -373,14 +374,14 @@ impl EqualityProjector for ActiveSetProjector {
             self.known.clear();
             if self.rounds_levels() && is_model {
                 self.known.extend_from_slice(&self.alpha);
-                self.taken.clone_from(&self.scratch.first);
+                self.taken.clone_from(&self.scratch.side);
             }
             return;
         }
         self.coarse.0.add_transpose(&self.known, g, &mut self.scratch.motions);
         self.step(|space| space.project_transpose(g));
         self.known.iter_mut().zip(&self.alpha).for_each(|(k, a)| *k += a);
-        self.taken.copy_from_slice(&self.scratch.first);
+        self.taken.copy_from_slice(&self.scratch.side);
     }
 
     fn project_gradient_again(&mut self, g: &mut [f64]) -> bool {

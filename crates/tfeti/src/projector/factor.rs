@@ -194,11 +194,11 @@ impl CoarseFactor {
         }
     }
 
-    /// Replaces the first vector of the memory by the solution for it.
-    pub(super) fn solve_first(&self, s: &mut CoarseScratch, changing: bool) {
-        let mut first = std::mem::take(&mut s.first);
-        self.solve_some(&mut first, s, changing);
-        s.first = first;
+    /// Replaces the side in the memory by the solution for it.
+    pub(super) fn solve_side(&self, s: &mut CoarseScratch, changing: bool) {
+        let mut side = std::mem::take(&mut s.side);
+        self.solve_some(&mut side, s, changing);
+        s.side = side;
     }
 
     /// The factor of the rows that are always free, if this one is a model.
@@ -250,15 +250,15 @@ impl CoarseFactor {
     /// `x = x - W G^T (G W G^T)^-1 (G x - e)`: the closest point (in the metric of `W`) with `G x = e`; `e = 0` if
     /// `None`.
     pub fn project(&self, x: &mut [f64], e: Option<&[f64]>, s: &mut CoarseScratch) {
-        self.product(x, None, &mut s.first, &mut s.sides);
+        self.product(x, None, &mut s.side, &mut s.sides);
         if let Some(e) = e {
-            s.first.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
+            s.side.iter_mut().zip(e).for_each(|(v, e)| *v -= e);
         }
         if self.always().is_some() {
             self.take_by_contact(x, s);
         }
         let exact = self.always().unwrap_or(self);
-        exact.solve_first(s, false);
+        exact.solve_side(s, false);
         exact.subtract_weighted(x, s);
     }
 
@@ -268,30 +268,30 @@ impl CoarseFactor {
         let data = &self.0.coarse.0;
         let contact = change.len() == data.gluing.ranges().contact().end;
         if contact {
-            let first = &mut s.first;
+            let side = &mut s.side;
             both(
                 data.is_large(),
-                || data.contact_product(change, first),
+                || data.contact_product(change, side),
                 || signorini_qp::vector::copy(from, to),
             );
         } else {
             s.dual.fill(0.0);
             s.dual[..change.len()].copy_from_slice(change);
-            data.product(&s.dual, None, &mut s.first, &mut s.sides);
+            data.product(&s.dual, None, &mut s.side, &mut s.sides);
             signorini_qp::vector::copy(from, to);
         }
         to.iter_mut().zip(change).for_each(|(t, c)| *t += c);
         let reaches = |base: &SplitBase| contact && base.rows() >= change.len();
         let changing = matches!(&self.0.factor, Factor::Split(base, _) if reaches(base));
-        self.solve_first(s, changing);
+        self.solve_side(s, changing);
         self.subtract_weighted(to, s);
     }
 
-    /// `x = x - W G^T y`, `y` the first vector of the memory.
+    /// `x = x - W G^T y`, `y` the side in the memory.
     pub(super) fn subtract_weighted(&self, x: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.0.coarse.0;
         if !self.0.plain {
-            data.product_transpose(&s.first, &mut s.dual, &mut s.motions);
+            data.product_transpose(&s.side, &mut s.dual, &mut s.motions);
             self.weigh(&mut s.dual);
             signorini_qp::vector::subtract(&s.dual, x);
             return;
@@ -299,7 +299,7 @@ impl CoarseFactor {
         keep(self.lines(), x, &mut s.pairs);
         let weight = |row: usize| self.0.weights.as_ref().map_or(1.0, |w| w.of(row));
         data.with_transpose(
-            &s.first,
+            &s.side,
             x,
             self.0.contact,
             &mut s.motions,
@@ -359,9 +359,9 @@ impl CoarseFactor {
 
     /// `x = W G^T (G W G^T)^-1 e`: a solution of `G x = e`; the paper's `lambda_Im` for `W = I`.
     pub fn particular(&self, e: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
-        s.first.copy_from_slice(e);
-        self.solve_first(s, false);
-        self.0.coarse.0.product_transpose(&s.first, x, &mut s.motions);
+        s.side.copy_from_slice(e);
+        self.solve_side(s, false);
+        self.0.coarse.0.product_transpose(&s.side, x, &mut s.motions);
         self.weigh(x);
     }
 
@@ -375,22 +375,22 @@ impl CoarseFactor {
         halves && self.0.weights.is_none() && self.0.free.is_empty()
     }
 
-    /// `out = L^-1 P` of the first vector of the memory.
-    pub(super) fn half_solve_first(&self, out: &mut [f64], s: &mut CoarseScratch) {
+    /// `out = L^-1 P` of the side in the memory.
+    pub(super) fn half_solve_side(&self, out: &mut [f64], s: &mut CoarseScratch) {
         match &self.0.factor {
-            Factor::Sparse(factor) => factor.half_solve(&s.first, out, s.memory.at_least(factor.need(1))),
-            Factor::Split(base, factor) => base.half_solve(factor, &mut s.first, out, &mut s.split),
+            Factor::Sparse(factor) => factor.half_solve(&s.side, out, s.memory.at_least(factor.need(1))),
+            Factor::Split(base, factor) => base.half_solve(factor, &mut s.side, out, &mut s.split),
             Factor::Model(..) => {}
         }
     }
 
-    /// `out = P^T L^-T` of the first vector of the memory, which is overwritten.
-    pub(super) fn half_solve_first_transpose(&self, out: &mut [f64], s: &mut CoarseScratch) {
+    /// `out = P^T L^-T` of the side in the memory, which is overwritten.
+    pub(super) fn half_solve_side_transpose(&self, out: &mut [f64], s: &mut CoarseScratch) {
         match &self.0.factor {
             Factor::Sparse(factor) => {
-                factor.half_solve_transpose(&mut s.first, out, s.memory.at_least(factor.need(1)));
+                factor.half_solve_transpose(&mut s.side, out, s.memory.at_least(factor.need(1)));
             }
-            Factor::Split(base, factor) => base.half_solve_transpose(factor, &s.first, out, &mut s.split),
+            Factor::Split(base, factor) => base.half_solve_transpose(factor, &s.side, out, &mut s.split),
             Factor::Model(..) => {}
         }
     }

@@ -181,17 +181,17 @@ impl Coarse {
 
 /// Methods of a model.
 impl CoarseFactor {
-    /// `x = x - W_c G^T N g`, `g` the first vector of the memory, which becomes what is left of it.
+    /// `x = x - W_c G^T N g`, `g` the side in the memory, which becomes what is left of it.
     pub(super) fn take_by_contact(&self, x: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.coarse().0;
-        s.second.copy_from_slice(&s.first);
-        self.solve_first(s, false);
+        s.kept.copy_from_slice(&s.side);
+        self.solve_side(s, false);
         let contact = data.gluing.ranges().contact().end;
-        data.contact_transpose(&s.first, &mut s.dual[..contact], &mut s.motions);
+        data.contact_transpose(&s.side, &mut s.dual[..contact], &mut s.motions);
         self.weigh(&mut s.dual[..contact]);
         x.iter_mut().zip(&s.dual[..contact]).for_each(|(x, c)| *x -= c);
-        data.contact_product(&s.dual[..contact], &mut s.first);
-        s.first.iter_mut().zip(&s.second).for_each(|(v, g)| *v = g - *v);
+        data.contact_product(&s.dual[..contact], &mut s.side);
+        s.side.iter_mut().zip(&s.kept).for_each(|(v, g)| *v = g - *v);
     }
 
     /// `r = P^T r` for an `r` that other weights of the contact rows have projected, with what their model has `taken`;
@@ -199,19 +199,19 @@ impl CoarseFactor {
     pub(super) fn project_again(&self, r: &mut [f64], taken: &mut [f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         alpha.copy_from_slice(taken);
         self.take_from(r, alpha, s);
-        taken.copy_from_slice(&s.first);
+        taken.copy_from_slice(&s.side);
         self.coarse().0.add_transpose(alpha, r, &mut s.motions);
     }
 
-    /// `alpha = alpha - N G W_c (r + G^T alpha)`; what the model takes is then the first vector of the memory.
+    /// `alpha = alpha - N G W_c (r + G^T alpha)`; what the model takes is then the side in the memory.
     pub(super) fn take_from(&self, r: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.coarse().0;
         let contact = data.gluing.ranges().contact().end;
         data.contact_transpose(alpha, &mut s.dual[..contact], &mut s.motions);
         s.dual.iter_mut().zip(&r[..contact]).for_each(|(v, r)| *v += r);
         self.weigh(&mut s.dual[..contact]);
-        data.contact_product(&s.dual[..contact], &mut s.first);
-        self.solve_first(s, false);
-        alpha.iter_mut().zip(&s.first).for_each(|(a, v)| *a -= v);
+        data.contact_product(&s.dual[..contact], &mut s.side);
+        self.solve_side(s, false);
+        alpha.iter_mut().zip(&s.side).for_each(|(a, v)| *a -= v);
     }
 }

@@ -19,8 +19,8 @@ impl CoarseFactor {
 impl OrthonormalCoarse {
     /// Right-hand side of the orthonormal rows: `out = L^-1 P e`.
     pub fn rhs(&self, e: &[f64], out: &mut [f64], s: &mut CoarseScratch) {
-        s.first.copy_from_slice(e);
-        self.0.half_solve_first(out, s);
+        s.side.copy_from_slice(e);
+        self.0.half_solve_side(out, s);
     }
 
     /// Rigid amplitudes of a multiplier `beta` of the orthonormal rows: `alpha = P^T L^-T beta`, so that
@@ -29,8 +29,8 @@ impl OrthonormalCoarse {
     /// # Panics
     /// If `beta` or `alpha` does not have one entry for each row.
     pub fn amplitudes(&self, beta: &[f64], alpha: &mut [f64], s: &mut CoarseScratch) {
-        s.first.copy_from_slice(beta);
-        self.0.half_solve_first_transpose(alpha, s);
+        s.side.copy_from_slice(beta);
+        self.0.half_solve_side_transpose(alpha, s);
     }
 
     /// The factor.
@@ -56,16 +56,16 @@ impl Equality for OrthonormalCoarse {
 
     fn apply(&self, x: &[f64], y: &mut [f64], s: &mut CoarseScratch) {
         let data = &self.0.coarse().0;
-        data.product(x, None, &mut s.first, &mut s.sides);
-        self.0.half_solve_first(y, s);
+        data.product(x, None, &mut s.side, &mut s.sides);
+        self.0.half_solve_side(y, s);
     }
 
     fn apply_transpose(&self, y: &[f64], x: &mut [f64], s: &mut CoarseScratch) {
-        s.first.copy_from_slice(y);
-        let mut motions = std::mem::take(&mut s.second);
-        self.0.half_solve_first_transpose(&mut motions, s);
-        s.second = motions;
+        s.side.copy_from_slice(y);
+        let mut motions = std::mem::take(&mut s.kept);
+        self.0.half_solve_side_transpose(&mut motions, s);
+        s.kept = motions;
         let data = &self.0.coarse().0;
-        data.product_transpose(&s.second, x, &mut s.motions);
+        data.product_transpose(&s.kept, x, &mut s.motions);
     }
 }

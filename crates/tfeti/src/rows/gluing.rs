@@ -301,6 +301,7 @@ impl Gluing {
         self.nodal.count()
     }
 
+    /// Entries of one of these; of a contact row by its number as a row.
     pub(crate) fn nodal(&self, nodal: usize) -> &[CopyEntry] {
         self.nodal.of(nodal)
     }

@@ -3,9 +3,10 @@
 use crate::common::{Brick, gluing};
 use signorini_qp::internal::LineWeight;
 use signorini_qp::{EqualityProjector, QpError};
-use signorini_tfeti::internal::ActiveSetFactor;
+use signorini_tfeti::internal::{ActiveSetFactor, MergedSupports};
 use signorini_tfeti::{
-    ActiveSetProjector, CommunicationError, Communicator, Motion, NodeSupport, RowWeights, TfetiError,
+    ActiveSetProjector, CommunicationError, Communicator, Directions, Motion, NodalSpring, NodeSupport, RowWeights,
+    TfetiError,
 };
 use std::ops::Range;
 use std::sync::Arc;
@@ -21,7 +22,7 @@ fn projectors_check_their_arguments() {
             let error = new(rows, None).unwrap_err();
             assert!(matches!(error, TfetiError::Setting { .. }), "{error}");
         }
-        for length in [0, dim - 1, dim + 1] {
+        for length in [0, contact, dim - 1, dim + 1] {
             let error = new(contact, Some(vec![1.0; length])).unwrap_err();
             assert!(matches!(error, TfetiError::Length { .. }), "{error}");
         }
@@ -92,6 +93,44 @@ fn cases_beyond_the_supports_are_refused() {
     }
 }
 
+/// A direction of one node among many is named by the node, one of all by its place.
+#[test]
+fn bad_directions_are_named_by_their_nodes() {
+    let of = |directions| MergedSupports::new(&[NodeSupport::partial((10..30).collect(), directions)], 100);
+    let mut lists = vec![vec![[0.0, 0.0, 1.0]]; 20];
+    for bad in [[0.0; 3], [f64::NAN, 0.0, 1.0]] {
+        lists[7] = vec![bad];
+        let error = of(Directions::EachNode(lists.clone())).unwrap_err();
+        assert!(error.to_string().contains("node 17"), "{error}");
+        let error = of(Directions::Vectors(vec![[1.0, 0.0, 0.0], bad])).unwrap_err();
+        assert!(error.to_string().contains("support 0: direction 1"), "{error}");
+    }
+}
+
+#[test]
+fn springs_have_unit_directions() {
+    let b = Brick::new(1, 2);
+    let of = |direction, stiffness| {
+        let springs = [NodalSpring {
+            node: 0,
+            direction,
+            stiffness,
+        }];
+        let supports = b.supports();
+        b.builder(&supports).with_springs(&springs).build()
+    };
+    assert!(of([0.6, 0.0, -0.8], 1e9).is_ok());
+    for direction in [
+        [0.0; 3],
+        [2.0, 0.0, 0.0],
+        [f64::NAN, 0.0, 1.0],
+        [f64::INFINITY, 0.0, 0.0],
+    ] {
+        let error = of(direction, 1e9).err();
+        assert!(matches!(error, Some(TfetiError::Spring { node: 0, .. })), "{error:?}");
+    }
+}
+
 /// A communicator that a user wrote.
 #[derive(Debug)]
 struct Ranks(usize, usize);
@@ -105,7 +144,13 @@ impl Communicator for Ranks {
         self.1
     }
 
-    fn gather(&self, _: &mut [f64], _: &[Range<usize>]) -> Result<(), CommunicationError> {
+    fn gather_while(
+        &self,
+        _: &mut [f64],
+        _: &[Range<usize>],
+        work: &mut dyn FnMut(),
+    ) -> Result<(), CommunicationError> {
+        work();
         Ok(())
     }
 }

@@ -78,7 +78,7 @@ impl RigidTables {
         out
     }
 
-    /// Length of the work memory of [`BoundaryMap::wrenches`].
+    /// Length of the work memory of [`wrenches`](Self::wrenches).
     pub(crate) fn work(&self) -> usize {
         self.globs.len()
     }

@@ -1,6 +1,6 @@
 //! A factor of `G W G^T` of which only the part that follows the weights of the contact rows is done anew.
 //!
-//! Uses `linalg` and the matrix of `coarse`. `order` cuts the subdomains apart, `tree` groups blocks that are
+//! Uses `linalg`, the matrix of `coarse`, and what `dual` and `processes` know of ranks. `order` cuts the subdomains apart, `tree` groups blocks that are
 //! eliminated together, `fronts` knows what contact rows add, `factor` eliminates (a `front` at a time), `shared`
 //! eliminates equal regions once, `tiles` stores and `solve` solves, with equal regions together in `alike`. Several
 //! processes have a branch of the tree each, in `branches`.
