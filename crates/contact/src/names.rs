@@ -189,8 +189,11 @@ fn of_tfeti(error: &TfetiError) -> Vec<Part> {
         | TfetiError::BadCompliance { node, .. }
         | TfetiError::BadStretch { node, .. }
         | TfetiError::DependentRows { node } => vec![Part::Node(*node)],
+        TfetiError::BadDirection { support, node, .. } => {
+            let node = node.map(Part::Node);
+            [Part::Support(*support)].into_iter().chain(node).collect()
+        }
         TfetiError::EmptySupport { support, .. }
-        | TfetiError::BadDirection { support, .. }
         | TfetiError::DirectionLists { support, .. }
         | TfetiError::MotionLength { support, .. }
         | TfetiError::CaseNumber { support, .. } => vec![Part::Support(*support)],

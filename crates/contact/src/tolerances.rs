@@ -165,8 +165,9 @@ pub(crate) const DEPTH: f64 = 1e-9;
 /// what solvers with large tolerances leave.
 pub(crate) const LEFT_OFF: f64 = 1e-3;
 
-/// What is left of a direction that other supports hold already.
-pub(crate) const HELD_ALREADY: f64 = 1e-8;
+/// What is left of a direction that other supports hold already: sine of the angle up to which two normals of facets in
+/// one plane are one, as in `signorini-tfeti`.
+pub(crate) const HELD_ALREADY: f64 = 1e-4;
 
 /// Motion in a direction that a support does not hold, over its largest one, that is no mistake but what is left of
 /// turned axes.
