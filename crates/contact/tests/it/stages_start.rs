@@ -59,6 +59,16 @@ fn a_support_that_starts_holds_nodes_where_they_are() {
     assert!(off < 1e-7, "{off:e}");
 }
 
+/// The normal of a roller that starts differs from that of one before by rounding of the mesh: the plane stays free.
+#[test]
+fn a_roller_on_the_plane_of_another_holds_nothing_more() {
+    let roller = |tilt: f64| Support::partial(brick::X_MAX, Directions::Vectors(vec![[tilt, 0.0, 1.0]]));
+    let both = vec![roller(0.0), roller(1e-6).with_start(2.0)];
+    let (_, results) = run(grabbed(both, Friction::None), tight());
+    let [loaded, back] = [1, 3].map(|k: usize| norm(&results[k].displacement));
+    assert!(loaded > 1e-4 && back < 1e-9 * loaded, "{loaded:e} {back:e}");
+}
+
 /// Supports that start one after another, end, and share nodes with others that move, touch or are held for longer.
 #[test]
 fn supports_share_nodes_with_those_before() {
