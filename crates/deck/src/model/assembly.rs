@@ -219,7 +219,7 @@ impl Assembly {
     fn own(&mut self, model: &mut Model, card: &Card, read: Reader) -> Result<(), DeckError> {
         let is_set = matches!(card.key.as_str(), "NSET" | "ELSET");
         let (of, plain) = if is_set {
-            card.allow(&[&card.key, "GENERATE", "INTERNAL", "INSTANCE"])?;
+            card.allow(&[&card.key, "GENERATE", "INTERNAL", "UNSORTED", "INSTANCE"])?;
             (card.value("INSTANCE")?, Cow::Owned(card.without("INSTANCE")))
         } else {
             (None, Cow::Borrowed(card))
@@ -391,13 +391,22 @@ impl Scope<'_> {
                             to: self.shifted(*to.min(&self.largest)).min(u64::from(LARGEST)) as u32,
                             step: *step,
                         },
-                        Member::Set(name, before) => Member::Set(format!("{}{name}", self.used), *before),
+                        Member::Set(name, before) => {
+                            let name = format!("{}{name}", self.used);
+                            // what the assembly names stands elsewhere in the deck
+                            let there = || all.position(&name).map(|other| all.at(other).len());
+                            let before = before.or_else(there);
+                            Member::Set(name, before)
+                        }
                     };
                     members.push((member, location.clone()));
                 }
                 all.entry(format!("{}{name}", self.own)).append(&mut members);
             }
         }
+        let unsorted = part.unsorted.iter();
+        let unsorted = unsorted.map(|(name, location)| (format!("{}{name}", self.own), location.clone()));
+        model.unsorted.extend(unsorted);
         for (name, lines) in part.surfaces.iter() {
             let name = format!("{}{name}", self.own);
             if model.surfaces.position(&name).is_some() {

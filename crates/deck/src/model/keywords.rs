@@ -29,9 +29,7 @@ const IDLE: [(&str, &str); 4] = [
 ];
 
 /// Parameters of keywords, likewise.
-const IDLE_PARAMETERS: [(&str, &str, &str); 14] = [
-    ("NSET", "UNSORTED", "the order of a set has no meaning here"),
-    ("ELSET", "UNSORTED", "the order of a set has no meaning here"),
+const IDLE_PARAMETERS: [(&str, &str, &str); 12] = [
     ("STEP", "EXTRAPOLATION", SOLVER),
     ("STEP", "CONVERTSDI", SOLVER),
     ("STATIC", "STABILIZE", SOLVER),

@@ -138,9 +138,16 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
 /// `*NSET` and `*ELSET`, whose parameter of the name is `key`.
 pub(super) fn set(model: &mut Model, card: &Card, key: &'static str) -> Result<(), DeckError> {
     // INTERNAL only hides a set in a user interface
-    card.allow(&[key, "GENERATE", "INTERNAL"])?;
+    card.allow(&[key, "GENERATE", "INTERNAL", "UNSORTED"])?;
     card.flag("INTERNAL")?;
     let set = card.need(key)?;
+    if let (true, Some(param)) = (card.flag("UNSORTED")?, card.param("UNSORTED")) {
+        let why = "the order of a set has no meaning here";
+        model.ignored.push(Ignored::new(&param.word, why));
+        if key == "NSET" {
+            model.unsorted.insert(set.name.clone(), param.word.location.clone());
+        }
+    }
     let generate = card.flag("GENERATE")?;
     let sets = match key {
         "NSET" => &mut model.nsets,
@@ -226,7 +233,7 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     let mut faces = Vec::new();
     for line in &card.lines {
         let wanted = if of_nodes {
-            "a node or node set"
+            "a node or node set, and none or an area, as 1."
         } else {
             "an element or element set, and a face S1 to S6 (SPOS or SNEG of rigid facets), or none"
         };
@@ -234,6 +241,13 @@ pub(super) fn surface(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         let face = fields.get(1).map(|f| name(f));
         let side = match (of_nodes, face.as_deref().map(str::as_bytes)) {
             (true, None) => Side::Nodes,
+            // another node is none
+            (true, Some(_)) if label(fields[1]).is_none() => {
+                line.real(&fields, 1, wanted)?;
+                let why = "faces have their own areas";
+                model.ignored.push(Ignored::new(&line.part(fields[1]), why));
+                Side::Nodes
+            }
             (false, None | Some(b"")) => Side::Outside,
             (false, Some([b'S', face @ b'1'..=b'6'])) => Side::Face(face - b'0'),
             (false, Some(b"SPOS")) => Side::Facet { positive: true },

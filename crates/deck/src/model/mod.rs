@@ -24,7 +24,7 @@ use crate::lexer::Named;
 use signorini_fem_mesh::mesh::CellShape;
 use signorini_fem_mesh::{History, Hooke};
 use std::borrow::Cow;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 pub(crate) use coupling::{Coupling, CouplingLaw};
 pub(crate) use equation::{Equation, Flat, Term};
@@ -284,6 +284,8 @@ pub(crate) struct Model {
     pub(crate) nodes: Vec<Node>,
     pub(crate) elements: Vec<Element>,
     pub(crate) nsets: Names<Set>,
+    /// Sets of nodes whose order is to count, and where it says so.
+    pub(crate) unsorted: BTreeMap<String, Location>,
     pub(crate) elsets: Names<Set>,
     pub(crate) surfaces: Names<Vec<Faces>>,
     pub(crate) materials: Names<Material>,

@@ -9,25 +9,24 @@ use super::flats;
 use super::points::Room;
 use super::supports::Supports;
 use crate::error::{DeckError, Word};
-use crate::model::Term;
+use crate::model::{Target, Term};
 
 /// The equations of the scene, each with its place; of sets one for each of their nodes, by ascending numbers.
 pub(super) fn equations(known: Known, supports: &Supports) -> Result<Vec<(Equation, Word)>, DeckError> {
     let (model, rigid) = (known.model, &supports.rigid);
-    let unsorted = model
-        .ignored
-        .iter()
-        .find(|ignored| ignored.word.eq_ignore_ascii_case("UNSORTED"));
     let (mut out, mut room) = (Vec::with_capacity(model.equations.len()), Room::default());
     for given in &model.equations {
         let nodes = |term: &Term| {
             let mut nodes = known.sets.nodes.find(&term.target, &term.word)?;
             nodes.sort_unstable_by_key(|n| model.nodes[*n as usize].label);
-            if let (Some(unsorted), [_, _, ..]) = (unsorted, &nodes[..]) {
+            let unsorted = match &term.target {
+                Target::Name(name) => model.unsorted.get(name),
+                _ => None,
+            };
+            if let (Some(location), [_, _, ..]) = (unsorted, &nodes[..]) {
                 return Err(term.word.cannot(format!(
-                    "nodes of a set count by ascending numbers here, and a set of the deck is UNSORTED ({}); name the nodes \
-                    by their numbers",
-                    unsorted.location
+                    "nodes of a set count by ascending numbers here, and this one is UNSORTED ({location}); name the nodes \
+                    by their numbers"
                 )));
             }
             Ok(nodes)

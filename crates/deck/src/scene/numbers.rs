@@ -6,8 +6,16 @@ use crate::error::{DeckError, Fault, Location, Word};
 use crate::lexer::Named;
 use crate::model::{Element, Member, Model, Names, Set, Target};
 
-/// Most members of all sets together.
-const MEMBERS: u64 = 200_000_000;
+/// Most members of all sets together, each as often as it is named: so many, and for each node and element of the deck.
+const MEMBERS: u64 = 1_000_000;
+const MEMBERS_EACH: u64 = 20;
+
+/// How many members sets may still get, of how many.
+#[derive(Debug)]
+struct Room {
+    left: u64,
+    most: u64,
+}
 
 /// Positions by number, ascending.
 #[derive(Debug, Clone, Default)]
@@ -107,33 +115,22 @@ impl<'a> Table<'a> {
         }
     }
 
-    /// Finds the members of each set; `room` is left for them.
-    fn resolve(&mut self, room: &mut u64) -> Result<(), DeckError> {
+    /// Finds the members of each set.
+    fn resolve(&mut self, room: &mut Room) -> Result<(), DeckError> {
         let mut found: Vec<Found> = vec![Found::default(); self.names.len()];
         let mut last = vec![NOT_YET; self.numbers.0.len()];
         for index in 0..found.len() {
             // those that it waits for, with the number of their members that are wanted
             let mut waiting = vec![(index, self.names.at(index).len())];
             while let Some(&(set, wanted)) = waiting.last() {
-                match self.add_members((set, wanted), &mut found, &mut last)? {
+                match self.add_members((set, wanted), &mut found, &mut last, room)? {
                     Some(first) => waiting.push(first),
                     None => _ = waiting.pop(),
                 }
             }
         }
-        for (Found { mut members, .. }, (_, set)) in found.into_iter().zip(self.names.iter()) {
+        for Found { mut members, .. } in found {
             members.sort_unstable();
-            match room.checked_sub(members.len() as u64) {
-                Some(left) => *room = left,
-                None => {
-                    let (member, location) = &set[0];
-                    return Err(Word::new(location, format!("{member:?}")).fault(Fault::TooMany {
-                        what: "members of sets",
-                        most: MEMBERS,
-                        remedy: "remove sets that are not needed",
-                    }));
-                }
-            }
             self.sets.push(members);
         }
         Ok(())
@@ -146,6 +143,7 @@ impl<'a> Table<'a> {
         (set, wanted): (usize, usize),
         found: &mut [Found],
         last: &mut [u32],
+        room: &mut Room,
     ) -> Result<Option<(usize, usize)>, DeckError> {
         let unknown =
             |location: &Location, word: String| Word::new(location, word).fault(Fault::UnknownNumber(self.what));
@@ -154,8 +152,9 @@ impl<'a> Table<'a> {
             .iter()
             .for_each(|member| last[*member as usize] = set as u32);
         while own.ends.len() < wanted {
-            let members = &mut own.members;
+            let (members, mut named) = (&mut own.members, 0);
             let mut add = |position: u32| {
+                named += 1;
                 if std::mem::replace(&mut last[position as usize], set as u32) != set as u32 {
                     members.push(position);
                 }
@@ -176,9 +175,7 @@ impl<'a> Table<'a> {
                 Member::Set(name, before) => {
                     let word = Word::new(location, name);
                     let other = self.names.find("set", name, &word)?;
-                    // those of instances stand elsewhere in the deck
-                    let all = (other < set).then(|| self.names.at(other).len());
-                    let Some(before) = before.or(all) else {
+                    let Some(before) = *before else {
                         let why = "a set may name only sets that are defined before it; move the other one up";
                         return Err(word.cannot(why));
                     };
@@ -193,6 +190,14 @@ impl<'a> Table<'a> {
                     }
                 }
             }
+            room.left = room.left.checked_sub(named).ok_or_else(|| {
+                let name = self.names.iter().nth(set).map_or("", |known| known.0);
+                Word::new(location, name).fault(Fault::TooMany {
+                    what: "members of sets",
+                    most: room.most,
+                    remedy: "remove sets that are not needed",
+                })
+            })?;
             own.ends.push(own.members.len());
         }
         found[set] = own;
@@ -217,7 +222,8 @@ impl<'a> Sets<'a> {
         let what = ["element", "element set", "give each element a number of its own"];
         let at = |e: usize| (model.elements[e].label, &model.elements[e].location);
         let mut elements = Table::new(what, model.elements.len(), at, &model.elsets)?;
-        let mut room = MEMBERS;
+        let most = MEMBERS + MEMBERS_EACH * (model.nodes.len() + model.elements.len()) as u64;
+        let mut room = Room { left: most, most };
         nodes.resolve(&mut room)?;
         elements.resolve(&mut room)?;
         Ok(Self { model, nodes, elements })

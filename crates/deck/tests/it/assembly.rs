@@ -4,7 +4,7 @@ use signorini_contact::{Settings, Simulation};
 use signorini_fem_mesh::{Brick, FacetTag};
 
 use crate::refusals::refused;
-use crate::write::{STEEL, mesh, read};
+use crate::write::{STEEL, cube, mesh, read};
 
 const END: &str = "*SURFACE INTERACTION, NAME=I\n*FRICTION\n0.3\n";
 
@@ -301,4 +301,29 @@ fn what_is_refused() {
         "*INSTANCE",
         "number the parts from 1",
     );
+}
+
+/// A set of the assembly has what those that it names had there, as other sets do, also where these go on behind it.
+#[test]
+fn sets_that_name_one_another_have_what_was_there_before() {
+    let deck = |what: &str, [one, two, three]: [u32; 3]| {
+        let card = |name: &str, members: &str| format!("*{what}, {what}={name}\n{members}\n");
+        cube("*ASSEMBLY\n")
+            + &card("X", &one.to_string())
+            + &card("Y", "X")
+            + &card("X", "X, Y")
+            + "*END ASSEMBLY\n"
+            + &card("X", &format!("Y, {two}"))
+            + &card("Y", "X")
+            + &card("X", &three.to_string())
+    };
+    // nothing waits for itself
+    let circle = "*ASSEMBLY\n*NSET, NSET=X\n1\n*NSET, NSET=Y\nX\n*END ASSEMBLY\n*NSET, NSET=X\nY\n";
+    assert_eq!(read(&cube(circle)).expect("deck").node_set("Y").expect("a set"), [0]);
+    let nodes = read(&deck("NSET", [1, 2, 3])).expect("deck");
+    let found = ["X", "Y"].map(|name| nodes.node_set(name).expect("a set"));
+    assert_eq!(found, [&[0, 1, 2][..], &[0, 1]]);
+    let elements = read(&deck("ELSET", [1, 2, 3])).expect("deck");
+    let found = ["X", "Y"].map(|name| elements.element_set(name).expect("a set"));
+    assert_eq!(found, [&[0, 1, 2][..], &[0, 1]]);
 }

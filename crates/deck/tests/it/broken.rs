@@ -6,6 +6,7 @@ use std::time::{Duration, Instant};
 use allocation_counter::measure;
 use signorini_deck::Deck;
 
+use crate::grid::Grid;
 use crate::write::{cube, face, folder};
 
 /// A small deck with everything that is read.
@@ -219,6 +220,25 @@ fn bombs() {
     survive(&path, ",".repeat(1_000_000).as_bytes());
     survive(&path, format!("*NODE{}", ",\n".repeat(200_000)).as_bytes());
     survive(&path, &[0; 100_000]);
+}
+
+/// Many sets of many nodes or elements of a grid, all that there may be, and more.
+#[test]
+fn sets_of_everything() {
+    let (_folder, path) = folder(&[("part.inp", "")]);
+    let grid = Grid::new("C3D8", [24, 24, 24], [1.0; 3]).text();
+    for (what, name, many) in [("node", "NSET", 15_625), ("element", "ELSET", 13_824)] {
+        let deck = |sets: usize| {
+            let set = |k: usize| format!("*{name}, {name}=S{k}, GENERATE\n1, {many}\n");
+            grid.clone() + &(0..sets).map(set).collect::<String>()
+        };
+        assert!(survive(&path, deck(1_560_000 / many).as_bytes()));
+        let text = deck(8_500);
+        assert!(text.len() <= 2_000_000, "{}", text.len());
+        assert!(!survive(&path, text.as_bytes()));
+        let error = Deck::read(&path).expect_err("too many").to_string();
+        assert!(error.contains("members of sets"), "{what}: {error}");
+    }
 }
 
 /// Any number of a deck set to what no model has.

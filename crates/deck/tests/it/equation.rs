@@ -227,6 +227,23 @@ fn what_is_refused() {
     }
     let unsorted = "*NSET, NSET=U, UNSORTED\n2, 1\n*EQUATION\n1\nU, 1, 1.\n";
     refused(unsorted, "U, 1, 1.", "U", "ascending numbers");
+    refused(&unsorted.replace("UNS", "Un s"), "U, 1, 1.", "U", "ascending numbers");
+    let card = "*NSET, NSET=U, UNSORTED=YES";
+    refused(&format!("{card}\n2, 1\n"), card, "UNSORTED=YES", "without a value");
+    // the order of other sets has no meaning
+    let elsewhere = "*ELSET, ELSET=U, UNSORTED\n2, 1\n*NSET, NSET=V, UNSORTED\n2, 1\n*NSET, NSET=U\n2, 1\n";
+    let made = |sets: &str| read(&cube(&format!("{sets}*EQUATION\n1\nU, 1, 1.\n"))).map(|deck| deck.scene().is_ok());
+    assert!(made(elsewhere).expect("deck"));
+    let assembled = format!(
+        "*ASSEMBLY\n{}*END ASSEMBLY\n",
+        unsorted.split("*EQ").next().expect("a set")
+    );
+    assert!(
+        made(&assembled)
+            .expect_err("unsorted")
+            .to_string()
+            .contains("ascending numbers")
+    );
     let flat = "PLANE or STRAIGHT, and nodes";
     refused("*MPC\nBEAM, 1, 2\n", "BEAM, 1, 2", "BEAM", flat);
     refused("*MPC\n0, 1, 2\n", "0, 1, 2", "0", flat);
