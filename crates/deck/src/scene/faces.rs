@@ -353,6 +353,11 @@ impl Known<'_> {
 }
 
 impl Face {
+    /// Its corners, on its side of a cut.
+    pub(super) fn corners(&self, raw: &Raw) -> [u32; 3] {
+        self.nodes.map(|node| raw.own(self.tet, node))
+    }
+
     /// The nodes that carry a constant traction, each with its area.
     pub(super) fn areas(&self, raw: &Raw) -> Vec<(u32, f64)> {
         raw.areas(self.tet, self.nodes)

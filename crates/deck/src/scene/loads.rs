@@ -277,7 +277,7 @@ impl Known<'_> {
         })?;
         match rotation {
             Some(word) => Err(word.expected(FORCE)),
-            None => Ok((Place::Node(inside), 0)),
+            None => self.raw.single(inside, &line.word).map(|()| (Place::Node(inside), 0)),
         }
     }
 

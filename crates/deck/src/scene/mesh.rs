@@ -16,7 +16,8 @@ use crate::error::{DeckError, Fault, Word};
 use crate::model::{Ignored, Kind, Model};
 use crate::tolerances::{BENT, NO_AREA};
 
-/// The mesh before its facets are known: elastic tetrahedra, without nodes that none of them uses.
+/// The mesh before its facets are known: elastic tetrahedra, without nodes that none of them uses. Where it is to be
+/// cut, tetrahedra and faces have the nodes before the cut, and all that acts on these those of their side.
 #[derive(Debug)]
 pub(super) struct Raw {
     pub(super) points: Vec<[f64; 3]>,
@@ -38,6 +39,8 @@ pub(super) struct Raw {
     copies: BTreeMap<u32, Vec<u32>>,
     /// The node of each copy.
     first_of: HashMap<u32, u32>,
+    /// What tetrahedra behind cuts have, by their number and the node before the cut.
+    behind: HashMap<(u32, u32), u32>,
     /// Positions and numbers in the deck of the elements of the tetrahedra.
     pub(super) elements: Vec<u32>,
     pub(super) element_labels: Vec<u32>,
@@ -98,7 +101,7 @@ impl Raw {
         if let Some(cell) = coarse {
             let why = format!(
                 "the elements of first order become quadratic tetrahedra, and {} nodes are added; linear ones would be far too \
-                stiff",
+                stiff. Forces at corners are no pressure on these: give it by *DLOAD or *DSLOAD, not by *CLOAD",
                 division.added().len()
             );
             notes.push(Ignored::new(&element(cell).word(), why));
@@ -117,6 +120,7 @@ impl Raw {
             by_first: Lists::default(),
             copies: BTreeMap::new(),
             first_of: HashMap::new(),
+            behind: HashMap::new(),
             elements: Vec::new(),
             element_labels: Vec::new(),
         };
@@ -221,13 +225,17 @@ impl Raw {
         self.added.of((added - self.first_added()) as usize)
     }
 
-    /// Nodes of the deck, by position, as nodes of the mesh, those that are in it and those between them.
+    /// Nodes of the deck, by position, as nodes of the mesh, those that are in it, those between them, and copies.
     pub(super) fn all_in_mesh(&self, nodes: &[u32]) -> Vec<u32> {
-        self.with_added(nodes.iter().filter_map(|n| self.in_mesh(*n)).collect())
+        let mut all = self.with_added(nodes.iter().filter_map(|n| self.in_mesh(*n)).collect());
+        let copies: Vec<u32> = all.iter().flat_map(|n| self.with_copies(*n).skip(1)).collect();
+        // those of all nodes lie behind these
+        all.extend(distinct(copies));
+        all
     }
 
-    /// Adds copies of nodes behind the others, as cuts make them.
-    pub(super) fn copy(&mut self, nodes: &[u32]) {
+    /// Adds copies of nodes behind the others, as cuts made them of a mesh.
+    pub(super) fn copy(&mut self, nodes: &[u32], cut: &TetMesh) {
         for &node in nodes {
             let copy = self.points.len() as u32;
             // a copy of a copy is one of the node
@@ -237,6 +245,18 @@ impl Raw {
             self.points.push(self.points[node as usize]);
             self.node_labels.push(self.node_labels[node as usize]);
         }
+        for (tet, corners) in cut.tets().iter().enumerate() {
+            for node in corners.iter().chain(cut.mids().get(tet).into_iter().flatten()) {
+                if let Some(first) = self.first_of.get(node) {
+                    self.behind.insert((tet as u32, *first), *node);
+                }
+            }
+        }
+    }
+
+    /// The node that a tetrahedron has, of those before the cuts, on its side of these.
+    pub(super) fn own(&self, tet: u32, node: u32) -> u32 {
+        *self.behind.get(&(tet, node)).unwrap_or(&node)
     }
 
     /// A node of the mesh and its copies.
@@ -316,7 +336,7 @@ impl Raw {
         let (corners, mids) = (self.tets[tet as usize], self.mids.get(tet as usize));
         let forces = tet_forces(&corners.map(at), mids.map(|mids| mids.map(at)).as_ref(), density)?;
         let nodes = corners.into_iter().chain(mids.into_iter().flatten().copied());
-        Ok(nodes.zip(forces).collect())
+        Ok(nodes.map(|n| self.own(tet, n)).zip(forces).collect())
     }
 
     /// Whether values of nodes are not linear along edges of tetrahedra whose mid-nodes the deck has.
@@ -344,25 +364,27 @@ impl Raw {
             Some(quadratic) => quadratic,
             None => {
                 let third = norm(self.area_vector(tet, face)) / 3.0;
-                return face.map(|node| (node, third)).into();
+                return face.map(|node| (self.own(tet, node), third)).into();
             }
         };
         let areas = facet_shares(&points);
         // corners of straight ones have none but rounding
         let least = NO_AREA * areas.iter().sum::<f64>();
         let carries = |(_, area): &(u32, f64)| area.abs() > least;
-        all.into_iter().zip(areas).filter(carries).collect()
+        let all = all.into_iter().map(|node| self.own(tet, node));
+        all.zip(areas).filter(carries).collect()
     }
 
     /// The same along the outward normal.
     pub(super) fn area_vectors(&self, tet: u32, face: [u32; 3]) -> Vec<(u32, Vec3)> {
         let out = self.area_vector(tet, face);
         let Some((all, points)) = self.quadratic_face(tet, face) else {
-            return face.map(|node| (node, scale(1.0 / 3.0, out))).into();
+            return face.map(|node| (self.own(tet, node), scale(1.0 / 3.0, out))).into();
         };
         let areas = facet_area_shares(&points);
         let sign = dot(areas.into_iter().fold([0.0; 3], add), out).signum();
-        all.into_iter().zip(areas.map(|area| scale(sign, area))).collect()
+        let all = all.into_iter().map(|node| self.own(tet, node));
+        all.zip(areas.map(|area| scale(sign, area))).collect()
     }
 
     /// Corners and mid-nodes of a face of a quadratic tetrahedron, and where they are.

@@ -73,8 +73,8 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     if !sections.0.is_empty() {
         let regions = vec![0; raw.tets.len()];
         let whole = raw.mesh(path, model, Vec::new(), regions, |_| None)?;
-        let copied = sections.cut(whole, 0, &raw)?.1;
-        raw.copy(&copied);
+        let (cut, copied) = sections.cut(whole, 0, &raw)?;
+        raw.copy(&copied, &cut);
     }
     let points = points::Points::new(&sets, &bodies, &couplings, &raw)?;
     let transforms = transforms::Transforms::new(&sets, &bodies, (&couplings, &points), &raw)?;
@@ -140,9 +140,11 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         scene,
         nodes: raw.mesh_numbers(),
         node_sets: sets.nodes.named(|set| raw.all_in_mesh(&set)),
-        element_sets: sets
-            .elements
-            .named(|set| set.into_iter().flat_map(|e| raw.tets_of(e)).collect()),
+        element_sets: sets.elements.named(|set| {
+            let mut tets: Vec<u32> = set.into_iter().flat_map(|e| raw.tets_of(e)).collect();
+            tets.shrink_to_fit();
+            tets
+        }),
         node_labels: raw.node_labels,
         element_labels: raw.element_labels,
         surfaces,

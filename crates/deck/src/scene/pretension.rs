@@ -27,7 +27,7 @@ pub(super) struct Section {
     word: Word,
     /// Whether a tetrahedron at the cut is one of the surface, or on the other side.
     sides: BTreeMap<u32, bool>,
-    /// Along which it is tightened, out of the elements of the surface.
+    /// Along which it is tightened: the normal that is given, or the mean one out of the elements of the surface.
     axis: Vec3,
     centre: Vec3,
 }

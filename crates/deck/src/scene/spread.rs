@@ -31,7 +31,7 @@ pub(super) fn coupled_nodes(
     sections.check_outside(coupling.surface, &coupling.word)?;
     let mut nodes = BTreeMap::new();
     for face in faces.of_surface(coupling.surface as u32) {
-        let corners = face.nodes.map(|n| (n, 0.0));
+        let corners = face.corners(raw).map(|n| (n, 0.0));
         for (node, part) in corners.into_iter().chain(face.areas(raw)) {
             *nodes.entry(node).or_default() += part;
         }

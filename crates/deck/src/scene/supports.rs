@@ -259,15 +259,13 @@ impl Table {
                 (0..6).for_each(|c| drop(self.rigid.remove(&(coupling.node, c))));
                 continue;
             }
-            let nodes = coupled_nodes(coupling, known, faces)?.into_keys();
-            let nodes = nodes.flat_map(|n| known.raw.with_copies(n)).collect();
+            let nodes = coupled_nodes(coupling, known, faces)?.into_keys().collect();
             let leads = (coupling.node, None);
             out.extend(self.move_rigidly(known, nodes, (leads, loaded), ("surface", &coupling.word))?);
             (0..6).for_each(|c| drop(self.rigid.remove(&(coupling.node, c))));
         }
         for ((nodes, reference, rotation), said) in known.bodies.nodes().zip(&known.model.rigid) {
-            let elastic = known.raw.all_in_mesh(nodes).into_iter();
-            let elastic: Vec<u32> = elastic.flat_map(|n| known.raw.with_copies(n)).collect();
+            let elastic = known.raw.all_in_mesh(nodes);
             if !elastic.is_empty() {
                 let leads = (reference, rotation);
                 let coupling = self.move_rigidly(known, elastic, (leads, loaded), ("rigid body", &said.word))?;

@@ -173,6 +173,7 @@ fn names_and_numbers_stay() {
         "{}",
         coarse.ignored()[0]
     );
+    assert!(coarse.ignored()[0].why.contains("not by *CLOAD"));
 }
 
 #[test]

@@ -1,12 +1,12 @@
 //! Bolts that are tightened.
 
-use signorini_contact::{Settings, Simulation};
+use signorini_contact::{Place, Settings, Simulation};
 use signorini_fem_mesh::vec3::centroid;
-use signorini_fem_mesh::{Brick, TetMesh, brick};
+use signorini_fem_mesh::{Brick, LoadDensity, TetMesh, brick};
 use std::fmt::Write as _;
 
 use crate::couplings::step;
-use crate::write::{STEEL, mesh, read};
+use crate::write::{STEEL, face, mesh, read};
 
 /// A bar of 40 mm, held at both ends and cut in the middle.
 fn bar(order: usize) -> TetMesh {
@@ -104,6 +104,82 @@ fn copies_of_nodes_are_held_as_they_are() {
     assert_eq!(copies, 9);
     assert_eq!(read.node_numbers().len(), read.mesh().points().len());
     assert_eq!(read.coupling_names(), ["SURFACE=CUT"]);
+    // and so have sets of the program
+    let on = |n: &u32| read.mesh().points()[*n as usize][1] == 0.0;
+    let all: Vec<u32> = (0..read.mesh().points().len() as u32).filter(on).collect();
+    assert_eq!(read.node_set("N3").expect("a set"), all);
+    assert_eq!(all.len() - mesh_.nodes_on(brick::Y_MIN).len(), 3);
+}
+
+/// The elements behind the section, and element and number of each of their faces, those on one side first.
+fn behind(mesh: &TetMesh) -> (String, Vec<(usize, usize)>, usize) {
+    let right = |tet: usize| centroid(&mesh.tet_points(tet))[0] > 20.0;
+    let elements = (0..mesh.tets().len()).filter(|tet| right(*tet));
+    let set = elements.map(|tet| format!("{},\n", tet + 1)).collect::<String>();
+    let facets = (0..mesh.facets().len()).filter(|f| right(mesh.facet_owner(*f)));
+    let (side, rest): (Vec<_>, Vec<_>) = facets.partition(|f| mesh.facets()[*f].tag == brick::Y_MIN);
+    let faces = side.iter().chain(&rest).map(|f| face(mesh, *f)).collect();
+    (format!("*ELSET, ELSET=RIGHT\n{set}"), faces, side.len())
+}
+
+/// What acts behind a section acts on the nodes there, also on those of the section: the other side has none of it.
+#[test]
+fn forces_stay_on_their_side_of_a_section() {
+    for order in [1, 2] {
+        let brick = Brick::new([40.0, 10.0, 10.0], [8, 3, 3]).build().expect("a brick");
+        let mesh_ = if order == 2 { brick.raise_order().expect("quadratic") } else { brick };
+        let (mut sets, faces, side) = behind(&mesh_);
+        sets += "*SURFACE, NAME=SIDE\n";
+        sets.extend(
+            faces[..side]
+                .iter()
+                .map(|(element, number)| format!("{element}, S{number}\n")),
+        );
+        let node = "*NODE\n9100, 30., -5., 5.\n*COUPLING, CONSTRAINT NAME=C, REF NODE=9100, SURFACE=SIDE\n*DISTRIBUTING\n1, 6\n";
+        // more than get tags of their own
+        let line = |(k, (element, number)): (usize, &(usize, usize))| format!("{element}, P{number}, {}.\n", k + 1);
+        let pressures: String = faces.iter().enumerate().map(line).collect();
+        assert!(faces.len() > 100);
+        for (model, loads) in [
+            ("", "*DLOAD\nRIGHT, BX, 2.\n"),
+            ("", "*DLOAD\nRIGHT, CENTRIF, 4.E6, 0., 0., 0., 0., 0., 1.\n"),
+            ("", "*DSLOAD\nSIDE, TRVEC, 3., 1., 0.5, 0.\n"),
+            ("", &format!("*DLOAD\n{pressures}")),
+            (node, "*CLOAD\n9100, 1, 7.\n9100, 4, 3.\n"),
+            (&node.replace("DISTRIBUTING", "KINEMATIC"), "*CLOAD\n9100, 1, 7.\n"),
+        ] {
+            let text = deck(&mesh_, &step(loads)).replace(HELD, &format!("{sets}{model}{HELD}"));
+            let read = read(&text).expect("deck");
+            let (scene, mesh) = (read.scene().expect("scene"), read.mesh());
+            let mut left = vec![false; mesh.points().len()];
+            for (tet, corners) in mesh.tets().iter().enumerate() {
+                let nodes = corners.iter().chain(mesh.mids().get(tet).into_iter().flatten());
+                if centroid(&mesh.tet_points(tet))[0] < 20.0 {
+                    nodes.for_each(|n| left[*n as usize] = true);
+                }
+            }
+            let nodal = scene.loads().iter().filter_map(|load| match load.density() {
+                Some(LoadDensity::NodalForces(forces)) => Some(forces),
+                _ => None,
+            });
+            let coupled = scene.couplings().iter().filter_map(|coupling| match coupling.place() {
+                Some(Place::Nodes(nodes)) => Some(nodes),
+                _ => None,
+            });
+            let forces = nodal.flatten().map(|force| force.0);
+            let nodes: Vec<u32> = forces.chain(coupled.flatten().copied()).collect();
+            let wrong = nodes.iter().filter(|n| left[**n as usize]).count();
+            assert_eq!((nodes.is_empty(), wrong), (false, 0), "order {order}, {loads}");
+        }
+        // nothing holds the sides together along the bar: its left end feels nothing
+        let text = deck(&mesh_, &step("*BOUNDARY\nN2, 1, 3\n*DLOAD\nRIGHT, BX, 2.\n"));
+        let deck = read(&text.replace(HELD, &format!("{sets}{HELD}"))).expect("deck");
+        let scene = deck.scene().expect("scene");
+        let mut simulation = Simulation::new(scene, Settings::default().with_tolerance(1e-9)).expect("set-up");
+        let reactions = simulation.step().expect("step").reactions();
+        let along: Vec<f64> = reactions.supports.iter().map(|s| s.resultant.force[0]).collect();
+        assert!(along[0].abs() < 1e-4 && (along[1] + 4000.0).abs() < 1e-3, "{along:?}");
+    }
 }
 
 #[track_caller]
@@ -118,6 +194,8 @@ fn what_is_no_section_is_refused() {
     let text = |steps: &str| deck(&mesh_, steps);
     refused(text(&step("*CLOAD\n9000, 2, 1.\n")), "component 1 only");
     refused(text(&step("*BOUNDARY\n9000, 1, 3\n")), "component 1 only");
+    let at = mesh_.points().iter().position(|x| x[0] == 20.0).expect("a node") + 1;
+    refused(text(&step(&format!("*CLOAD\n{at}, 2, 1.\n"))), "two displacements");
     let whole = text(FORCE);
     let first = section(&mesh_);
     let one = first.lines().take(4).collect::<Vec<_>>().join("\n") + "\n";
