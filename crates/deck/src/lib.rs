@@ -122,8 +122,9 @@
 //! - All increments have the size of the first one (or the largest allowed, if that is smaller) and are not adapted;
 //!   each is a step of backward Euler with its own result. A deck with one increment is static.
 //! - Loads and supports of a step remain in later steps. Without an amplitude a value changes linearly from its
-//!   value at the end of the previous step; with `OP=NEW` what the step does not name returns linearly to zero. With an
-//!   amplitude it is multiplied by that; after its step it stays constant, or continues if the amplitude is in total time.
+//!   value at the end of the previous step, or jumps with `AMPLITUDE=STEP`. With an amplitude it is multiplied by that;
+//!   after its step it stays constant, or continues if the amplitude is in total time. With `OP=NEW` what the step does
+//!   not name returns linearly to zero, or at once if it would continue so, as in CalculiX.
 //! - A value that jumps at the beginning of a step reaches the new value in the first increment.
 //! - `OP` is read from the first card of its kind in a step; `*DLOAD` and `*DSLOAD` are one kind. Forces at one
 //!   node in one step are added; pressures given twice on one face are refused.

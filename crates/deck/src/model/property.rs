@@ -212,13 +212,11 @@ pub(super) fn pair(model: &mut Model, card: &Card) -> Result<(), DeckError> {
         "SURFACETOSURFACE",
         "MORTAR",
         "LINMORTAR",
+        "PGMORTAR",
         "PGLINMORTAR",
     ];
-    card.choice(
-        "TYPE",
-        &types,
-        "NODE TO SURFACE, SURFACE TO SURFACE, MORTAR, LINMORTAR or PGLINMORTAR",
-    )?;
+    let wanted = "NODE TO SURFACE, SURFACE TO SURFACE, MORTAR, LINMORTAR, PGMORTAR or PGLINMORTAR";
+    card.choice("TYPE", &types, wanted)?;
     if let Some(kind) = card.param("TYPE") {
         let why = "matching meshes touch node by node, others by dual multipliers; there is one kind of contact here";
         model.ignored.push(Ignored::new(&kind.word, why));

@@ -3,7 +3,7 @@
 //! A value without an amplitude goes along a straight line from that at the end of the step before; with one it
 //! is the value times the amplitude. What a later step does not name stays as it was at the end of the step
 //! before, or follows its amplitude if that is in total time; what a step removes goes back to zero along a
-//! straight line. A jump at the beginning of a step becomes a line over its first increment.
+//! straight line, or at once if it followed one. A jump at the beginning of a step becomes a line over its first increment.
 
 use std::collections::BTreeMap;
 
@@ -186,7 +186,8 @@ impl Track {
                     }
                     None => Law::to(value, given.value / reference, span.ramp),
                 },
-                Some(None) => Law::to(value, base, span.ramp),
+                // as in CalculiX
+                Some(None) => Law::to(value, base, follows.is_none()),
                 None => follows.unwrap_or(Law::Constant(value)),
             };
             follows = match law {

@@ -155,8 +155,13 @@ fn are_free(sets: &Sets, bodies: &[Body]) -> Result<Vec<bool>, DeckError> {
         let moves = |body: &Body| nodes.iter().any(|n| *n == body.reference || Some(*n) == body.rotation);
         out.iter_mut().zip(bodies).for_each(|(free, body)| *free |= moves(body));
     }
+    // which a first step with OP=NEW clears
+    let before = model
+        .supports
+        .iter()
+        .filter(|_| !steps().next().is_some_and(|step| step.boundary.removes()));
     let lines = steps().flat_map(|step| &step.boundary.lines);
-    for line in model.supports.iter().chain(lines) {
+    for line in before.chain(lines) {
         let nodes = sets.nodes.find(&line.target, &line.word)?;
         for (held, body) in held.iter_mut().zip(bodies) {
             let rotation = body.rotation.filter(|node| *node != body.reference);

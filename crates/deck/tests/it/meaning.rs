@@ -83,6 +83,11 @@ fn forces_accumulate_over_steps() {
         step("*CLOAD\n27, 3, -8.\n") + &step("") + &step("*CLOAD, OP=MOD\n27, 3, 4.\n") + &step("*CLOAD, OP=NEW\n");
     let found = force_at(&scene(&four), &[0.0, 0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 9.0]);
     assert_eq!(found, [0.0, -4.0, -8.0, -8.0, -8.0, -2.0, 4.0, 2.0, 0.0, 0.0]);
+    // in a step of AMPLITUDE=STEP, too
+    let jump = |lines: &str| step(lines).replace("*STEP", "*STEP, AMPLITUDE=STEP");
+    let gone = jump("*CLOAD\n27, 3, -8.\n") + &jump("*CLOAD, OP=NEW\n");
+    let found = force_at(&scene(&gone), &[0.25, 1.0, 1.5, 2.0]);
+    assert_eq!(found, [-8.0, -8.0, -4.0, 0.0]);
     // forces on one node in one step are added
     let twice = step("*CLOAD\n27, 3, -8.\n*CLOAD\nN6, 3, 1.\n");
     let scene = scene(&twice);
@@ -104,6 +109,9 @@ fn amplitudes() {
     let table = "*AMPLITUDE, NAME=A, TIME=TOTAL TIME\n0., 0., 2., 4., 4., 0.\n";
     let total = table.to_owned() + &step("*CLOAD, AMPLITUDE=A\n27, 3, 2.\n") + &step("") + &step("");
     assert_eq!(force_at(&scene(&total), &[0.5, 1.0, 2.0, 3.0]), [2.0, 4.0, 8.0, 4.0]);
+    // and is gone with it
+    let gone = table.to_owned() + &step("*CLOAD, AMPLITUDE=A\n27, 3, 2.\n") + &step("*CLOAD, OP=NEW\n");
+    assert_eq!(force_at(&scene(&gone), &[0.5, 1.0, 1.5, 2.0]), [2.0, 4.0, 0.0, 0.0]);
     // a jump takes the first increment of its step
     let late = table.to_owned() + &step("") + &step("*CLOAD, AMPLITUDE=A\n27, 3, 2.\n");
     assert_eq!(force_at(&scene(&late), &[1.0, 1.25, 1.5, 2.0]), [0.0, 3.0, 6.0, 8.0]);

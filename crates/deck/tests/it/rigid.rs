@@ -205,16 +205,17 @@ fn a_rigid_punch_is_pressed_by_a_force() {
         below.points().len() + 1,
         both.points().len()
     );
-    let rest = "*SURFACE INTERACTION, NAME=I\n*FRICTION\n0.3\n*CONTACT PAIR, INTERACTION=I\nS6, S15\n*BOUNDARY\n\
-        N5, 1, 3\n900, 1, 2\n901, 3, 3\n*STEP\n*STATIC\n*CLOAD\n900, 3, -1e8\n*END STEP\n";
-    let run = |body: &str| {
-        let deck = read(&format!("{}{STEEL}{sets}{body}{rest}", mesh(&both))).expect("deck");
+    let pair = "*SURFACE INTERACTION, NAME=I\n*FRICTION\n0.3\n*CONTACT PAIR, INTERACTION=I\nS6, S15\n";
+    let rest = "*BOUNDARY\nN5, 1, 3\n900, 1, 2\n901, 3, 3\n*STEP\n*STATIC\n*CLOAD\n900, 3, -1e8\n*END STEP\n";
+    let solve = |body: &str, rest: &str| {
+        let deck = read(&format!("{}{STEEL}{sets}{body}{pair}{rest}", mesh(&both))).expect("deck");
         let settings = Settings::default().with_tolerance(1e-8);
         let mut simulation = Simulation::new(deck.scene().expect("scene"), settings).expect("simulation");
         let result = simulation.step().expect("solved");
         assert!(result.report().status.converged());
         result
     };
+    let run = |body: &str| solve(body, rest);
     let result = run("*RIGID BODY, ELSET=PUNCH, REF NODE=900, ROT NODE=901\n");
     let by_set = run("*RIGID BODY, NSET=PUNCH, REF NODE=900, ROT NODE=901\n");
     assert_eq!(result.displacement(), by_set.displacement());
@@ -236,4 +237,14 @@ fn a_rigid_punch_is_pressed_by_a_force() {
     }
     let support = result.reactions().supports[0].resultant.force[2];
     assert!((support - 1e8).abs() < 1e2, "{support}");
+    // what the first step clears does not hold it
+    let moved = "*BOUNDARY, OP=NEW\nN5, 1, 3\n900, 1, 2\n901, 3, 3\n900, 3, 3, -0.001\n*END STEP\n";
+    let [held, free] = ["*BOUNDARY\n900, 1, 6\n", ""].map(|before| {
+        let steps = format!("{before}*STEP\n*STATIC\n{moved}");
+        solve(
+            "*RIGID BODY, ELSET=PUNCH, REF NODE=900\n",
+            &steps.replace("901, 3, 3", "900, 6"),
+        )
+    });
+    assert_eq!(held.displacement(), free.displacement());
 }

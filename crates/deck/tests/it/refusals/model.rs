@@ -259,6 +259,10 @@ fn contact() {
     behind(&format!("{wide}\n"), wide, "VALUE=wide", "negative for an interference");
     let odd = "*CONTACT PAIR, INTERACTION=I, TYPE=SIDEWAYS";
     behind(&format!("{law}{odd}\nS1, S2\n"), odd, "TYPE=SIDEWAYS", "MORTAR");
+    for kind in ["MORTAR", "PG MORTAR", "LINMORTAR", "PGLINMORTAR"] {
+        let pair = format!("*CONTACT PAIR, INTERACTION=I, TYPE={kind}\nS1, S2\n");
+        assert!(read(&cube(&format!("{law}{pair}"))).is_ok(), "{kind}");
+    }
 }
 
 /// A cube on a rigid plane; `floor` are the corners of the plane and what else changes.
