@@ -7,9 +7,11 @@
 //! | `two_bodies` | a pad on a rail |
 //! | `bolt` | plates that a tightened bolt holds, until they part |
 //! | `crack` | a crack that slides to and fro under pressure |
+//! | `from_mesh` | the program of the tutorial: from Gmsh to ParaView |
 //! | `own_mesh` | a mesh of Gmsh, files for ParaView |
 //! | `deck` | a deck of CalculiX or Abaqus, from file to ParaView |
 //! | `parameters` | a study of friction: errors told apart, results as JSON |
+//! | `coupled` | with a program of heat flow, step by step |
 //! | `restart` | a run that is stopped and continued |
 //! | `qp_only` | quadratic programming without mechanics |
 //!
