@@ -4,6 +4,7 @@ use super::Model;
 use super::property::{of_material, twice};
 use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
+use nalgebra::Matrix3;
 use signorini_fem_mesh::{Hooke, HookeError};
 
 const ISOTROPIC: &str = "Young's modulus and Poisson's ratio in one line, and at most a temperature: laws that depend \
@@ -89,16 +90,11 @@ fn anisotropic(numbers: &[f64]) -> Result<Hooke, HookeError> {
 
 /// The normal part of the stiffness from E1, E2, E3, nu12, nu13, nu23: the inverse of that of the compliance.
 fn inverse(n: &[f64]) -> [[f64; 3]; 3] {
-    let s = [
+    let compliance = Matrix3::from([
         [1.0 / n[0], -n[3] / n[0], -n[4] / n[0]],
         [-n[3] / n[0], 1.0 / n[1], -n[5] / n[1]],
         [-n[4] / n[0], -n[5] / n[1], 1.0 / n[2]],
-    ];
-    let minor = |i: usize, j: usize| {
-        let [a, b] = [(i + 1) % 3, (i + 2) % 3];
-        let [c, d] = [(j + 1) % 3, (j + 2) % 3];
-        s[a][c] * s[b][d] - s[a][d] * s[b][c]
-    };
-    let determinant: f64 = (0..3).map(|j| s[0][j] * minor(0, j)).sum();
-    [0, 1, 2].map(|i| [0, 1, 2].map(|j| minor(j, i) / determinant))
+    ]);
+    // of none the law is refused
+    compliance.try_inverse().map_or([[f64::NAN; 3]; 3], Into::into)
 }

@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use super::assembly::Assembly;
 use super::step::{self, SOLVER, Step};
-use super::{Ignored, Model, change, coupling, elastic, equation, mesh, orientation, property, temperature, transform};
+use super::{Ignored, Model, coupling, elastic, equation, mesh, orientation, property, temperature, transform};
 use crate::error::{DeckError, Fault};
 use crate::lexer::Card;
 
@@ -193,7 +193,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
         ("DSLOAD", Some(step)) => step::distributed(model, step, card, true),
         ("TEMPERATURE", Some(step)) => temperature::temperatures(model, step, card),
         ("MODELCHANGE", Some(step)) => {
-            step.changes.append(&mut change::changes(card)?);
+            step.changes.append(&mut property::changes(card)?);
             Ok(())
         }
         ("ENDSTEP", Some(step)) => {

@@ -6,7 +6,6 @@
 //! `error`.
 
 mod assembly;
-mod change;
 mod coupling;
 mod elastic;
 mod equation;

@@ -2,8 +2,8 @@
 
 use std::fmt;
 
-use super::change::Change;
 use super::mesh::target;
+use super::property::Change;
 use super::{Ignored, Model};
 use crate::error::{DeckError, Fault, Word};
 use crate::lexer::{Card, label, name};

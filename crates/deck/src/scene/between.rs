@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use signorini_fem_mesh::{History, HistoryError};
 
-use super::faces::Known;
 use super::held::{Held, Key, Owner, common};
+use super::known::Known;
 use super::timeline::{Acting, Beginning};
 use crate::error::{DeckError, Fault, Word};
 use crate::tolerances::TURNED;

@@ -6,7 +6,8 @@ use signorini_contact::{Contact, Friction};
 use signorini_fem_mesh::FacetTag;
 
 use super::changes::spans;
-use super::faces::{FaceTable, Known};
+use super::faces::FaceTable;
+use super::known::Known;
 use super::rigid::{FreeLead, Lead, obstacle};
 use super::ties;
 use super::timeline::Acting;

@@ -4,8 +4,8 @@ use signorini_contact::Equation;
 use signorini_fem_mesh::vec3::scale;
 
 use super::between::Follower;
-use super::faces::Known;
 use super::flats;
+use super::known::Known;
 use super::points::Room;
 use super::supports::Supports;
 use crate::error::{DeckError, Word};

@@ -12,15 +12,9 @@ use signorini_fem_mesh::vec3::Vec3;
 use signorini_fem_mesh::{Facet, FacetTag};
 
 use super::boundary::Boundary;
-use super::couplings::Couplings;
+use super::known::Known;
 use super::mesh::Raw;
-use super::numbers::Sets;
-use super::points::Points;
-use super::pretension::Sections;
-use super::rigid::RigidBodies;
 use super::rigid_face::RigidFace;
-use super::timeline::Timeline;
-use super::transforms::Transforms;
 use crate::error::{DeckError, Fault, Word};
 use crate::model::{Faces, Ignored, Kind, Model, Names, Side, Target};
 
@@ -44,20 +38,6 @@ pub(super) struct FaceTable {
     places: HashMap<[u32; 3], u32>,
     /// Rigid faces of each surface.
     pub(super) rigid: Vec<Vec<RigidFace>>,
-}
-
-/// What is known of the model where faces are looked up and conditions followed.
-#[derive(Clone, Copy)]
-pub(super) struct Known<'a> {
-    pub(super) model: &'a Model,
-    pub(super) sets: &'a Sets<'a>,
-    pub(super) bodies: &'a RigidBodies,
-    pub(super) raw: &'a Raw,
-    pub(super) timeline: &'a Timeline<'a>,
-    pub(super) couplings: &'a Couplings,
-    pub(super) points: &'a Points,
-    pub(super) transforms: &'a Transforms,
-    pub(super) sections: &'a Sections,
 }
 
 impl FaceTable {

@@ -5,7 +5,7 @@ use signorini_fem_mesh::SurfaceFrame;
 use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, cross, dot, far_apart, norm, scale, sub};
 
-use super::faces::Known;
+use super::known::Known;
 use super::points::Room;
 use crate::error::{DeckError, Word};
 use crate::model::Flat;

@@ -8,8 +8,9 @@ use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, scale, unit};
 use signorini_fem_mesh::{FacetTag, LoadDensity};
 
-use super::faces::{FaceTable, Known};
+use super::faces::FaceTable;
 use super::history::{Histories, Tracks};
+use super::known::Known;
 use super::pretension::{ONE, Sections};
 use super::spread::Spread;
 use super::supports::Rigid;

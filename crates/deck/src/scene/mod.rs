@@ -14,6 +14,7 @@ mod faces;
 mod flats;
 mod held;
 mod history;
+mod known;
 mod loads;
 mod materials;
 mod mesh;
@@ -78,7 +79,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
     }
     let points = points::Points::new(&sets, &bodies, &couplings, &raw)?;
     let transforms = transforms::Transforms::new(&sets, &bodies, (&couplings, &points), &raw)?;
-    let known = faces::Known {
+    let known = known::Known {
         model,
         sets: &sets,
         bodies: &bodies,

@@ -9,7 +9,8 @@ use nalgebra::{Matrix3, Vector3};
 use signorini_fem_mesh::vec3::{Vec3, add, cross, scale, sub};
 
 use super::couplings::Coupling;
-use super::faces::{FaceTable, Known};
+use super::faces::FaceTable;
+use super::known::Known;
 use crate::error::DeckError;
 
 /// How a surface takes the loads of its node.

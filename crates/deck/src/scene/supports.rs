@@ -7,9 +7,10 @@ use signorini_fem_mesh::History;
 
 use super::between::{Follower, Targets, between, followers};
 use super::couplings::Coupling as Node;
-use super::faces::{FaceTable, Known};
+use super::faces::FaceTable;
 use super::held::{Held, Key, Owner, Said};
 use super::history::Histories;
+use super::known::Known;
 use super::pretension::ONE;
 use super::rigid::{FreeLead, Lead, all_components, rigid_components};
 use super::spread::coupled_nodes;

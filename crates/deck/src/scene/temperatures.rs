@@ -7,8 +7,8 @@ use signorini_contact::Load;
 use signorini_fem_mesh::Eigenstrain;
 use signorini_fem_mesh::vec3::Vec3;
 
-use super::faces::Known;
 use super::history::{Histories, Track};
+use super::known::Known;
 use crate::error::{DeckError, Word};
 use crate::model::{Given, Ignored, Model, Section};
 

@@ -9,7 +9,8 @@ use std::collections::BTreeMap;
 use signorini_contact::Obstacle;
 use signorini_fem_mesh::vec3::{add, area_vector, dot, norm, sub};
 
-use super::faces::{FaceTable, Known};
+use super::faces::FaceTable;
+use super::known::Known;
 use crate::error::DeckError;
 use crate::model::{Ignored, Law, Pair, Tie};
 use crate::tolerances::{BEFORE, NO_TIE, TIE, TOGETHER};

@@ -5,8 +5,8 @@ use std::collections::{BTreeMap, HashMap};
 use signorini_fem_mesh::LoadDensity;
 use signorini_fem_mesh::vec3::{Vec3, cross, dot, norm, scale, sub, unit};
 
-use super::faces::Known;
 use super::history::{Histories, Track, Tracks};
+use super::known::Known;
 use super::materials::sections;
 use crate::error::{DeckError, Word};
 use crate::model::{Given, Target, VolumeLaw};
