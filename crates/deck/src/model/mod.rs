@@ -128,7 +128,7 @@ pub(crate) enum Member {
 pub(crate) type Set = Vec<(Member, Location)>;
 
 /// A side of an element.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Side {
     /// Face 1 to 6 of a solid.
     Face(u8),

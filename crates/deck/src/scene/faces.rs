@@ -4,7 +4,7 @@
 //! with the same surfaces and the same pressure get one tag, so that a surface is a list of tags: one where
 //! nothing overlaps.
 
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use signorini_fem_mesh::internal::{TET_FACES, ascending, distinct};
 use signorini_fem_mesh::mesh::divide_face;
@@ -281,7 +281,14 @@ impl Known<'_> {
         }
         // the first line that names elements without their faces
         let mut whole = None;
-        for Faces { target, side, word } in lines {
+        // lines may say the same many times
+        let (mut said, mut known) = (BTreeSet::new(), HashSet::new());
+        for Faces { target, side, word } in lines.iter().filter(|line| said.insert((&line.target, line.side))) {
+            let mut add = |face| {
+                if known.insert(face) {
+                    chosen.faces.push((face, word))
+                }
+            };
             let (mut solids, mut flat) = (Vec::new(), Vec::new());
             for element in self.sets.elements.find(target, word)? {
                 match (self.raw.tets_of(element).is_empty(), self.bodies.of_element(element)) {
@@ -295,22 +302,24 @@ impl Known<'_> {
             match side {
                 Side::Face(number) => {
                     for element in solids {
-                        let faces = self.face_of(element, *number, word)?;
-                        chosen.faces.extend(faces.map(|face| (face, word)));
+                        self.face_of(element, *number, word)?.for_each(&mut add);
                     }
                 }
                 _ if solids.is_empty() => {}
                 Side::Outside => {
                     whole.get_or_insert(word);
-                    let faces =
-                        Boundary::of(boundary, self.raw).of_tets(solids.into_iter().flat_map(|e| self.raw.tets_of(e)));
-                    chosen.faces.extend(faces.into_iter().map(|face| (face, word)));
+                    let tets = solids.into_iter().flat_map(|e| self.raw.tets_of(e));
+                    Boundary::of(boundary, self.raw)
+                        .of_tets(tets)
+                        .into_iter()
+                        .for_each(&mut add);
                 }
                 Side::Facet { .. } | Side::Nodes => return Err(word.expected("faces S1 to S6 of solid elements")),
             }
             for element in flat {
-                let faces = of_flat(self, Boundary::of(boundary, self.raw), element, (*side, word))?;
-                chosen.faces.extend(faces.into_iter().map(|face| (face, word)));
+                of_flat(self, Boundary::of(boundary, self.raw), element, (*side, word))?
+                    .into_iter()
+                    .for_each(&mut add);
             }
             if !chosen.faces.is_empty() && !chosen.rigid.is_empty() {
                 return Err(word.cannot("the surface has rigid and elastic faces; make two surfaces of them"));

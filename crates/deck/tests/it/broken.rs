@@ -239,6 +239,11 @@ fn sets_of_everything() {
         let error = Deck::read(&path).expect_err("too many").to_string();
         assert!(error.contains("members of sets"), "{what}: {error}");
     }
+    let more = "ALL, S1\nALL, S2\nMORE, S2\n".repeat(10_000);
+    assert!(survive(
+        &path,
+        format!("{grid}*ELSET, ELSET=MORE\nALL\n*SURFACE, NAME=A\n{more}").as_bytes()
+    ));
 }
 
 /// Any number of a deck set to what no model has.
