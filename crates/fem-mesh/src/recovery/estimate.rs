@@ -52,9 +52,10 @@ impl StrainRecovery {
     ///
     /// # Errors
     /// As [`discretisation_error`](super::discretisation_error); [`FieldError::Length`] also for a mesh with another
-    /// number of tetrahedra. Another mesh with as many is not noticed, and the estimate is meaningless then.
+    /// number of tetrahedra or nodes. Another mesh with as many is not noticed, and the estimate is meaningless then.
     pub fn error(&self, mesh: &TetMesh, materials: &Materials, u: &[f64]) -> Result<DiscretisationError, FieldError> {
         expect_entries("table of tetrahedra", self.corners.len(), mesh.tets().len())?;
+        expect_entries("table of nodes", self.nodes, mesh.points().len())?;
         let laws = materials.of_tets(mesh.regions())?;
         let both = match mesh.order() {
             1 => self.linear(mesh, materials, &laws, &strains(mesh, u)?),

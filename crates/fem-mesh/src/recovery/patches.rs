@@ -17,6 +17,8 @@ use super::quadratic::Fit;
 /// depend on the mesh only, so that each recovered strain is a fixed combination of strains.
 #[derive(Debug, Clone)]
 pub struct StrainRecovery {
+    /// Nodes of the mesh.
+    pub(super) nodes: usize,
     /// The tetrahedra of the patch of each (node, region), with their weights.
     pub(super) patches: Vec<Vec<(u32, f64)>>,
     /// Patches of the corners of each tetrahedron.
@@ -117,6 +119,7 @@ impl StrainRecovery {
             }
         };
         Self {
+            nodes: mesh.points().len(),
             patches: (0..around.nodes.len()).into_par_iter().map(patch).collect(),
             corners: around.corners(mesh),
             fits: Vec::new(),
@@ -131,6 +134,7 @@ impl StrainRecovery {
             fit.unwrap_or_else(|| Fit::best(mesh, &around.wide(mesh, k), centre))
         };
         Self {
+            nodes: mesh.points().len(),
             patches: Vec::new(),
             corners: around.corners(mesh),
             fits: (0..around.nodes.len()).into_par_iter().map(patch).collect(),

@@ -16,7 +16,7 @@ use std::collections::BinaryHeap;
 
 use super::estimate::DiscretisationError;
 use crate::fields::{FieldError, expect_entries};
-use crate::mesh::TetMesh;
+use crate::mesh::{EDGES, TetMesh};
 use crate::tables::distinct;
 use crate::tolerances::{COARSENED, EDGE_GROWTH, REFINED};
 use crate::vec3::{norm, sub};
@@ -61,8 +61,7 @@ impl DiscretisationError {
                 COARSENED
             };
             let edge = factor * (REGULAR * mesh.volume(tet)).cbrt();
-            let mids = mesh.mids().get(tet).into_iter().flatten();
-            for &node in nodes.iter().chain(mids) {
+            for &node in nodes {
                 logs[node as usize].0 += edge.ln();
                 logs[node as usize].1 += 1.0;
             }
@@ -72,6 +71,12 @@ impl DiscretisationError {
             .map(|(sum, count): (f64, f64)| (sum / count).exp())
             .collect();
         limit_growth(mesh, &mut sizes);
+        for (nodes, mids) in mesh.tets().iter().zip(mesh.mids()) {
+            for (mid, edge) in mids.iter().zip(EDGES) {
+                let [a, b] = edge.map(|corner| sizes[nodes[corner] as usize]);
+                sizes[*mid as usize] = 0.5 * (a + b);
+            }
+        }
         Ok(sizes)
     }
 }

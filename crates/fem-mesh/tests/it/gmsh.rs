@@ -455,3 +455,17 @@ fn a_crack_of_gmsh_is_read() {
     assert_eq!(mesh.components().iter().max(), Some(&0));
     assert!((mesh.total_volume() - 2.0).abs() < 1e-9);
 }
+
+/// A group of faces beside the volumes was told as a node number of 4294967295.
+#[test]
+fn a_group_of_faces_without_a_volume_is_named() {
+    let loose = TEXT.replace("2 1 2 1\n2 3 1 2\n", "2 1 2 1\n2 3 1 6\n");
+    let error = parse_gmsh(loose.as_bytes()).unwrap_err();
+    assert!(matches!(error, GmshError::LooseSurface { surface: 3 }), "{error}");
+    // without groups nobody asked for them
+    let entities = TEXT.find("$PhysicalNames").zip(TEXT.find("$Nodes"));
+    let (from, to) = entities.expect("sections");
+    let plain = format!("{}{}", &loose[..from], &loose[to..]);
+    let (mesh, _) = parse_gmsh(plain.as_bytes()).expect("a mesh");
+    assert_eq!(mesh.tets().len(), 2);
+}

@@ -3,7 +3,7 @@
 use crate::norms::energy_of_error;
 use approx::assert_abs_diff_eq;
 use signorini_fem_mesh::fields::energy_of_difference;
-use signorini_fem_mesh::recovery::discretisation_error;
+use signorini_fem_mesh::recovery::{StrainRecovery, discretisation_error};
 use signorini_fem_mesh::{Brick, Hooke, LoadDensity, Materials, TetMesh};
 
 /// u = s(x) (1, -1, 0.5) with s = sin x sin y sin z, interpolated at the nodes. The energy error of the
@@ -312,4 +312,39 @@ fn a_target_is_positive_and_the_mesh_its_own() {
     let other = Brick::new([1.0; 3], [3; 3]).build().expect("mesh");
     let message = error.wanted_sizes(&other, 0.1).expect_err("mesh").to_string();
     assert!(message.contains("table of tetrahedra"), "{message}");
+}
+
+/// Mid-nodes have the mean of the ends of their edges, so that sizes grow as slowly along halves of edges.
+#[test]
+fn wanted_sizes_at_mid_nodes_grow_slowly() {
+    let mesh = Brick::new([1.0; 3], [4; 3]).build().expect("mesh");
+    let mesh = mesh.raise_order().expect("order 2");
+    let bent = |p: &[f64; 3]| [if p[0] < 0.3 { p[0].powi(5) } else { 0.0 }, 0.0, 0.0];
+    let u: Vec<f64> = mesh.points().iter().flat_map(bent).collect();
+    let error = discretisation_error(&mesh, &material(), &u).expect("estimate");
+    let sizes = error.wanted_sizes(&mesh, 0.3 * error.relative()).expect("sizes");
+    let edges = [[0, 1], [1, 2], [0, 2], [0, 3], [1, 3], [2, 3]];
+    for (tet, mids) in mesh.tets().iter().zip(mesh.mids()) {
+        for (mid, ends) in mids.iter().zip(edges) {
+            for end in ends.map(|k| tet[k] as usize) {
+                let [x, y] = [end, *mid as usize].map(|n| mesh.points()[n]);
+                let way = (0..3).map(|c| (x[c] - y[c]).powi(2)).sum::<f64>().sqrt();
+                let growth = (sizes[end] - sizes[*mid as usize]).abs();
+                assert!(growth <= 0.5 * way * (1.0 + 1e-12), "{growth} over {way}");
+            }
+        }
+    }
+}
+
+/// A recovery is for meshes of its order: of the other one it looked for what is not there, and panicked.
+#[test]
+fn a_recovery_refuses_a_mesh_of_the_other_order() {
+    let linear = Brick::new([1.0; 3], [2; 3]).build().expect("mesh");
+    let quadratic = linear.raise_order().expect("order 2");
+    for (own, other) in [(&linear, &quadratic), (&quadratic, &linear)] {
+        let still = vec![0.0; 3 * other.points().len()];
+        let error = StrainRecovery::new(own).error(other, &material(), &still);
+        let message = error.expect_err("the order").to_string();
+        assert!(message.contains("table of nodes"), "{message}");
+    }
 }

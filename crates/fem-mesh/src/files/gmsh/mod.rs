@@ -66,7 +66,12 @@ errors! {
             so keep one group";
         RepeatedName { name: String, groups: [u32; 2] } =
             "the physical groups {} and {} of the Gmsh file are both named {name:?}; rename one", groups[0], groups[1];
-        Mesh(MeshError) = "the mesh in the Gmsh file (numbers from 0, in the order of the file; a divided element is several tetrahedra): {0}";
+        LooseSurface { surface: u32 } =
+            "faces of the physical surface {surface} of the Gmsh file have nodes that no element of a volume uses; take the \
+            surface out of the groups, or mesh the volume behind it";
+        Mesh(MeshError) =
+            "the mesh in the Gmsh file (numbers from 0, in the order of the file: nodes those that volumes use, facets the \
+            triangles in groups; a divided element is several of them): {0}";
     }
 }
 
@@ -182,14 +187,18 @@ fn mesh<const N: usize>(
     mut points: Vec<[f64; 3]>,
     mut tets: Vec<[u32; N]>,
     (mut facets, grouped): (Vec<Facet>, bool),
-) -> Result<TetMesh, MeshError> {
+) -> Result<TetMesh, GmshError> {
     orient_tets(&points, &mut tets);
     drop_unused_nodes(&mut points, &mut tets, &mut facets);
+    let is_loose = |f: &&Facet| f.nodes.iter().any(|&node| node as usize >= points.len());
+    if let Some(facet) = facets.iter().find(is_loose).filter(|_| grouped) {
+        return Err(GmshError::LooseSurface { surface: facet.tag.0 });
+    }
     if !grouped {
         // Nobody asked for these surfaces by name, and some may lie between two volumes.
         facets = on_boundary(&build(points.clone(), tets.clone(), Vec::new())?, facets);
     }
-    build(points, tets, facets)
+    Ok(build(points, tets, facets)?)
 }
 
 fn on_boundary(bare: &TetMesh, facets: Vec<Facet>) -> Vec<Facet> {

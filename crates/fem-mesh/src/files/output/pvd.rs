@@ -26,7 +26,8 @@ const FOOT: [&str; 2] = ["  </Collection>", "</VTKFile>"];
 ///
 /// The list is written anew after every step. It and the files of the steps are written beside their place, with
 /// `.tmp` at the end of their names, and then take it. They are therefore complete at any moment, also when the
-/// computation stops half way or the disk is full. A step whose writing failed does not count and can be written again.
+/// computation stops half way or the disk is full. A step whose writing failed does not count and can be written again;
+/// after [`PvdSeries::write_part`] failed in one process, all open the series again.
 ///
 /// A run that is resumed continues its series with [`PvdSeries::open`] or
 /// [`PvdSeries::open_before`]:
@@ -77,7 +78,7 @@ impl PvdSeries {
     ///
     /// # Errors
     /// [`OutputError`] if the name is not a plain file name, or the list is missing or not as this
-    /// type writes it, or one of its files is cut short.
+    /// type writes it, or one of the files that it names is cut short.
     pub fn open(folder: impl AsRef<Path>, name: &str) -> Result<Self, OutputError> {
         let series = Self::listed(folder.as_ref(), name)?;
         series.check_files()?;
