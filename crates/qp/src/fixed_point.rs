@@ -12,7 +12,7 @@ use crate::vector;
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[non_exhaustive]
 pub enum Verdict {
-    /// The relative change fell below the tolerance.
+    /// The relative change is at most the tolerance.
     Converged,
     /// Changes shrink, more iterations are needed.
     Contracting,
@@ -76,8 +76,8 @@ pub struct FixedPointReport {
     pub rate: Option<f64>,
 }
 
-/// Iterates `x <- map(x)` until the change relative to `x`, or to `least` if that is larger, is below `tolerance`
-/// (0/0 counts as converged). `least` is the norm below which `x` is taken to vanish.
+/// Iterates `x <- map(x)` until the change relative to `x`, or to `least` if that is larger, is at most `tolerance`
+/// (0/0 counts as 0). `least` is the norm below which `x` is taken to vanish.
 ///
 /// `map(x, change)` overwrites `x` and returns whether it evaluated with full accuracy; `change` is the last relative
 /// change, 1 at first, and tells how accurate the evaluation needs to be. Only an evaluation with full accuracy can end
@@ -113,7 +113,7 @@ pub fn successive_approximations<E>(
         }
         change = if difference == 0.0 { 0.0 } else { difference / size };
         asked = change;
-        if change < tolerance {
+        if change <= tolerance {
             if exact {
                 verdict = Verdict::Converged;
                 break;

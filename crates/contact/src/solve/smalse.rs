@@ -65,7 +65,12 @@ impl SmalseSolver {
             .ok_or_else(|| not_determined(model, factor.free_motions()))?;
         let operator = model.tfeti.dual();
         let projected = Projected::new(operator, &coarse)?;
-        let estimate = norm_estimate(&projected)?;
+        // where balance alone determines all forces nothing but rounding is left of P F P
+        let estimate = if coarse.rows() < model.tfeti.dual_dim() {
+            norm_estimate(&projected)?
+        } else {
+            norm_estimate(operator)?
+        };
         Ok(Self {
             work: SmalseWorkspace::new(operator, &coarse),
             set: model.set.clone(),

@@ -372,3 +372,32 @@ fn plates_that_lie_down_are_solved_on_few_sets() {
         assert!(mu > 0.0 || products[1..].iter().all(|p| *p <= 3), "{what}");
     }
 }
+
+/// Three rows of a floor and three of supports balance the six motions of a body: nothing is left of the norm of F on
+/// what they do not determine but rounding, with which the paper's methods began.
+#[test]
+fn forces_that_balance_alone_determines_are_found() {
+    let points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.2, 0.3, 1.0]];
+    let tag = FacetTag(1);
+    let bottom = Facet { nodes: [0, 2, 1], tag };
+    let mesh = TetMesh::new(points, vec![[0, 1, 2, 3]], vec![bottom]).expect("mesh");
+    let scene = Scene::new(mesh, uniform(1e9, 0.3))
+        .with_support(Support::components(vec![0], [true, true, false]))
+        .with_support(Support::components(vec![1], [false, true, false]))
+        .with_contact(Contact::rigid(tag))
+        .with_load(Load::new(LoadDensity::NodalForces(vec![(3, [0.0, 0.0, -6.0])])))
+        .without_subdomains();
+    for method in methods() {
+        let found = solve(scene.clone(), by(method.clone()));
+        let forces: Vec<f64> = found.points.iter().map(|p| -p.normal_force).collect();
+        for (found, expected) in forces.iter().zip([3.0, 1.2, 1.8]) {
+            assert!((found - expected).abs() < 1e-6, "{}: {forces:?}", method.kind());
+        }
+        assert!(
+            found.report.counters.products <= 40,
+            "{}: {}",
+            method.kind(),
+            found.report.counters.products
+        );
+    }
+}

@@ -1,4 +1,4 @@
-//! Springs in series with the constrained components, and what a solve remembers of them ([`path`](super::path)).
+//! Springs in series with the constrained components, those of a [`path`](super::path).
 //!
 //! They add `c / scale` to the diagonal of `A`. All that belongs to a constrained component changes with its spring:
 //! the preconditioner and the weight of the projector by the share `1 / (1 + c)`, as with the curvature of a disc, and
@@ -63,21 +63,6 @@ impl Compliance {
             }
         }
     }
-}
-
-/// What a solve remembers of its path.
-#[derive(Debug, Default)]
-pub(crate) struct Path {
-    /// Whether the start told nothing of the constrained components.
-    pub(crate) unknown: bool,
-    /// Times that a path was begun.
-    pub(crate) begun: i32,
-    /// Active sets when the compliance was changed.
-    pub(crate) since: usize,
-    /// Estimated error on the first active set that was not solved when it was entered.
-    pub(crate) first: Option<f64>,
-    /// Sets in a row whose error was well above that.
-    pub(crate) away: usize,
 }
 
 #[cfg(test)]

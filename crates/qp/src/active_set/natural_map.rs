@@ -3,7 +3,7 @@
 //! | local | meaning |
 //! |---|---|
 //! | `x`, `g` | point, and gradient without its part in the image of `Gᵀ` |
-//! | `s` | `x - a g`, the natural map before projection; `a = NATURAL_STEP * scale` |
+//! | `s` | `x - a g`, the natural map before projection; `a = step * scale` |
 //! | `n`, `tau` | outward normal and tangent of a disc at `x` |
 //! | `kappa` | curvature `-g·n / radius` that a disc adds along its tangent (`|du_T| / r` in contact) |
 

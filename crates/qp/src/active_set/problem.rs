@@ -6,8 +6,8 @@ pub struct ActiveSetProblem<'a, A, M> {
     /// `A`.
     pub operator: &'a A,
     /// Approximates the inverse of `A` on the image of the projector. It measures the error of `x`: one that is a
-    /// millionth of the inverse ends the solve with a millionfold error. [`Identity`](crate::problem::Identity) is for
-    /// operators with a norm of about one, [`Diagonal`](crate::problem::Diagonal) for others.
+    /// millionth of the inverse ends the solve with a millionfold error. [`Diagonal`](crate::problem::Diagonal) is the
+    /// simplest.
     pub preconditioner: &'a M,
     /// Diagonal of the preconditioner, positive on constrained components: turns gradients into steps.
     pub scale: &'a [f64],

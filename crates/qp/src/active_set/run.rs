@@ -13,8 +13,9 @@ use crate::vector;
 
 use super::blocks::ActiveSet;
 use super::cg::Goal;
-use super::compliance::{Compliance, Path};
+use super::compliance::Compliance;
 use super::iterate::{Iterate, Lengths, Wanted, natural_map};
+use super::path::Path;
 use super::problem::{ActiveSetPoint, ActiveSetProblem};
 use super::settings::{ActiveSetReport, ActiveSetSettings};
 use super::view::{ActiveSetPreconditioner, ActiveSetView};

@@ -1,6 +1,6 @@
 //! What an active set leaves free, as preconditioners see it.
 
-use crate::problem::{Constrained, DenseOperator, Diagonal, Identity, ProductSet, SymmetricOperator, for_constrained};
+use crate::problem::{Constrained, DenseOperator, Diagonal, ProductSet, SymmetricOperator, for_constrained};
 
 use super::blocks::ActiveSet;
 use super::disc::Disc;
@@ -80,6 +80,5 @@ pub trait ActiveSetPreconditioner: SymmetricOperator {
     }
 }
 
-impl ActiveSetPreconditioner for Identity {}
 impl ActiveSetPreconditioner for DenseOperator {}
 impl ActiveSetPreconditioner for Diagonal {}

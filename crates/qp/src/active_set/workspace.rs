@@ -26,6 +26,7 @@ pub struct ActiveSetWorkspace<A: SymmetricOperator, M: SymmetricOperator> {
     /// Weights of the constrained components.
     pub(crate) w: Vec<f64>,
     pub(crate) lines: Vec<LineWeight>,
+    /// The point whose product `ax` is, once marked; the move away from it, once asked for and while `ahead`.
     pub(crate) t: Vec<f64>,
     /// Constrained components of the point that the product handed in is of; empty for those of the start.
     pub(crate) known: Vec<f64>,

@@ -9,12 +9,13 @@
 //! |---|---|
 //! | `alpha_j`, `beta_j` | `diagonal`, `off`: entries of the tridiagonal matrix |
 //! | `theta` | `lower`: its largest eigenvalue |
-//! | last entry of the eigenvector | `weight` (squared) |
+//! | last entry of the eigenvector | `last` |
 
 use crate::error::QpError;
 use crate::problem::SymmetricOperator;
 use crate::tolerances::{EXHAUSTED, NORM_ACCURACY, NORM_MARGIN, NORM_PRODUCTS};
 use crate::vector;
+use faer::{Mat, Side};
 
 /// Result of [`norm_estimate`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +32,7 @@ pub struct NormEstimate {
 /// Estimates the norm of a positive semidefinite `operator`.
 ///
 /// The start vector is fixed (no randomness between runs). Allocates three vectors; meant to be called
-/// once an operator. Dimension 0 and the zero operator give 0.
+/// once an operator. Dimension 0 and the zero operator give 0, with which no solver begins.
 ///
 /// # Errors
 /// A product that is not finite.
@@ -65,8 +66,9 @@ pub fn norm_estimate<A: SymmetricOperator>(operator: &A) -> Result<NormEstimate,
                 products: estimate.products,
             });
         }
-        let lower = largest_eigenvalue(&diagonal, &off);
-        let residual = beta * last_weight(&diagonal, &off, lower).sqrt().min(1.0);
+        // without an eigenvector the residual is at most this
+        let (lower, last) = largest_eigenpair(&diagonal, &off).unwrap_or((alpha, 1.0));
+        let residual = beta * last.abs();
         estimate.lower = lower;
         estimate.upper = NORM_MARGIN * (lower + residual);
         if beta <= EXHAUSTED * lower.abs() || (k >= 4 && residual <= NORM_ACCURACY * lower) {
@@ -91,68 +93,22 @@ fn start_entry(i: usize) -> f64 {
     if z & 1 == 0 { magnitude } else { -magnitude }
 }
 
-/// Whether `lambda` is above every eigenvalue: all pivots of `T - lambda` negative.
-fn is_above(diagonal: &[f64], off: &[f64], lambda: f64) -> bool {
-    let mut pivot = f64::INFINITY;
-    for (i, &a) in diagonal.iter().enumerate() {
-        let coupling = if i == 0 { 0.0 } else { off[i - 1] * off[i - 1] / pivot };
-        pivot = a - lambda - coupling;
-        if pivot >= 0.0 {
-            return false;
-        }
-    }
-    true
-}
-
-/// Largest eigenvalue of the tridiagonal matrix, by bisection between the Gershgorin bound and the
-/// largest diagonal entry.
-fn largest_eigenvalue(diagonal: &[f64], off: &[f64]) -> f64 {
-    let (mut lo, mut hi) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
-    for (i, &a) in diagonal.iter().enumerate() {
-        let left = if i == 0 { 0.0 } else { off[i - 1].abs() };
-        let right = if i + 1 < diagonal.len() { off[i].abs() } else { 0.0 };
-        lo = lo.max(a);
-        hi = hi.max(a + left + right);
-    }
-    for _ in 0..80 {
-        let mid = 0.5 * (lo + hi);
-        if mid <= lo || mid >= hi {
-            break;
-        }
-        if is_above(diagonal, off, mid) {
-            hi = mid;
-        } else {
-            lo = mid;
-        }
-    }
-    hi
-}
-
-/// Square of the last entry of the normalised eigenvector: `-1 / d'(lambda)`, `d` the last pivot.
-fn last_weight(diagonal: &[f64], off: &[f64], lambda: f64) -> f64 {
-    let (mut pivot, mut slope) = (f64::INFINITY, 0.0);
-    for (i, &a) in diagonal.iter().enumerate() {
-        let b2 = if i == 0 { 0.0 } else { off[i - 1] * off[i - 1] };
-        (pivot, slope) = (a - lambda - b2 / pivot, -1.0 + b2 * slope / (pivot * pivot));
-    }
-    if slope.is_finite() { -1.0 / slope } else { 1.0 }
+/// Largest eigenvalue of the tridiagonal matrix, and the last entry of its unit eigenvector.
+fn largest_eigenpair(diagonal: &[f64], off: &[f64]) -> Option<(f64, f64)> {
+    let n = diagonal.len();
+    let matrix = Mat::from_fn(n, n, |i, j| match i.abs_diff(j) {
+        0 => diagonal[i],
+        1 => off[i.min(j)],
+        _ => 0.0,
+    });
+    let eigen = matrix.self_adjoint_eigen(Side::Lower).ok()?;
+    Some((eigen.S()[n - 1], eigen.U()[(n - 1, n - 1)]))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::problem::DenseOperator;
-
-    #[test]
-    fn tridiagonal_eigenvalue_is_known() {
-        let n = 12;
-        let lambda = largest_eigenvalue(&vec![2.0; n], &vec![-1.0; n - 1]);
-        let exact = 2.0 + 2.0 * (std::f64::consts::PI / (n as f64 + 1.0)).cos();
-        assert!((lambda - exact).abs() < 1e-13);
-        // eigenvector entries sin(j pi / (n + 1)), squares sum to (n + 1) / 2
-        let last = (std::f64::consts::PI / (n as f64 + 1.0)).sin().powi(2) / (0.5 * (n as f64 + 1.0));
-        assert!((last_weight(&vec![2.0; n], &vec![-1.0; n - 1], lambda) - last).abs() < 1e-9);
-    }
 
     #[test]
     fn upper_is_above_lower_is_below() {

@@ -12,7 +12,7 @@ pub(crate) trait Objective {
     /// The iterate moved by `-t p`, `p` being the last direction.
     fn moved(&mut self, t: f64);
     /// Upper bound of the norm of the Hessian.
-    fn norm(&self) -> f64;
+    fn hessian_norm(&self) -> f64;
     /// Gradient norm at which the iteration may stop at the present iterate.
     fn tolerance(&self) -> f64;
 }
@@ -33,7 +33,7 @@ impl<A: SymmetricOperator> Objective for Plain<'_, A> {
         self.cost.a.apply(p, ap, self.scratch);
     }
     fn moved(&mut self, _t: f64) {}
-    fn norm(&self) -> f64 {
+    fn hessian_norm(&self) -> f64 {
         self.cost.norm
     }
     fn tolerance(&self) -> f64 {

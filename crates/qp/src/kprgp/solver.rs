@@ -124,7 +124,7 @@ pub(crate) fn iterate<O: Objective, S: ConvexSet + ?Sized>(
     v: &mut Vectors,
 ) -> Result<KprgpReport, QpError> {
     let mut run = Run {
-        fixed: settings.step_length / objective.norm(),
+        fixed: settings.step_length / objective.hessian_norm(),
         o: objective,
         set,
         settings,
@@ -148,7 +148,7 @@ pub(crate) fn iterate<O: Objective, S: ConvexSet + ?Sized>(
             });
         }
         if measure <= tolerance {
-            if !drifted(run.o.norm(), run.x, run.v.stale, tolerance) {
+            if !drifted(run.o.hessian_norm(), run.x, run.v.stale, tolerance) {
                 break Status::Converged;
             }
             run.v.compute_gradient(run.o, run.x);
@@ -167,7 +167,7 @@ pub(crate) fn iterate<O: Objective, S: ConvexSet + ?Sized>(
         } else {
             waited += 1;
             if waited >= KPRGP_PATIENCE {
-                if measure <= ROUNDED_GRADIENT * run.o.norm() * vector::norm(run.x) {
+                if measure <= ROUNDED_GRADIENT * run.o.hessian_norm() * vector::norm(run.x) {
                     break Status::Stagnated;
                 }
                 waited = 0;
@@ -235,7 +235,7 @@ impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
                 products,
             });
         }
-        let (norm, pp) = (self.o.norm(), vector::dot(p, p));
+        let (norm, pp) = (self.o.hessian_norm(), vector::dot(p, p));
         if pap > 0.0 && !below_rounding(pap, norm, pp) {
             return Ok(gp / pap);
         }
@@ -270,7 +270,7 @@ impl<O: Objective, S: ConvexSet + ?Sized> Run<'_, O, S> {
         if t_cg <= t_f {
             self.steps.cg += 1;
             let pp = vector::dot(&self.v.p, &self.v.p);
-            if below_rounding(pap, self.o.norm(), pp) {
+            if below_rounding(pap, self.o.hessian_norm(), pp) {
                 self.restart();
                 return Ok(());
             }

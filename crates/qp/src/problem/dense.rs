@@ -57,24 +57,6 @@ impl SymmetricOperator for DenseOperator {
     }
 }
 
-/// The identity as operator: no preconditioner.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Identity(
-    /// Dimension.
-    pub usize,
-);
-
-impl SymmetricOperator for Identity {
-    type Scratch = ();
-    fn dim(&self) -> usize {
-        self.0
-    }
-    fn scratch(&self) -> Self::Scratch {}
-    fn apply(&self, x: &[f64], y: &mut [f64], _s: &mut ()) {
-        vector::copy(x, y);
-    }
-}
-
 /// A diagonal operator. With the inverses of the diagonal of `A` it is the simplest preconditioner, and its entries are
 /// the [scale](crate::active_set::ActiveSetProblem::scale) of the active-set method.
 #[derive(Debug, Clone, PartialEq)]

@@ -21,7 +21,7 @@ mod set;
 
 pub use cost::{ConstrainedCost, QuadraticCost};
 pub(crate) use dense::solve_cholesky;
-pub use dense::{DenseEquality, DenseOperator, Diagonal, Identity};
+pub use dense::{DenseEquality, DenseOperator, Diagonal};
 pub use dense_projector::DenseProjector;
 pub(crate) use moving_set::Hook;
 pub use moving_set::MovingSet;

@@ -42,12 +42,6 @@ pub trait SymmetricOperator: Sync {
         vector::dots(pairs)
     }
 
-    /// The sum of the entries, one after another.
-    #[doc(hidden)]
-    fn sum(&self, x: &[f64]) -> f64 {
-        x.iter().sum()
-    }
-
     /// Euclidean norm.
     #[doc(hidden)]
     fn norm(&self, x: &[f64]) -> f64 {

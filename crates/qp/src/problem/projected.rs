@@ -5,7 +5,8 @@ use crate::vector;
 
 use super::operator::{Equality, SymmetricOperator};
 
-/// `P A P`, the operator `A` seen from the kernel of `C`; its norm scales the settings of SMALSE.
+/// `P A P`, the operator `A` seen from the kernel of `C`; its norm scales the settings of SMALSE. With as many rows as
+/// columns `C` leaves nothing of it but rounding: take the norm of `A` then.
 ///
 /// One product with it is one product with `A` and two projections.
 #[derive(Debug, Clone, Copy)]

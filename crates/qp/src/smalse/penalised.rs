@@ -123,7 +123,7 @@ impl<A: SymmetricOperator, C: Equality> Objective for Penalised<'_, A, C> {
         vector::axpy(-t, &self.s.crp, &mut self.s.cr);
     }
 
-    fn norm(&self) -> f64 {
+    fn hessian_norm(&self) -> f64 {
         self.cost.norm.max(self.rho)
     }
 

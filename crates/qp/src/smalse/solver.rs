@@ -33,9 +33,9 @@ use super::settings::{SmalseReport, SmalseSettings, SmalseWorkspace};
 /// Minimises `cost` over a set, from the given `x` and `multiplier` (zeros, the last solution or an extrapolation,
 /// [`vector::extrapolate`]), which are overwritten by the result.
 ///
-/// The set may move after Step 1 of every outer step; if it does, `x` is projected on it again and the solve goes on.
-/// On return `x` is feasible for the set as it then is, and the workspace holds the gradient, `A x - b` and the
-/// multiplier of the original problem.
+/// The set may move after Step 1 of every outer step; if that matters, `x` is projected on it again and the solve goes
+/// on. On return `x` is feasible for the set as it was when that last mattered, and the workspace holds the gradient,
+/// `A x - b` and the multiplier of the original problem.
 ///
 /// # Errors
 /// As for [`kprgp`](crate::kprgp()). Not reaching the tolerance is no error: see
@@ -131,11 +131,16 @@ pub fn smalse<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized>(
         let changed = run.call_hook()?;
         // Step 2: done?
         match run.judge(inner.status, changed) {
-            Verdict::End(status) => break status,
+            Verdict::End(status) => {
+                if changed {
+                    run.follow_set();
+                }
+                break status;
+            }
             Verdict::Again => continue,
             Verdict::Update => {}
         }
-        // Step 3: beta_{k+1} = beta_k + rho (C x - e); Step 4: M_{k+1}, or rho
+        // Step 3: beta_{k+1} = beta_k + rho (C x - e); Step 4: M_{k+1}
         let grew = run.lagrangian_grew(inner.decrease);
         run.update_multiplier();
         if !grew {
@@ -222,9 +227,11 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, A, C, S> 
     /// The hook; if it changed the set, `x` is projected on it, and `v.p` keeps it as it was.
     fn call_hook(&mut self) -> Result<bool, QpError> {
         let changed = self.hook.as_mut().is_some_and(|hook| hook(self.x, self.set));
-        if changed {
+        if self.hook.is_some() {
             self.set.validate()?;
             expect_length("the set after the hook", self.set.dim(), self.x.len())?;
+        }
+        if changed {
             vector::copy(self.x, &mut self.v.p);
             self.set.project(self.x);
         }
@@ -235,7 +242,7 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, A, C, S> 
     fn judge(&mut self, inner: Status, changed: bool) -> Verdict {
         let done = self.within && !changed;
         if done {
-            if !drifted(self.o.norm(), self.x, self.v.stale, self.o.floor) {
+            if !drifted(self.o.hessian_norm(), self.x, self.v.stale, self.o.floor) {
                 return Verdict::End(Status::Converged);
             }
             self.v.compute_gradient(&mut self.o, self.x);

@@ -3,7 +3,7 @@
 use crate::common::{Random, from_zero, product, spd};
 use proptest::prelude::*;
 use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetReport, ActiveSetWorkspace};
-use signorini_qp::problem::Identity;
+use signorini_qp::problem::Diagonal;
 use signorini_qp::{
     ActiveSetSettings, ConvexSet, DenseOperator, DenseProjector, MovingSet, ProductSet, QpError, Segment, Status,
     SymmetricOperator, active_set, vector,
@@ -220,7 +220,7 @@ fn wrong_input_is_refused() {
 /// The error names the scale, not the products that it spoils.
 #[test]
 fn a_scale_that_is_not_positive_is_refused() {
-    let (a, identity) = (crate::common::pair(), Identity(2));
+    let (a, identity) = (crate::common::pair(), Diagonal::new(vec![1.0; 2]).unwrap());
     for bad in [f64::NAN, f64::INFINITY, 0.0, -1.0] {
         let problem = ActiveSetProblem {
             operator: &a,
@@ -254,7 +254,7 @@ fn a_start_that_left_the_point_of_its_product_costs_one() {
         let p = problem(seed);
         let n = p.b.len();
         let constrained = n - p.set.segments()[2].len();
-        let identity = Identity(n);
+        let identity = Diagonal::new(vec![1.0; n]).unwrap();
         let mut r = Random::new(seed);
         let settings = ActiveSetSettings::default().with_tolerance(1e-9);
         let (solution, _, _) = solve(&p, &settings).expect("no breakdown");
@@ -296,7 +296,7 @@ fn a_start_that_left_the_point_of_its_product_costs_one() {
 
 #[test]
 fn known_components_of_another_length_or_not_finite_are_refused() {
-    let (a, identity) = (crate::common::pair(), Identity(2));
+    let (a, identity) = (crate::common::pair(), Diagonal::new(vec![1.0; 2]).unwrap());
     let problem = ActiveSetProblem {
         operator: &a,
         preconditioner: &identity,

@@ -1,7 +1,7 @@
 //! Random problems from a fixed sequence.
 use signorini_qp::active_set::{ActiveSetPoint, ActiveSetProblem, ActiveSetReport, ActiveSetWorkspace, RadiusSlope};
 use signorini_qp::kprgp::KprgpWorkspace;
-use signorini_qp::problem::Identity;
+use signorini_qp::problem::Diagonal;
 use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{
     ActiveSetSettings, DenseEquality, DenseOperator, EqualityProjector, KprgpSettings, MovingSet, ProductSet,
@@ -199,7 +199,7 @@ pub(crate) fn from_zero(
     (ax_known, slopes): (bool, &[RadiusSlope]),
 ) -> Result<Solved, QpError> {
     let n = a.dim();
-    let identity = Identity(n);
+    let identity = Diagonal::new(vec![1.0; n]).unwrap();
     let mut work = ActiveSetWorkspace::new(a, &identity);
     work.set_slopes(slopes);
     let problem = ActiveSetProblem {

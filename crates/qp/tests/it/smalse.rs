@@ -227,3 +227,25 @@ fn two_projections_a_product() {
     let (report, ..) = p.smalse(&tight(), &mut |_, _| false, &mut x, &mut beta);
     assert!(report.projections <= 2 * report.products.total());
 }
+
+/// What a hook leaves is looked at whatever it answers.
+#[test]
+fn a_hook_that_spoils_the_set_is_refused() {
+    let p = || problem(4);
+    for answer in [true, false] {
+        let mut p = p();
+        let n = p.set.dim();
+        let larger = ProductSet::new(vec![Segment::Free(n + 1)]).expect("set");
+        let mut hook = |_: &[f64], set: &mut ProductSet| {
+            set.clone_from(&larger);
+            answer
+        };
+        let (mut x, mut beta) = (vec![0.0; n], vec![0.0; p.c.rows()]);
+        let cost = QuadraticCost::new(&p.a, &p.b, p.norm).with_equality(&p.c, &p.e);
+        let mut work = signorini_qp::smalse::SmalseWorkspace::new(&p.a, &p.c);
+        let set = signorini_qp::MovingSet::new(&mut p.set, &mut hook);
+        let error = signorini_qp::smalse(&cost, set, &mut x, &mut beta, &tight(), &mut work);
+        let text = error.expect_err("another length").to_string();
+        assert!(text.contains("the set after the hook"), "{text}");
+    }
+}

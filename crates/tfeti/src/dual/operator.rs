@@ -152,13 +152,4 @@ impl SymmetricOperator for DualOperator {
             None => vector::dots(pairs),
         }
     }
-
-    fn sum(&self, x: &[f64]) -> f64 {
-        let Some(part) = &self.part else {
-            return x.iter().sum();
-        };
-        let mut whole = vec![0.0; self.gluing.ranges().total()];
-        part.complete(x, &mut whole);
-        whole.iter().sum()
-    }
 }

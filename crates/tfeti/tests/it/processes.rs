@@ -175,7 +175,6 @@ fn asked(system: &Tfeti, part: Option<&SystemPart>, kind: ActiveSetFactor) -> (V
     tell(&[dual.dot(&x, &g)]);
     tell(&[dual.norm(&x)]);
     tell(&dual.dots([(&x, &g), (&g, &g)]));
-    tell(&[dual.sum(&g)]);
     let e = noise(space.rows(), 5);
     type Work = fn(&mut ActiveSetProjector, &mut [f64], &[f64]);
     let works: [Work; 10] = [
