@@ -479,7 +479,7 @@ pub(crate) const RIGID_STRAIN: f64 = 1e-6;
 /// Most halvings of a step: a millionth of it is no step any more.
 pub(crate) const MOST_HALVINGS: u32 = 20;
 
-/// Stiffness of a spring at a node, over the largest of all, below which there is none: what projections leave.
+/// Stiffness of springs at a node, over the largest there, below which there is none: what projections leave.
 pub(crate) const NO_SPRING: f64 = 1e-12;
 
 // Estimates where contact points share nodes

@@ -35,6 +35,7 @@ pub(super) fn check_materials(scene: &Scene) -> Result<[f64; 2], ContactError> {
 /// What numbers count, in words: scenes have units of their own.
 const LENGTH: &str = "units of length";
 const FORCE: &str = "units of force";
+const STIFFNESS: &str = "units of force over length";
 const COMPLIANCE: &str = "units of length over force";
 
 /// Refuses what is too large; what is not a number is left to others.
@@ -128,6 +129,12 @@ pub(super) fn nodal_loads(
         out.push(local);
     }
     Ok(out)
+}
+
+/// Refuses the stiffness of a spring at a node.
+pub(super) fn check_spring(index: usize, node: u32, stiffness: f64) -> Result<(), ContactError> {
+    let place = || format!(" at node {node}: its stiffness");
+    expect(stiffness, STIFFNESS, Part::Spring(index), place)
 }
 
 /// Refuses compliances that are too large for the area of a point.

@@ -100,7 +100,7 @@ impl ContactPoint {
     }
 }
 
-/// Where the conditions of a contact stand.
+/// Where the conditions of a contact stand, which are in its order.
 pub(crate) fn of_contact(conditions: &[ContactPoint], contact: usize) -> Range<usize> {
     let [first, end] = [contact, contact + 1].map(|k| conditions.partition_point(|c| c.surface < k));
     first..end

@@ -1,6 +1,7 @@
 //! Springs at the nodes of the mesh.
 
 use super::creases::area_vector;
+use super::overflow::check_spring;
 use super::supports::Supports;
 use crate::error::ContactError;
 use crate::scene::{Place, Scene, Spring};
@@ -22,18 +23,21 @@ pub(crate) struct Springs {
 impl Springs {
     pub(super) fn new(scene: &Scene, supports: &Supports) -> Result<Self, ContactError> {
         let mut springs = Self::default();
-        let mut sum: BTreeMap<u32, Matrix3<f64>> = BTreeMap::new();
-        for spring in &scene.springs {
+        // of each node, and the largest entry before what supports fix is taken off
+        let mut sum: BTreeMap<u32, (Matrix3<f64>, f64)> = BTreeMap::new();
+        for (index, spring) in scene.springs.iter().enumerate() {
             let mut own = at_nodes(&scene.mesh, spring)?;
             for (node, stiffness) in &mut own {
+                check_spring(index, *node, stiffness.amax())?;
+                let (sum, largest) = sum.entry(*node).or_default();
+                *largest = largest.max(stiffness.amax());
                 let free = free_part(supports, *node);
                 *stiffness = free * *stiffness * free;
-                *sum.entry(*node).or_default() += *stiffness;
+                *sum += *stiffness;
             }
             springs.by_spring.push(own);
         }
-        let largest = sum.values().map(|k| k.amax()).fold(0.0, f64::max);
-        for (node, stiffness) in sum {
+        for (node, (stiffness, largest)) in sum {
             let eigen = SymmetricEigen::new(stiffness);
             for (k, direction) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
                 if *k > NO_SPRING * largest {

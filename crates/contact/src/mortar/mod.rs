@@ -7,7 +7,7 @@
 //! Across a distance, tied sides extrapolate displacements from the tetrahedra behind, others rotate
 //! (`discrete::side`).
 //!
-//! Uses: nothing of this crate but `tolerances`. In: two surfaces. Out: a [`MortarNode`] for each node that the other
+//! Uses: `tolerances`, `vec3`. In: two surfaces. Out: a [`MortarNode`] for each node that the other
 //! side faces.
 
 mod cover;

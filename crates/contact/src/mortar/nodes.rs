@@ -171,13 +171,11 @@ fn slivers(
     };
     let hardly = surface.nodes().iter().zip(surface.areas());
     let hardly = hardly.filter(|(node, area)| may_be(**node) && covered(**node) <= SLIVER * *area);
-    let mut found: HashSet<u32> = hardly.map(|(node, _)| *node).collect();
-    for (nodes, _) in corners.iter().zip(covers).filter(|facet| facet.1.is_some()) {
-        if nodes.iter().all(|node| found.contains(node)) {
-            nodes.iter().for_each(|node| _ = found.remove(node));
-        }
-    }
-    found
+    let found: HashSet<u32> = hardly.map(|(node, _)| *node).collect();
+    let facets = corners.iter().zip(covers).filter(|facet| facet.1.is_some());
+    let alone = facets.filter(|(nodes, _)| nodes.iter().all(|node| found.contains(node)));
+    let alone: HashSet<u32> = alone.flat_map(|(nodes, _)| *nodes).collect();
+    &found - &alone
 }
 
 /// The share of a corner of a facet in what the corners have: its own, and a part of what the tips hand on.

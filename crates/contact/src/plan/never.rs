@@ -29,9 +29,8 @@ pub(super) fn between_steps(scene: &Scene) -> Option<Warning> {
     })
 }
 
-/// The first load, motion of a support, an obstacle or a coupling, or value of an equation whose history is zero at the
-/// end of each step but not at all times.
-pub(super) fn zero_at_steps(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
+/// The histories of loads, motions of supports, obstacles and couplings, and values of equations that are not zero.
+pub(super) fn acting<'a>(scene: &'a Scene, discrete: &'a DiscreteScene) -> impl Iterator<Item = (Part, &'a History)> {
     let loads = scene.loads.iter().zip(&discrete.loads).enumerate();
     let loads = loads.filter(|(_, (_, forces))| forces.iter().flatten().any(|f| *f != 0.0));
     let supports = scene.supports.iter().enumerate();
@@ -51,13 +50,17 @@ pub(super) fn zero_at_steps(scene: &Scene, discrete: &DiscreteScene) -> Option<W
         let (value, history) = equation.value.as_ref()?;
         (*value != 0.0).then_some((Part::Equation(k), history))
     });
-    let mut all = (loads.map(|(k, (load, _))| (Part::Load(k), &load.history)))
+    (loads.map(|(k, (load, _))| (Part::Load(k), &load.history)))
         .chain(motions.map(|(k, (_, history))| (Part::Support(k), history)))
         .chain(obstacles)
         .chain(couplings)
-        .chain(equations);
+        .chain(equations)
+}
+
+/// The first of what acts whose history is zero at the end of each step but not at all times.
+pub(super) fn zero_at_steps(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
     let times = scene.analysis.times();
-    all.find_map(|(part, history)| {
+    acting(scene, discrete).find_map(|(part, history)| {
         let (time, factor) = largest(history, times)?;
         let acts = times.iter().any(|&t| history.value(t).abs() > NO_LOAD * factor.abs());
         (!acts).then_some(Warning::ZeroAtSteps { part, time, factor })

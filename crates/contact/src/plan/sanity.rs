@@ -2,9 +2,10 @@
 
 use super::never;
 use super::unmerged::unmerged;
-use crate::discrete::{ContactPoint, DiscreteScene, Extents, FacetedOverlaps, SurfaceSide, creases, of_contact};
+use crate::discrete::{ContactPoint, DiscreteScene, Extents, FacetedOverlaps, SurfaceSide, creases};
+use crate::part::Part;
 use crate::report::Warning;
-use crate::scene::{Contact, ContactNormal, Coupling, Equation, Friction, Gap, Load, Scene, Support};
+use crate::scene::{Contact, ContactNormal, Friction, Gap, Scene};
 use crate::tolerances::{LARGE_COEFFICIENT, LARGE_GAP, LARGE_OVERLAP, LOCKING};
 use signorini_fem_mesh::History;
 use std::collections::HashSet;
@@ -37,32 +38,16 @@ pub(super) fn warnings(scene: &Scene, discrete: &DiscreteScene) -> Vec<Warning> 
 /// Whether nothing acts at any step, so that all results are zero.
 fn idle(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
     let ever = |history: &History| scene.analysis.times().iter().any(|&t| history.value(t) != 0.0);
-    let pushes =
-        |(load, forces): (&Load, &Vec<Vec<f64>>)| ever(&load.history) && forces.iter().flatten().any(|f| *f != 0.0);
-    let pulled = |support: &Support| {
-        let motion = support.motion.as_ref();
-        motion.is_some_and(|(ways, history)| ever(history) && ways.iter().flatten().any(|w| *w != 0.0))
-    };
-    let guided = |coupling: &Coupling| {
-        let moves = |(way, history): &([f64; 6], History)| ever(history) && way.iter().any(|w| *w != 0.0);
-        coupling.motions().iter().any(moves)
-    };
-    let parts = |equation: &Equation| {
-        let value = equation.value.as_ref();
-        value.is_some_and(|(value, history)| *value != 0.0 && ever(history))
-    };
+    // an obstacle that moves need not meet anything
+    let counts = |part: Part| if let Part::Contact(k) = part { scene.contacts[k].tied } else { true };
+    let mut acting = never::acting(scene, discrete).filter(|(part, _)| counts(*part));
     // bodies that nothing else loads stay as they are, so that an obstacle acts once it overlaps with one
     let overlaps = |p: &ContactPoint, pose| p.gap_after(scene, pose).is_ok_and(|gap| gap < -discrete.rounding);
     let presses = |p: &ContactPoint| {
         let poses = &discrete.poses[p.surface];
         p.gap < -discrete.rounding || poses.iter().any(|pose| overlaps(p, pose))
     };
-    let acts = scene.loads.iter().zip(&discrete.loads).any(pushes)
-        || scene.supports.iter().any(pulled)
-        || scene.couplings.iter().any(guided)
-        || scene.equations.iter().any(parts)
-        || scene.contacts.iter().any(|contact| contact.tied && contact.moves())
-        || discrete.points.iter().any(presses);
+    let acts = acting.any(|(_, history)| ever(history)) || discrete.points.iter().any(presses);
     let held = !scene.supports.is_empty() || !scene.springs.is_empty() || !scene.couplings.is_empty();
     let held = held || !scene.equations.is_empty();
     (!acts).then_some(Warning::NothingActs { held })
@@ -136,10 +121,14 @@ fn large_overlap(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
     })
 }
 
+/// The points of a contact. They are not in its order: a node of several has one point.
+fn points_of(discrete: &DiscreteScene, contact: usize) -> impl Iterator<Item = &ContactPoint> {
+    discrete.points.iter().filter(move |point| point.surface == contact)
+}
+
 /// The point of a contact whose gap is least as `size` has it.
 fn least_gap(discrete: &DiscreteScene, index: usize, size: fn(f64) -> f64) -> Option<&ContactPoint> {
-    let points = &discrete.points[of_contact(&discrete.points, index)];
-    points.iter().min_by(|a, b| size(a.gap).total_cmp(&size(b.gap)))
+    points_of(discrete, index).min_by(|a, b| size(a.gap).total_cmp(&size(b.gap)))
 }
 
 /// The first of the points at a gap beyond that part of the length of its body, and that length.
@@ -188,8 +177,7 @@ fn crease_between(scene: &Scene, discrete: &DiscreteScene) -> Option<Warning> {
     between.find_map(|(index, contact)| {
         let surface = &discrete.surfaces[index];
         let creases = creases(&scene.mesh, surface, contact.crease);
-        let points = &discrete.points[of_contact(&discrete.points, index)];
-        let touching: HashSet<u32> = points.iter().map(ContactPoint::node).collect();
+        let touching: HashSet<u32> = points_of(discrete, index).map(ContactPoint::node).collect();
         let touches = |local: u32| touching.contains(&surface.nodes()[local as usize]);
         let has_points = |side: &&SurfaceSide| {
             let mut triangles = side.triangles.iter().map(|t| surface.triangles()[*t as usize]);

@@ -122,7 +122,8 @@ impl Contact {
     /// Where the meshes match, a node of the first side is a contact point, and its partner is the node of the other
     /// side on its normal, to within a fiftieth of the size of its facets, and a little more across a gap. Where they
     /// do not, the side with the larger facets has the points, whichever is named first (in meshes of order 2 the
-    /// curved side of a Poisson's ratio above 0.45, if the other's is below), and the partner of each is a weighted
+    /// curved side of a Poisson's ratio above 0.45, if the other's is below; of flat sides in meshes of order 1 the
+    /// softer one, if the other is ten times as stiff in shear and reaches beyond it), and the partner of each is a weighted
     /// mean of nodes (mortar method with dual multipliers): uniform pressure is transferred exactly, for any ratio of
     /// mesh sizes and for sides that overlap only in part. Nodes with nothing opposite have no point. Put flat sides
     /// that meet at an edge into separate contacts. Those that go on smoothly in one another on both sides, without
@@ -461,8 +462,7 @@ impl Contact {
                 let way = pose.way(&position);
                 let out = vector::dot(&way, normal);
                 let from = [0, 1, 2].map(|c| position[c] - (way[c] - out * normal[c]));
-                let brought = if from == position { initial } else { at(from, normal)? };
-                let brought = pose.factor * brought;
+                let brought = pose.factor * at(from, normal)?;
                 Ok(if pose.turns() { brought + opened(way) } else { brought })
             }
             _ if pose.turns() => Ok(pose.factor * initial + opened(pose.small(&position))),

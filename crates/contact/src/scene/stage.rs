@@ -91,10 +91,16 @@ impl Scene {
         for (k, support) in self.supports.iter_mut().enumerate() {
             support.left = stage.left.get(k).filter(|_| acting[k]).cloned().unwrap_or_default();
         }
+        let first = self.analysis.time(0).filter(|_| stage.first == 0);
         for (k, coupling) in self.couplings.iter_mut().enumerate() {
             let own = stage.locked.get(k).copied().unwrap_or_default();
             let held = coupling.held;
-            coupling.locked = [0, 1, 2, 3, 4, 5].map(|c| own[c].filter(|_| !held[c]));
+            // before the first step all is at rest
+            let at_rest = coupling
+                .lockable()
+                .filter(|(_, time)| first.is_some_and(|first| is_past(*time, first)));
+            let at_rest = |c: usize| at_rest.filter(|(motions, _)| motions[c]).map(|_| 0.0);
+            coupling.locked = [0, 1, 2, 3, 4, 5].map(|c| own[c].or(at_rest(c)).filter(|_| !held[c]));
         }
     }
 

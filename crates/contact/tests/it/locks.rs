@@ -243,3 +243,27 @@ fn a_locked_joint_that_slides_is_soon_known_to_press() {
     let steps = simulation.counters().interior_steps;
     assert!(steps <= 150, "{steps} interior steps");
 }
+
+/// Locked from the beginning it is held from the beginning: the scene was judged, and refused, as if it were free.
+#[test]
+fn a_lock_before_the_first_step_is_there_at_once() {
+    let mesh = bar(1, [2, 1, 1]).mesh().clone();
+    let scene = Scene::new(mesh, uniform(1e9, 0.3))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_contact(Contact::tied(FIRST, SECOND))
+        .with_load(Load::force(brick::X_MAX, [1e6, 0.0, 0.0]))
+        .with_analysis(Analysis::quasistatic(2.0, 2));
+    let locked = scene
+        .clone()
+        .with_coupling(end().with_held(ALONG).with_lock(AXIAL, 0.5));
+    let (mut simulation, results) = run(locked.clone(), Settings::default());
+    let (_, held) = run(scene.with_coupling(end().with_held([true; 6])), Settings::default());
+    for (found, expected) in results.iter().zip(&held) {
+        assert_eq!(found.displacement, expected.displacement);
+    }
+    // from a state of it, too
+    let mut other = Simulation::new(locked, Settings::default()).expect("set-up");
+    let _ = other.step().expect("step");
+    simulation.resume(other.state().clone()).expect("its state");
+    assert_eq!(step(&mut simulation).displacement, results[1].displacement);
+}

@@ -258,3 +258,25 @@ fn a_field_around_quadratic_facets_does_not_jump() {
         assert!((found / known - 1.0).abs() < 0.02, "{way:?}: {found}, {known}");
     }
 }
+
+/// A cone that turns about its axis, and a plane that moves along its normal, are the same ones: of quadratic facets
+/// nodes that had no way along the surface had the mean gap of their point, not their own.
+#[test]
+fn a_field_that_moves_along_itself_stays_on_quadratic_facets() {
+    let mesh = block([1.0; 3], [4, 4, 2]).raise_order().expect("order 2");
+    let scene = Scene::new(mesh, uniform(1e3, 0.3)).with_support(Support::fixed(brick::Z_MAX));
+    let apex = [0.5, 0.5, 0.0];
+    let cone = Contact::rigid(brick::Z_MIN).with_gap_field(move |[x, y, _]| 0.1 * (x - 0.5).hypot(y - 0.5) - 0.01);
+    let turn = History::ramp(0.3, 1.0).expect("ramp");
+    let solved = |contact: Contact| solve(scene.clone().with_contact(contact), at(1e-9));
+    let still = solved(cone.clone());
+    let turned = solved(cone.with_rotation(apex, [0.0, 0.0, 1.0], turn));
+    for (a, b) in still.points.iter().zip(&turned.points) {
+        assert!((a.gap - b.gap).abs() < 1e-12, "{} {}", a.gap, b.gap);
+    }
+    let plane = |rise: f64| Contact::half_space(brick::Z_MIN, [0.5, 0.5, rise], [-0.3, 0.0, 1.0]);
+    let there = solved(plane(1e-3 * 1.09));
+    let moved = solved(plane(0.0).with_motion([-3e-4, 0.0, 1e-3], ramp()));
+    assert!(there.summary.active > 3, "{}", there.summary.active);
+    assert_close(&moved.displacement, &there.displacement, 1e-7, "along its normal");
+}

@@ -228,3 +228,16 @@ fn a_contact_that_supports_leave_nothing_is_told() {
         assert_eq!(simulation.tfeti().gluing().ranges().contact().len(), 0);
     }
 }
+
+/// The points of several contacts on one side are not in the order of the contacts: what begins far away was missed.
+#[test]
+fn a_far_contact_beside_a_nearer_one_is_warned_of() {
+    let scene = Scene::new(block([2.0, 1.0, 1.0], [4, 2, 2]), steel())
+        .with_support(Support::fixed(brick::Z_MAX))
+        .with_load(Load::pressure(brick::Z_MAX, 1e6))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_tag(brick::X_MAX).with_gap(100.0))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_gap(0.1));
+    let plan = Plan::new(&scene, &Settings::default()).expect("plan");
+    let far = |w: &Warning| matches!(w, Warning::LargeGap { contact: 0, .. });
+    assert!(plan.warnings().iter().any(far), "{:?}", plan.warnings());
+}

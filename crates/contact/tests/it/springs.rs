@@ -303,6 +303,8 @@ fn wrong_springs_are_refused() {
         assert!(text.contains("spring 2: its stiffness"), "{text}");
     }
     assert!(refused(Spring::components(brick::Y_MAX, [1.0, -2.0, 1.0])).contains("stiffness is -2;"));
+    let text = refused(Spring::along(vec![3], [1.0, 0.0, 0.0], 1e200));
+    assert!(text.contains("spring 2 at node 3: its stiffness: 1e200"), "{text}");
     let text = refused(Spring::normal(FacetTag(99), 1.0));
     assert!(text.contains("spring 2: no facet has the tag 99"), "{text}");
     // along the normal alone it can turn
@@ -379,4 +381,23 @@ fn springs_at_nodes_are_the_foundation() {
             .to_string();
         assert!(error.starts_with("spring 2:") && error.contains(text), "{error}");
     }
+}
+
+/// A spring that is soft beside another one of the scene is there all the same: one of less than 1e-12 of the stiffest
+/// had no row, and a block that it alone held was said not to be held.
+#[test]
+fn soft_springs_count_beside_stiff_ones() {
+    let solved = |link: f64| {
+        let mesh = with_second(&block([1.0; 3], [1; 3]), &lifted(&block([1.0; 3], [1; 3]), 5.0));
+        let scene = Scene::new(mesh, uniform(1e3, 0.3))
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_spring(Spring::components(brick::Z_MAX, [link; 3]))
+            .with_spring(Spring::components(second(brick::Z_MIN), [1e-3; 3]))
+            .with_load(Load::force(second(brick::Z_MAX), [0.0, 0.0, 1e-6]));
+        solve(scene, Settings::default())
+    };
+    let [near, far] = [1e-3, 1e10].map(solved);
+    let mean = |of: &Solved| of.displacement[3 * 8..].chunks_exact(3).map(|u| u[2]).sum::<f64>() / 8.0;
+    assert!((mean(&near) / 1e-3 - 1.0).abs() < 1e-2, "{}", mean(&near));
+    assert!((mean(&far) / mean(&near) - 1.0).abs() < 1e-6, "{}", mean(&far));
 }
