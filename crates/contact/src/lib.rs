@@ -79,6 +79,7 @@
 mod discrete;
 mod error;
 mod estimate;
+mod hash;
 mod model;
 mod mortar;
 mod names;

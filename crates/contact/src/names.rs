@@ -12,11 +12,23 @@ type Name = dyn Fn(Part) -> Option<String> + Send + Sync;
 
 /// What parts are called, if anybody knows.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub(crate) struct Names(Option<Function<Name>>);
+pub(crate) struct Names {
+    name: Option<Function<Name>>,
+    /// Whether the loads are others than those that it names.
+    other_loads: bool,
+}
 
 impl Names {
     pub(crate) fn new(name: impl Fn(Part) -> Option<String> + Send + Sync + 'static) -> Self {
-        Self(Some(Function(Arc::new(name))))
+        Self {
+            name: Some(Function(Arc::new(name))),
+            other_loads: false,
+        }
+    }
+
+    /// Names no loads any more.
+    pub(crate) fn forget_loads(&mut self) {
+        self.other_loads = true;
     }
 
     /// The error behind the names of what it speaks of.
@@ -33,12 +45,16 @@ impl Names {
 
     /// That of a part.
     pub(crate) fn name(&self, part: Part) -> Option<String> {
-        (self.0.as_ref()?)(part)
+        let known = self
+            .name
+            .as_ref()
+            .filter(|_| !self.other_loads || !matches!(part, Part::Load(_)));
+        (known?)(part)
     }
 
     /// Those of some parts, if any has one.
     pub(crate) fn of(&self, parts: Vec<Part>) -> Option<String> {
-        let names = listed(parts, &**self.0.as_ref()?);
+        let names = listed(parts, |part| self.name(part));
         (!names.is_empty()).then_some(names)
     }
 }

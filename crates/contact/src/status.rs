@@ -8,7 +8,7 @@ use std::fmt;
 #[non_exhaustive]
 pub enum StepStatus {
     /// The certificate is at most the tolerance (usually a tenth), however the solver ended; or the solver reached the
-    /// tolerance, and smaller ones did not bring the certificate below it, but to at most thirty times it.
+    /// tolerance, and smaller ones did not bring the certificate below it, but to at most thirty times it, or 1e-10.
     Converged,
     /// A limit of iterations or products was reached first; the result is the last iterate.
     #[default]

@@ -27,7 +27,7 @@ const CRATES: [(&str, &[&str]); 6] = [
             "scene settings mortar",
             "names",
             "error",
-            "status tolerances vec3 part",
+            "status tolerances vec3 part hash",
         ],
     ),
     (

@@ -4,6 +4,7 @@ use super::bodies::Bodies;
 use super::contact_point::{ConstrainedPoint, constrained_points};
 use crate::discrete::{ContactPoint, DiscreteScene};
 use crate::error::ContactError;
+use crate::hash::{hash, number};
 use crate::plan::Plan;
 use crate::scene::{Friction, Load, Scene};
 use crate::settings::Settings;
@@ -32,6 +33,8 @@ pub(crate) struct Model {
     pub(crate) loads: Vec<LoadResponse>,
     /// Size of the factor of each load up to which it is none.
     no_load: Vec<f64>,
+    /// Of each load what tells its nodal forces from those of others.
+    marks: Vec<u64>,
     /// Of each load that is an eigenstrain the squares of its nodal forces on each body, N²; empty of others.
     pub(crate) strained: Vec<Vec<f64>>,
     /// Without contact, multipliers of supports and gluing that [balance each load](Self::balance_loads); solvers find
@@ -126,6 +129,11 @@ impl Model {
     pub(crate) fn factor(&self, load: usize, time: f64) -> f64 {
         let factor = self.scene.loads[load].history.value(time);
         if factor.abs() <= self.no_load[load] { 0.0 } else { factor }
+    }
+
+    /// Those of all loads.
+    pub(crate) fn factors(&self, time: f64) -> Vec<f64> {
+        (0..self.loads.len()).map(|load| self.factor(load, time)).collect()
     }
 
     /// The rows of tied contacts, each with its point.
@@ -233,6 +241,7 @@ impl Model {
             tfeti: Arc::new(tfeti),
             loads: Vec::new(),
             no_load: Vec::new(),
+            marks: Vec::new(),
             strained: Vec::new(),
             balancing: Vec::new(),
             points: points.into(),
@@ -248,7 +257,7 @@ impl Model {
     /// The same model with other loads; what is wrong with them is refused as in a new scene.
     pub(crate) fn with_loads(&self, loads: Vec<Load>) -> Result<Self, ContactError> {
         let mut model = self.clone();
-        model.scene.loads = loads;
+        model.scene.set_loads(loads);
         let forces = model.discrete.forces(&model.scene)?;
         model.plan.set_loads([self.loads.len(), forces.len()]);
         model.respond(forces)?;
@@ -268,6 +277,8 @@ impl Model {
             }
         };
         let no_load = scene.loads.iter().zip(&forces).map(no_load).collect();
+        let mark = |forces: &Vec<Vec<f64>>| hash(forces.iter().flatten().map(|f| number(*f)));
+        let marks = forces.iter().map(mark).collect();
         let response = |(load, forces): (&Load, Vec<Vec<f64>>)| {
             let mut response = if self.discrete.points.is_empty() {
                 tfeti.torn_load(&forces)?
@@ -290,7 +301,7 @@ impl Model {
                 Vec::new()
             }
         });
-        (self.strained, self.no_load) = (strained.collect(), no_load);
+        (self.strained, self.no_load, self.marks) = (strained.collect(), no_load, marks);
         (self.loads, self.balancing) = (loads, Vec::new());
         Ok(())
     }
@@ -316,6 +327,13 @@ impl Model {
     /// Friction law of a point.
     pub(crate) fn law(&self, point: &ConstrainedPoint) -> &Friction {
         self.scene.contacts[point.contact.surface].friction()
+    }
+
+    /// What tells loads with these factors from others; 0 if none acts.
+    pub(crate) fn mark(&self, factors: &[f64]) -> u64 {
+        let acting = factors.iter().zip(&self.marks).filter(|(factor, _)| **factor != 0.0);
+        let mut words = acting.flat_map(|(factor, mark)| [number(*factor), *mark]).peekable();
+        if words.peek().is_some() { hash(words).max(1) } else { 0 }
     }
 
     /// Whether the law of some contact surface is such.

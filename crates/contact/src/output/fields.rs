@@ -78,23 +78,14 @@ impl ResultField {
 pub(super) const LEGEND: &str =
     "state: -1 no contact point (held by a support, or nothing faces it), 0 open, 1 stick, 2 slip";
 
-/// When a picture is taken.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Moment {
-    /// Before the first step, undeformed and without forces.
-    Rest,
-    /// At the end of the step.
-    End,
-}
-
 /// Fields at nodes and of cells.
 type Fields = (Vec<Field>, Vec<Field>);
 
-/// The chosen fields of the bodies.
-pub(super) fn body(result: &StepResult, chosen: &[ResultField], moment: Moment) -> Result<Fields, ContactError> {
+/// The chosen fields of the bodies, at the end of the step or at `rest`: before the first one, undeformed and without
+/// forces.
+pub(super) fn body(result: &StepResult, chosen: &[ResultField], rest: bool) -> Result<Fields, ContactError> {
     let mesh = result.scene().mesh();
     let (nodes, tets) = (mesh.points().len(), mesh.tets().len());
-    let rest = moment == Moment::Rest;
     let stressed = chosen
         .iter()
         .any(|f| matches!(f, ResultField::Stress | ResultField::VonMises));
@@ -139,15 +130,13 @@ pub(super) fn body(result: &StepResult, chosen: &[ResultField], moment: Moment) 
     Ok((at_nodes, in_tets))
 }
 
-/// The chosen fields of each contact surface, and `contact`, its position in the scene, on its triangles.
-pub(super) fn surfaces(result: &StepResult, chosen: &[ResultField], moment: Moment) -> Vec<Fields> {
-    let u = match moment {
-        Moment::Rest => vec![[0.0; 3]; result.scene().mesh().points().len()],
-        Moment::End => result.displacement(),
-    };
+/// The same of each contact surface, and `contact`, its position in the scene, on its triangles.
+pub(super) fn surfaces(result: &StepResult, chosen: &[ResultField], rest: bool) -> Vec<Fields> {
+    let nodes = result.scene().mesh().points().len();
+    let u = if rest { vec![[0.0; 3]; nodes] } else { result.displacement() };
     let of = |(surface, own): (usize, &Surface)| {
         let contact = Field::scalar("contact", vec![surface as f64; own.triangles().len()]);
-        (on_surface(result, chosen, (surface, moment), &u), vec![contact])
+        (on_surface(result, chosen, (surface, rest), &u), vec![contact])
     };
     result.surfaces().iter().enumerate().map(of).collect()
 }
@@ -155,11 +144,10 @@ pub(super) fn surfaces(result: &StepResult, chosen: &[ResultField], moment: Mome
 fn on_surface(
     result: &StepResult,
     chosen: &[ResultField],
-    (surface, moment): (usize, Moment),
+    (surface, rest): (usize, bool),
     u: &[[f64; 3]],
 ) -> Vec<Field> {
     let nodes = result.surfaces()[surface].nodes();
-    let rest = moment == Moment::Rest;
     let places = result.places_at_nodes(surface).unwrap_or_default();
     let states = &result.recovered.points;
     let stressed = |f: &ResultField| matches!(f, ResultField::ContactPressure | ResultField::FrictionStress);

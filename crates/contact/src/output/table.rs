@@ -1,4 +1,4 @@
-//! The table: a row a step, as comma-separated values.
+//! The table: a row a step, as comma-separated values. It is replaced whole at every step, as the series are.
 
 use super::fields::LEGEND;
 use crate::error::ContactError;
@@ -6,8 +6,6 @@ use crate::simulation::StepResult;
 use signorini_fem_mesh::internal::replace_file;
 use signorini_fem_mesh::output::OutputError;
 use std::fmt::Write as _;
-use std::fs::OpenOptions;
-use std::io::Write as _;
 use std::path::PathBuf;
 
 /// A table that grows by a row after every step.
@@ -15,10 +13,8 @@ use std::path::PathBuf;
 pub(super) struct Table {
     path: PathBuf,
     probes: Vec<u32>,
-    /// All that was written, and what comes before the next row.
+    /// All that was written.
     text: String,
-    /// Whether the file is that of this run.
-    is_begun: bool,
 }
 
 impl Table {
@@ -28,7 +24,6 @@ impl Table {
             path,
             probes: probes.to_vec(),
             text: head(probes, result),
-            is_begun: false,
         }
     }
 
@@ -54,12 +49,10 @@ impl Table {
             }
         }
         let mut rows = String::new();
-        let columns = |row: &str| row.split(',').count();
-        let wanted = table.text.lines().last().map_or(0, columns);
         let last = old.lines().count();
         for (line, row) in old.lines().enumerate().skip(same) {
             // one that was cut short
-            if line + 1 == last && columns(row) < wanted {
+            if line + 1 == last && !old.ends_with('\n') {
                 break;
             }
             let step = row.split(',').next().and_then(|s| s.parse::<usize>().ok());
@@ -73,22 +66,11 @@ impl Table {
         Ok(table)
     }
 
-    /// Adds a row: at the end of the table as it was left, else with all of it.
+    /// Adds a row; the file is replaced, and complete at any moment.
     pub(super) fn write(&mut self, result: &StepResult) -> Result<(), ContactError> {
-        let row = row(&self.probes, result);
-        let length = std::fs::metadata(&self.path).map_or(0, |file| file.len());
         let before = self.text.len();
-        let goes_on = self.is_begun && length == before as u64;
-        self.text += &row;
-        let done = if goes_on {
-            OpenOptions::new()
-                .append(true)
-                .open(&self.path)
-                .and_then(|mut file| file.write_all(row.as_bytes()))
-        } else {
-            replace_file(&self.path, self.text.as_bytes())
-        };
-        self.is_begun |= done.is_ok();
+        self.text += &row(&self.probes, result);
+        let done = replace_file(&self.path, self.text.as_bytes());
         let Err(source) = done else { return Ok(()) };
         self.text.truncate(before);
         let path = self.path.clone();

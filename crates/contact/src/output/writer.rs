@@ -1,6 +1,6 @@
 //! The observer that writes what one wants.
 
-use super::fields::{Moment, ResultField, body, surfaces};
+use super::fields::{ResultField, body, surfaces};
 use super::table::Table;
 use crate::error::ContactError;
 use crate::simulation::{Flow, Observer, StepResult};
@@ -122,7 +122,7 @@ impl ResultWriter {
             .checked_rem(self.every)
             .is_some_and(|rest| rest == 0 || last);
         if due {
-            self.picture(&mut files, result, Moment::End)?;
+            self.picture(&mut files, result, false)?;
         }
         if let Some(table) = &mut files.table {
             table.write(result)?;
@@ -176,18 +176,17 @@ impl ResultWriter {
         }
         // a static scene may be at time 0 itself
         if self.every > 0 && result.time() > 0.0 {
-            self.picture(&mut files, result, Moment::Rest)?;
+            self.picture(&mut files, result, true)?;
         }
         Ok(files)
     }
 
     /// A picture of bodies and surfaces; at rest only where there is none yet.
-    fn picture(&self, files: &mut Files, result: &StepResult, moment: Moment) -> Result<(), ContactError> {
+    fn picture(&self, files: &mut Files, result: &StepResult, rest: bool) -> Result<(), ContactError> {
         let mesh = result.scene().mesh();
-        let rest = moment == Moment::Rest;
         let time = if rest { 0.0 } else { result.time() };
         if !rest || files.body.times().is_empty() {
-            let (at_nodes, in_tets) = body(result, &self.fields, moment)?;
+            let (at_nodes, in_tets) = body(result, &self.fields, rest)?;
             match &files.owners[..] {
                 [] => files.body.write(time, mesh, &at_nodes, &in_tets)?,
                 owners => {
@@ -197,7 +196,7 @@ impl ResultWriter {
             }
         }
         if let Some(contact) = files.contact.as_mut().filter(|c| !rest || c.times().is_empty()) {
-            let fields = surfaces(result, &self.fields, moment);
+            let fields = surfaces(result, &self.fields, rest);
             let pieces = result.surfaces().iter().zip(&fields);
             let pieces: Vec<SurfaceFields<'_>> = pieces.map(|(s, (a, b))| (s, &a[..], &b[..])).collect();
             contact.write_surfaces(time, mesh, &pieces)?;

@@ -102,38 +102,28 @@ pub(crate) fn warnings(
     let mesh = &model.scene.mesh;
     let u = LazyCell::new(|| model.tfeti.nodal_mean(&recovered.torn));
     let mut out = Vec::new();
-    let mut look = |kind: fn(&Warning) -> bool, find: &dyn Fn() -> Option<Warning>| {
-        if !known.iter().any(|w| kind(w.plain())) {
-            out.extend(find());
-        }
-    };
-    look(|w| matches!(w, Warning::LargeDisplacement { .. }), &|| {
-        large_displacement(mesh, lengths, &u, step)
-    });
-    look(|w| matches!(w, Warning::LargeRotation { .. }), &|| {
-        large_rotation(mesh, lengths, &u, step)
-    });
-    look(|w| matches!(w, Warning::LargeStrain { .. }), &|| {
-        large_strain(mesh, lengths, &u, step)
-    });
-    look(|w| matches!(w, Warning::LongSlip { .. }), &|| {
-        long_slip(model, lengths, recovered, step)
-    });
-    look(|w| matches!(w, Warning::EdgeOverlap { .. }), &|| {
-        edge_overlap(model, recovered, &u, step)
-    });
-    look(|w| matches!(w, Warning::TurnedNormal { .. }), &|| {
-        turned_normal(model, recovered, &u, step)
-    });
-    look(|w| matches!(w, Warning::NarrowContact { .. }), &|| {
+    macro_rules! look {
+        ($kind:ident, $find:expr) => {
+            if !known.iter().any(|w| matches!(w.plain(), Warning::$kind { .. })) {
+                out.extend($find);
+            }
+        };
+    }
+    look!(LargeDisplacement, large_displacement(mesh, lengths, &u, step));
+    look!(LargeRotation, large_rotation(mesh, lengths, &u, step));
+    look!(LargeStrain, large_strain(mesh, lengths, &u, step));
+    look!(LongSlip, long_slip(model, lengths, recovered, step));
+    look!(EdgeOverlap, edge_overlap(model, recovered, &u, step));
+    look!(TurnedNormal, turned_normal(model, recovered, &u, step));
+    look!(
+        NarrowContact,
         narrow_contact(model, &lengths.views, (recovered, &u), step)
-    });
-    look(|w| matches!(w, Warning::HeldByTilt { .. }), &|| {
+    );
+    look!(
+        HeldByTilt,
         held_by_tilt(model, &lengths.spreads, problem, recovered, step)
-    });
-    look(|w| matches!(w, Warning::NeutralPlace { .. }), &|| {
-        neutral_motion(model, &lengths.extents, recovered, step)
-    });
+    );
+    look!(NeutralPlace, neutral_motion(model, &lengths.extents, recovered, step));
     out
 }
 

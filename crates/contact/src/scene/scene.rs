@@ -25,6 +25,8 @@ pub struct Scene {
     pub(crate) supports: Vec<Support>,
     pub(crate) springs: Vec<Spring>,
     pub(crate) loads: Vec<Load>,
+    /// How many of them, the first ones, are eigenstrains of the materials.
+    pub(crate) of_materials: usize,
     pub(crate) contacts: Vec<Contact>,
     pub(crate) couplings: Vec<Coupling>,
     pub(crate) equations: Vec<Equation>,
@@ -40,12 +42,13 @@ impl Scene {
     /// automatic partition into subdomains.
     pub fn new(mesh: impl Into<Arc<TetMesh>>, mut materials: Materials) -> Self {
         let constant = |(factor, strain)| Load::eigenstrain(strain).with_history(History::constant(factor));
-        let loads = materials.take_eigenstrains().into_iter().map(constant).collect();
+        let loads: Vec<Load> = materials.take_eigenstrains().into_iter().map(constant).collect();
         Self {
             mesh: mesh.into(),
             materials,
             supports: Vec::new(),
             springs: Vec::new(),
+            of_materials: loads.len(),
             loads,
             contacts: Vec::new(),
             couplings: Vec::new(),
@@ -73,6 +76,13 @@ impl Scene {
     pub fn with_load(mut self, load: Load) -> Self {
         self.loads.push(load);
         self
+    }
+
+    /// Other loads than those that were added, whose names are not theirs; the eigenstrains of the materials stay.
+    pub(crate) fn set_loads(&mut self, loads: Vec<Load>) {
+        self.loads.truncate(self.of_materials);
+        self.loads.extend(loads);
+        self.names.forget_loads();
     }
 
     /// Adds a contact surface with its own gap, normals and friction law, for example a floor with friction or a wall

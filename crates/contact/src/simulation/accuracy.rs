@@ -82,8 +82,17 @@ impl Simulation {
         }
     }
 
+    /// What is wanted of the certificate where no solver has made a result.
+    pub(super) fn wanted(&self) -> f64 {
+        if self.settings.accuracy == Accuracy::Tolerance {
+            self.settings.tolerance
+        } else {
+            self.controller.tolerance()
+        }
+    }
+
     /// The same by estimates of the error, which it writes to the report.
-    fn judge(
+    pub(super) fn judge(
         &mut self,
         round: usize,
         report: &mut StepReport,

@@ -23,7 +23,7 @@ impl Simulation {
         // the line leads on where the loads have stopped, and astray where friction has turned round: there is another
         // start
         let extrapolates = self.settings.extrapolate;
-        let rests = |last| self.problem.rests(&self.model.scene, last);
+        let rests = |last| self.problem.rests(&self.model, (state, last));
         let rests = extrapolates && increment.start.is_some_and(rests);
         let line = extrapolates && !rests;
         if extrapolates && state.step() > 0 && state.unconverged_history().is_none() {
@@ -59,7 +59,7 @@ impl Simulation {
         let held = loose.is_empty();
         // forces of bodies that supports hold may vanish with the loads, too
         let (problem, model) = (&self.problem, &self.model);
-        let ends = |start| problem.is_unloaded(model, start) || problem.is_back(&model.scene, start);
+        let ends = |start| problem.is_unloaded(model, state) || problem.is_back(model, (state, start));
         let may_vanish = if held {
             way.increment().start.is_some_and(ends)
         } else {

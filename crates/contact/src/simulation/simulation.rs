@@ -111,6 +111,7 @@ impl Simulation {
         model.tfeti.check_processes()?;
         let state = State {
             origin: Some(origin),
+            stage: model.scene.stage(),
             ..State::default()
         };
         Ok(Self {
@@ -132,14 +133,16 @@ impl Simulation {
     }
 
     /// Takes other loads from the next step on, such as pressures or temperatures that another program computes step by
-    /// step. All else stays, all matrices too: it takes a fraction of a new set-up, and gives the same bits as a
-    /// simulation of the scene with these loads that [resumes](Self::resume) here. Steps solved before keep theirs;
-    /// warnings of the plan are those of the first loads.
+    /// step. All else stays, eigenstrains of the materials and all matrices too: it takes a fraction of a new set-up,
+    /// and gives the same bits as a simulation of the scene with these loads that [resumes](Self::resume) here. Steps
+    /// solved before keep theirs; warnings of the plan are those of the first loads.
     ///
     /// # Errors
-    /// What [`new`](Self::new) would refuse of them; the simulation is then as it was.
+    /// What [`new`](Self::new) would refuse of them until supports or contacts start or end; the simulation is then as
+    /// it was.
     pub fn set_loads(&mut self, loads: Vec<Load>) -> Result<(), ContactError> {
-        let names = self.model.scene.names.clone();
+        let mut names = self.model.scene.names.clone();
+        names.forget_loads();
         let set = || {
             let mut model = self.model.with_loads(loads)?;
             check_equilibrium(&model, self.state.step())?;

@@ -87,9 +87,17 @@ impl Simulation {
         self.controller = state.controller;
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, 0.0)?;
         let attempts = self.attempts(state, increment);
-        let (tried, unloaded, told) = self.unload(state, way, attempts[0])?;
+        let (mut tried, unloaded, told) = self.unload(state, way, attempts[0])?;
         let (mut report, recovered) = match unloaded {
-            Some(recovered) => (tried, recovered),
+            Some(recovered) => {
+                // estimates were those of the part of the loads that was left
+                if let Some(accuracy) = tried.accuracy
+                    && let Some(status) = self.judge(accuracy.rounds, &mut tried, &recovered)?
+                {
+                    tried.status = status;
+                }
+                (tried, recovered)
+            }
             None => {
                 let (report, recovered) = self.attempt(attempts, state, way, (tried, told.as_ref()))?;
                 (report, self.stand(state, recovered, told.unwrap_or_default())?)
@@ -190,7 +198,6 @@ impl Simulation {
     fn remember(&mut self, state: &mut State, result: &mut StepResult, way: &Way) {
         let (model, problem, recovered) = (&self.model, &self.problem, &result.recovered);
         let history = model.plan.effects.history;
-        let goes_on = way.goes_on() || problem.index + 1 < model.plan.steps;
         let mut trace = Vec::new();
         state.sliding.clear();
         if history {
@@ -200,12 +207,13 @@ impl Simulation {
             state.sliding.extend(recovered.points.iter().map(slides));
         }
         state.push_trace(trace);
+        state.loads = model.mark(&problem.factors);
         let motions = model.coupling_motions(&recovered.torn).into_iter().enumerate();
         let along = |(k, motion)| model.discrete.couplings.along(k, motion);
         state.motions = motions.map(along).collect();
         let spans = model.scene.has_spans() && model.scene.stage_steps().end < model.plan.steps;
         let is_held = || model.loose_motions().is_ok_and(|motions| motions.is_empty());
-        state.displacement = if spans || history && goes_on && !is_held() {
+        state.displacement = if spans || history && !is_held() {
             model.tfeti.nodal_mean(&recovered.torn)
         } else {
             Vec::new()
@@ -216,7 +224,7 @@ impl Simulation {
             result.report.counters.rate_updates += 1;
         }
         let mut vectors = <[Vec<f64>; 3]>::default();
-        if model.plan.steps > 1 || way.goes_on() {
+        if model.plan.steps > 1 || way.goes_on() || history {
             product(model, problem, &recovered.rows, &mut self.iterate);
             let iterate = &mut self.iterate;
             vectors = [&mut iterate.lambda, &mut iterate.f_lambda, &mut iterate.multiplier].map(std::mem::take);

@@ -124,7 +124,7 @@ impl StepDoubling {
         sum
     }
 
-    /// Takes the next step in all ways. After an error, runs that are behind catch up.
+    /// Takes the next step in all ways. After an error runs that are behind catch up, but not at the last step.
     ///
     /// # Errors
     /// As [`Simulation::step`].

@@ -45,9 +45,11 @@ impl Simulation {
         (line, attempt): (bool, Attempt),
     ) -> Result<(StepReport, Option<Recovered>, Option<Targets>), ContactError> {
         let (model, increment, mut report) = (&self.model, way.increment(), StepReport::default());
-        let unloaded = |start| self.problem.is_unloaded(model, start);
         let loose = model.plan.effects.history && !model.loose_motions()?.is_empty();
-        if !loose || !increment.start.is_some_and(unloaded) {
+        // a part of the last loads is at hand where they are those of the model
+        let known = |start| model.mark(&model.factors(start)) == state.loads;
+        let ends = self.problem.is_unloaded(model, state) && increment.start.is_some_and(known);
+        if !loose || !ends {
             return Ok((report, None, None));
         }
         self.start(state, way, line, attempt);
@@ -121,7 +123,7 @@ impl Simulation {
         };
         let placed = self.placed(state, self.model.loose_motions()?, &from, targets)?;
         report.counters.products += usize::from(placed.is_some());
-        let certified = placed.filter(|(_, placed)| placed.certificate.largest() <= self.settings.tolerance);
+        let certified = placed.filter(|(_, placed)| placed.certificate.largest() <= self.wanted());
         Ok(certified.map(|(alpha, placed)| {
             self.iterate.alpha = alpha;
             self.iterate.f_lambda.clone_from(&zeros);
@@ -158,7 +160,7 @@ impl Simulation {
         let (model, problem) = (&self.model, &self.problem);
         // without a last place the solver's own is as good, where it is one
         let stood = state.step() > 0 && model.plan.effects.history;
-        let certified = recovered.certificate.largest() <= self.settings.tolerance;
+        let certified = recovered.certificate.largest() <= self.wanted();
         if !stood && certified || model.loose_motions()?.is_empty() {
             return Ok(recovered);
         }
@@ -191,7 +193,7 @@ impl Simulation {
             torn: &recovered.torn,
         };
         // where obstacles or partners have moved it may be inside them
-        let largest = recovered.certificate.largest().max(self.settings.tolerance);
+        let largest = recovered.certificate.largest().max(self.wanted());
         Ok(match self.placed(state, &motions, &from, &targets)? {
             Some((alpha, stands)) if stands.certificate.largest() <= largest => {
                 (self.iterate.alpha, self.iterate.lambda) = (alpha, lambda);

@@ -1,9 +1,9 @@
 //! A state carried over to another stage of its scene: rows and points that stay keep what they have; new points stick
 //! where they are.
 
-use super::fingerprint::hash;
 use super::state::{Peak, State};
 use crate::error::ContactError;
+use crate::hash::hash;
 use crate::model::{ConstrainedPoint, Model, PointRow};
 use crate::vec3::dot;
 use signorini_tfeti::Gluing;

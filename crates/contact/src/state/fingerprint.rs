@@ -4,6 +4,7 @@
 //! Only what gives stored numbers their meaning counts. Loads, materials, gaps and laws of friction may change between
 //! two steps, and so may settings: the state is then where the changed scene goes on from.
 
+use crate::hash::{hash, mix, number};
 use crate::model::{ConstrainedPoint, Model, PointRow};
 use crate::scene::{Analysis, DifferenceFormula};
 use crate::settings::Settings;
@@ -95,23 +96,6 @@ pub(crate) fn seal(operator: u64, lambda: &[f64], f_lambda: &[f64]) -> u64 {
     }
     let lengths = [lambda.len() as u64, f_lambda.len() as u64];
     hash(lanes.into_iter().chain(lengths))
-}
-
-/// The finaliser of SplitMix64: a bijection that spreads every bit.
-fn mix(mut x: u64) -> u64 {
-    x = (x ^ (x >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    x = (x ^ (x >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    x ^ (x >> 31)
-}
-
-/// A number for a list of them.
-pub(super) fn hash(words: impl Iterator<Item = u64>) -> u64 {
-    words.fold(1, |hash, word| mix(hash ^ word).wrapping_add(1))
-}
-
-/// The bits of a number, with one zero.
-fn number(x: f64) -> u64 {
-    (x + 0.0).to_bits()
 }
 
 fn point(point: &ConstrainedPoint) -> impl Iterator<Item = u64> {

@@ -34,6 +34,8 @@ pub struct State {
     pub(crate) peaks: Vec<Peak>,
     /// With history: the first step that did not converge.
     pub(crate) unconverged: Option<usize>,
+    /// What tells the loads of the last step from others; 0 if none acted.
+    pub(crate) loads: u64,
     /// How often a step was halved to get the last increment.
     pub(crate) halved: u32,
     /// Products beyond those of easy solves.
@@ -42,8 +44,8 @@ pub struct State {
     pub(crate) shortest_step: f64,
     /// Motions of couplings at the last step, along their axes.
     pub(crate) motions: Vec<[f64; 6]>,
-    /// Displacements of all nodes at the last step, m; empty where neither supports nor contacts start or end later and
-    /// only contact holds no body.
+    /// Displacements of all nodes at the last step, m; empty where neither supports nor contacts start or end later, and
+    /// nothing slides or supports hold all bodies.
     pub(crate) displacement: Vec<f64>,
     /// The stage whose rows and points its numbers belong to.
     pub(crate) stage: Stage,

@@ -3,6 +3,7 @@
 use crate::discrete::rounded;
 use crate::error::ContactError;
 use crate::model::{ConstrainedPoint, Model, PointRow};
+use crate::part::Part;
 use crate::scene::{Contact, DifferenceFormula, Increment, Pose, Scene};
 use crate::state::{Peak, State};
 use crate::tolerances::{FORCE_ROUNDING, OPENED, REACHED, REST, ROUNDING};
@@ -147,22 +148,21 @@ impl StepProblem {
         if square > 0.0 { growth.max(0.0) * (1.0 + ROUNDING) } else { f64::INFINITY }
     }
 
-    /// Whether no load acts, and one did at that time.
-    pub(crate) fn is_unloaded(&self, model: &Model, before: f64) -> bool {
-        let acted = |load| model.factor(load, before) != 0.0;
-        self.factors.iter().all(|f| *f == 0.0) && (0..self.factors.len()).any(acted)
+    /// Whether no load acts, and one did in a state.
+    pub(crate) fn is_unloaded(&self, model: &Model, state: &State) -> bool {
+        model.mark(&self.factors) == 0 && state.loads != 0
     }
 
-    /// Whether all that acts is back at zero, and was not at that time.
-    pub(crate) fn is_back(&self, scene: &Scene, before: f64) -> bool {
-        let at_zero = |time: f64| scene.histories().all(|(_, history)| history.value(time) == 0.0);
-        at_zero(self.time) && !at_zero(before)
+    /// Whether all that acts is back at zero, and was not in a state, which is of that time.
+    pub(crate) fn is_back(&self, model: &Model, (state, before): (&State, f64)) -> bool {
+        let at_zero = |time: f64| moving(&model.scene).all(|history| history.value(time) == 0.0);
+        model.mark(&self.factors) == 0 && at_zero(self.time) && (state.loads != 0 || !at_zero(before))
     }
 
-    /// Whether nothing that acts has changed since a time.
-    pub(crate) fn rests(&self, scene: &Scene, since: f64) -> bool {
+    /// Whether nothing that acts has changed since a state, which is of that time.
+    pub(crate) fn rests(&self, model: &Model, (state, since): (&State, f64)) -> bool {
         let stays = |history: &History| history.value(since) == history.value(self.time);
-        scene.histories().all(|(_, history)| stays(history))
+        model.mark(&self.factors) == state.loads && moving(&model.scene).all(stays)
     }
 
     /// Adds to the offsets of contact rows what is theirs: gap, position of rest, way of the obstacle.
@@ -323,6 +323,13 @@ impl StepProblem {
         }
         force
     }
+}
+
+/// The histories of all that acts but loads, which may have been others before.
+fn moving(scene: &Scene) -> impl Iterator<Item = &History> {
+    let all = scene.histories();
+    all.filter(|(part, _)| !matches!(part, Part::Load(_)))
+        .map(|(_, history)| history)
 }
 
 /// Part of displacement times stiffness that forces are measured against at least, where errors of this part of them

@@ -230,3 +230,30 @@ fn the_largest_tolerance_does_without_contact() {
         assert!(result.require_converged().is_ok());
     }
 }
+
+/// Where loads end, too, the tolerance has no say, and estimates are those of the step.
+#[test]
+fn an_accuracy_is_kept_where_loads_end() {
+    let history = || History::table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, 1.0), (3.0, 0.0)]).expect("table");
+    let scene = Scene::new(block([1.0; 3], [3; 3]), uniform(1e3, 0.3))
+        .with_load(Load::force(brick::Z_MAX, [0.0, 0.0, -10.0]).with_history(history()))
+        .with_load(Load::force(brick::X_MIN, [1.0, 0.3, 0.0]).with_history(history()))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.2)))
+        .with_analysis(Analysis::quasistatic(3.0, 3));
+    let exact = run(scene.clone(), tight()).1;
+    let settings = Settings::default()
+        .with_accuracy(Accuracy::Relative(1e-8))
+        .with_tolerance(0.1);
+    let mut simulation = Simulation::new(scene, settings).expect("set-up");
+    for exact in &exact {
+        let found = step(&mut simulation);
+        assert!(found.report.status.converged(), "{:?}", found.report);
+        let report = found.report.accuracy.expect("a report");
+        let own = simulation.result().expect("a step").algebraic_error();
+        assert_eq!(report.algebraic.elastic, own.elastic, "{}", found.time);
+        assert!(report.reached && found.certificate.largest() <= 1e-6, "{report:?}");
+        let off = distance(&found.displacement, &exact.displacement);
+        // a small part of the loads tells where the body stands without
+        assert!(off <= 1e-3, "{}: {off:e}", found.time);
+    }
+}

@@ -375,3 +375,37 @@ fn a_law_that_fails_or_panics_leaves_the_run_as_it_was() {
     assert_eq!(rest(&mut simulation).len(), 3);
     assert!(simulation.result().is_some());
 }
+
+/// A body that friction alone holds, in so many steps, of which those after the third have no load.
+fn let_go(steps: usize) -> Scene {
+    let table = |sideways: f64| {
+        History::table(vec![
+            (0.0, 0.0),
+            (1.0, 1.0),
+            (2.0, sideways),
+            (3.0, sideways),
+            (4.0, 0.0),
+        ])
+        .expect("table")
+    };
+    Scene::new(block([1.0; 3], [3; 3]), uniform(1e3, 0.3))
+        .with_load(Load::force(brick::Z_MAX, [0.0, 0.0, -10.0]).with_history(table(1.0)))
+        .with_load(Load::force(brick::X_MIN, [1.0, 0.3, 0.0]).with_history(table(2.0)))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.4)))
+        .with_analysis(Analysis::quasistatic(steps as f64, steps))
+}
+
+/// The state after the last step of an analysis begins a longer one: it did not say where loose bodies stood, nor, after
+/// a single step, what pressed.
+#[test]
+fn a_longer_analysis_goes_on_from_the_last_state() {
+    let whole = run(let_go(5), Settings::default()).1;
+    for steps in [1, 2, 3, 4] {
+        let (short, _) = run(let_go(steps), Settings::default());
+        let mut longer = Simulation::new(let_go(5), Settings::default()).expect("set-up");
+        longer.resume(short.state().clone()).expect("resume");
+        for (found, expected) in rest(&mut longer).iter().zip(&whole[steps..]) {
+            assert!(bits(found) == bits(expected), "after {steps} steps, at {}", found.time);
+        }
+    }
+}

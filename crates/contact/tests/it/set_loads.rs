@@ -146,3 +146,67 @@ fn bad_loads_are_refused() {
     simulation.set_loads(vec![down]).expect("loads");
     assert!(simulation.step().expect("step").report().status.converged());
 }
+
+/// They belong to the materials, not to the loads: the first set of loads lost them, and the strain with them.
+#[test]
+fn eigenstrains_of_materials_stay() {
+    let materials = steel().with_eigenstrain(1.0, Eigenstrain::expansion(1e-4));
+    let scene = Scene::new(block([3.0, 1.0, 1.0], [6, 2, 2]), materials)
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.4)));
+    let loads = || vec![Load::pressure(brick::Z_MAX, 1e6)];
+    let mut simulation = Simulation::new(scene.clone(), Settings::default()).expect("set-up");
+    for _ in 0..2 {
+        simulation.set_loads(loads()).expect("loads");
+    }
+    assert_eq!(simulation.scene().loads().len(), 2);
+    let found = simulation.step().expect("step");
+    let anew = solve(with_loads(&scene, loads()), Settings::default());
+    assert_eq!(found.displacement().as_flattened(), anew.displacement);
+    // strained by a ten-thousandth of its length
+    assert!((found.displacement().iter().map(|u| u[0]).fold(0.0, f64::max) / 3e-4 - 1.0).abs() < 0.1);
+}
+
+/// Names that the scene has for its loads are not theirs.
+#[test]
+fn other_loads_have_no_names() {
+    let scene = scene(true, true).with_load(Load::pressure(brick::Z_MAX, 1e6));
+    let scene = scene.with_names(|part| matches!(part, Part::Load(_)).then(|| "that of the file".into()));
+    let error = Simulation::new(
+        scene.clone().with_load(Load::pressure(FacetTag(77), 1.0)),
+        Settings::default(),
+    );
+    assert!(error.map(|_| ()).unwrap_err().to_string().contains("that of the file"));
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+    let error = simulation
+        .set_loads(vec![Load::pressure(FacetTag(77), 1.0)])
+        .unwrap_err()
+        .to_string();
+    assert!(
+        error.contains("load 0") && !error.contains("that of the file"),
+        "{error}"
+    );
+}
+
+/// A program gives each step loads that are constant: that the steps differ was not known, and each was first asked
+/// whether the last one stands.
+#[test]
+fn loads_of_every_step_are_known_to_change() {
+    let scene = scene(true, true);
+    let pressure = |step: usize| 1e6 * (1.0 + step as f64);
+    let told: Vec<(f64, f64)> = (0..6).map(|k| (0.2 * k as f64, pressure(k.max(1) - 1))).collect();
+    let history = History::table(told).expect("table");
+    let whole = scene
+        .clone()
+        .with_load(Load::pressure(brick::Z_MAX, 1.0).with_history(history));
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+    for (k, expected) in run(whole, Settings::default()).1.iter().enumerate() {
+        simulation
+            .set_loads(vec![Load::pressure(brick::Z_MAX, pressure(k))])
+            .expect("loads");
+        let report = simulation.step().expect("step").report().clone();
+        let (found, expected) = (report.counters, expected.report.counters);
+        // the first two tell how loads grow
+        assert!(k < 2 || found.products <= 3, "step {k}: {}", found.products);
+    }
+}
