@@ -68,7 +68,7 @@ signorini_fem_mesh::errors! {
     ///
     /// Fields are what their variant speaks of: `contact`, `support` and `index` positions in the scene, `node` and
     /// `partner` mesh nodes, steps from 0; in s, m, m/s, N and Pa. A body is a part of the mesh that hangs together.
-    /// `friction` is the factor above which larger friction would hold it, `None` where none could.
+    /// `friction` is the factor above which larger friction would hold it, `None` where not a thousandfold could.
     /// [`parts`](Self::parts) lists them. Where a scene [has names](crate::Scene::with_names) what is said of it is
     /// `Named`: match on [`plain`](Self::plain).
     ContactError from {

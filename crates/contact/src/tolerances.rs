@@ -49,6 +49,9 @@ pub(crate) const FAR: f64 = 1e6;
 /// the way along the surface, which the certificate sees.
 pub(crate) const SAME_NORMAL: f64 = 1.0 - 1e-12;
 
+/// Cosine over that of the angle of a crease up to which facets meet at one: hexagons do at the default one.
+pub(crate) const TO_CREASE: f64 = 1e-9;
+
 /// Steps of Newton's method from a node to an obstacle along the normal: those of a smooth shape take ten.
 pub(crate) const NEWTON: usize = 50;
 

@@ -5,8 +5,8 @@ use signorini_fem_mesh as fem;
 
 fem::errors! {
     /// Any error of the workspace; every crate's own error converts into it, so that `?` works throughout. Each arrives in
-    /// one way: what a scene passes on from a crate below (a mesh, a material) is that crate's variant here, not one of
-    /// `Contact`.
+    /// one way: a mesh or a material that a scene passes on is that crate's variant here; what is wrong with a load of a
+    /// scene is one of `Contact`.
     ///
     /// With `{:?}` it prints its sentence and what its sources add, not its fields: a `main` that returns it shows what is
     /// wrong and what to do about it. Programs match on its variants; where a scene [has

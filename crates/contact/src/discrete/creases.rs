@@ -1,5 +1,6 @@
 //! Sides of a surface that meet at creases.
 
+use crate::tolerances::TO_CREASE;
 use crate::vec3::edge_cosine;
 use signorini_fem_mesh::vec3;
 use signorini_fem_mesh::{Surface, SurfaceFrame, TetMesh};
@@ -20,7 +21,7 @@ pub(crate) fn creases(mesh: &TetMesh, surface: &Surface, crease: f64) -> HashMap
     if crease >= 180.0 {
         return out;
     }
-    let limit = crease.to_radians().cos();
+    let limit = crease.to_radians().cos() + TO_CREASE;
     let vectors: Vec<[f64; 3]> = surface
         .triangles()
         .iter()

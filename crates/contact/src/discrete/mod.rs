@@ -5,12 +5,14 @@
 //! contacts that go on in one another: `united`); in a mesh of order 2 it is a mean around the node (`means`); bodies
 //! that overlap only because their facets are straight touch (`faceted`), and where contacts cross one of them may hand
 //! its conditions on (`crossing`). Scenes that make no sense are refused here, before any stiffness is assembled
-//! (`scene`, `overflow`, `penetration`, `turn`). `side` has the nodes and weights of a contact point.
+//! (`scene`, `overflow`, `penetration`, `turn`). `side` has the nodes and weights of a contact point; what is tied does
+//! not touch as well (`bonded`).
 //!
 //! Rigid couplings are subdomains of their own (`couplings`); `equations` may have some that are points.
 //!
 //! Uses: `scene`, `mortar`. In: a scene. Out: a [`DiscreteScene`], borrowed by plan, model and reactions.
 
+mod bonded;
 mod chords;
 mod couplings;
 mod creases;

@@ -142,6 +142,9 @@ pub(super) fn conditions(
             let own = sides.get(&(local as u32));
             for side in own.map_or(std::slice::from_ref(&facing.surface), Vec::as_slice) {
                 let frame = fixed.or(shape.flatten()).unwrap_or(side.frame);
+                if contact.never_faces(place(local), &frame.normal, &poses[index]) {
+                    continue;
+                }
                 let (sides, gap) = match &means {
                     None => {
                         let mut sides = facing.sides.clone();

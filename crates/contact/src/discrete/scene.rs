@@ -1,5 +1,6 @@
 //! The discrete scene: a scene at the nodes of its mesh, made and checked once.
 
+use super::bonded::leave_bonded;
 use super::couplings::Couplings;
 use super::equations::equations;
 use super::faceted::{FacetedOverlaps, close_faceted};
@@ -11,12 +12,11 @@ use super::supports::Supports;
 use super::turn::check_turn;
 use super::united::pair;
 use crate::error::ContactError;
-use crate::scene::{Contact, Pose, Scene, check_laws};
+use crate::scene::{Pose, Scene, check_laws};
 use crate::tolerances::ROUNDING;
-use signorini_fem_mesh::{Decomposition, FacetTag, Surface};
+use signorini_fem_mesh::{Decomposition, Surface};
 use signorini_tfeti::internal::{independent_equations, prescribed_points};
 use signorini_tfeti::{ContactConstraint, NodalEquation};
-use std::collections::HashSet;
 use std::time::{Duration, Instant};
 
 /// A scene lowered to nodes.
@@ -81,14 +81,7 @@ impl DiscreteScene {
         let mut conditions = conditions(scene, (&paired, &poses), rounding)?;
         let ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
         if !ties.is_empty() {
-            // a bonded node does not move against the other body; nodes behind its side do
-            let tied = scene.contacts.iter().filter(|c| c.tied && scene.acts(c.span));
-            let tags: HashSet<FacetTag> = tied.flat_map(Contact::side_tags).collect();
-            let sides = scene.mesh.facets().iter().filter(|f| tags.contains(&f.tag));
-            let sides: HashSet<u32> = sides.flat_map(|f| f.nodes).collect();
-            let nodes = ties.iter().flat_map(|t| t.sides.nodes()).map(|n| n.0);
-            let bonded: HashSet<u32> = nodes.filter(|n| sides.contains(n)).collect();
-            conditions.retain(|c| c.sides.partner.is_none() || !bonded.contains(&c.node()));
+            leave_bonded(scene, &ties, &mut conditions);
         }
         let faceted = close_faceted(scene, &paired, &mut conditions, rounding)?;
         let handed_on = handed_on(&paired);

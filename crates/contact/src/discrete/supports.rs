@@ -77,7 +77,7 @@ impl Supports {
 /// Refuses a motion along x, y or z, or along one of those of an axis, of which no held direction has a part: it would
 /// not take place. Directions of each node, such as normals of a curved surface, take what is along them.
 fn check_motion(index: usize, support: &Support, nodes: &[u32]) -> Result<(), ContactError> {
-    let each = matches!(support.directions, Directions::EachNode(_) | Directions::Nothing);
+    let each = matches!(support.directions, Directions::EachNode(_));
     let Some((values, _)) = support.motion.as_ref().filter(|_| !each) else {
         return Ok(());
     };

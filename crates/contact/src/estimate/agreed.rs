@@ -7,37 +7,14 @@
 //! of ties by the smallest change in a norm weighted by stiffness, of rows that depend on one another by that of the
 //! positions themselves.
 
+use super::dependent::Agreement;
 use super::duality_gap::{Caches, Weights};
 use super::shared::ties_meet_points;
 use crate::model::Model;
 use crate::result::{ContactState, Recovered};
 use crate::step::entry_or_zero;
-use crate::tolerances::NULL_RANK;
-use nalgebra::{DMatrix, DVector};
-use signorini_tfeti::internal::Dependency;
+use nalgebra::DVector;
 use std::borrow::Cow;
-use std::ops::Range;
-
-/// A dependency with rows along surfaces.
-#[derive(Debug)]
-pub(super) struct Agreement {
-    rows: Vec<usize>,
-    /// Changes of the rows along surfaces, zero of others, by what all rows measure.
-    change: DMatrix<f64>,
-}
-
-impl Agreement {
-    /// `None` where nothing that depends on others is along a surface.
-    fn new(along: &Range<usize>, dependency: &Dependency) -> Option<Self> {
-        let (rows, vectors) = (dependency.rows.clone(), &dependency.vectors);
-        let null = DMatrix::from_fn(vectors.len(), rows.len(), |i, k| vectors[i][k]);
-        let own = |i, k| if along.contains(&rows[k]) { null[(i, k)] } else { 0.0 };
-        let own = DMatrix::from_fn(null.nrows(), null.ncols(), own);
-        let change = own.pseudo_inverse(NULL_RANK).ok()?;
-        let change = (change.amax() > 0.0).then(|| change * null)?;
-        Some(Self { rows, change })
-    }
-}
 
 impl Caches {
     /// From what all rows measure, and their offsets.
@@ -64,7 +41,7 @@ impl Caches {
             };
             let values = agreement.rows.iter().map(value);
             let values = DVector::from_iterator(agreement.rows.len(), values);
-            let change = &agreement.change * values;
+            let change = &agreement.change * (&agreement.null * values);
             let rows = rows.to_mut();
             for (row, change) in agreement.rows.iter().zip(change.iter()) {
                 rows[*row] -= change;

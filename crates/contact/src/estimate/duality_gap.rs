@@ -12,7 +12,7 @@
 //! is at least `1/2 |v - u*|² + 1/2 |u - u*|²`, `u*` the solution of the discrete problem with the slip bounds `r`.
 
 use super::admissible::{AdmissibleNode, Correction};
-use super::agreed::Agreement;
+use super::dependent::Agreement;
 use super::shared::{SharedNodes, Target};
 use super::sprung::SprungNodes;
 use crate::model::Model;

@@ -7,8 +7,7 @@
 //! Across a distance, tied sides extrapolate displacements from the tetrahedra behind, others rotate
 //! (`discrete::side`).
 //!
-//! Uses: `tolerances`, `vec3`. In: two surfaces. Out: a [`MortarNode`] for each node that the other
-//! side faces.
+//! Uses: `tolerances`, `vec3`. In: two surfaces. Out: a [`MortarNode`] for each node that the other side faces.
 
 mod cover;
 mod distances;

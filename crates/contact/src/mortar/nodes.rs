@@ -1,7 +1,7 @@
 //! The other side of each node of a surface.
 
 use super::search::{Bends, Normals, Seen, covers, in_order};
-use crate::tolerances::{COVERED, NO_WEIGHT, SAME_NORMAL, SLIVER};
+use crate::tolerances::{COVERED, NO_WEIGHT, SAME_NORMAL, SLIVER, TO_CREASE};
 use crate::vec3::edge_cosine;
 use rayon::prelude::*;
 use signorini_fem_mesh::internal::Lists;
@@ -94,7 +94,7 @@ pub(crate) fn mortar_nodes(
     let triangles = in_order(mesh, surface);
     let corners: Vec<[u32; 3]> = triangles.iter().map(|triangle| triangle.nodes).collect();
     let around = Lists::by_key(mesh.points().len(), corners.as_flattened());
-    let crease = crease.to_radians().cos();
+    let crease = crease.to_radians().cos() + TO_CREASE;
     let is_bent = |node: u32| {
         let facets: Vec<&[u32; 3]> = around
             .of(node as usize)

@@ -1,7 +1,7 @@
 //! Quadratic facets on which a gap opens linearly from the rim of their side, as under an inclined edge: their
 //! multipliers are dual functions alone, which see such a gap as it is at the rim (docs/theory.md, section 8).
 
-use crate::tolerances::{LINEAR, OPENING, SAME_NORMAL};
+use crate::tolerances::{LINEAR, OPENING, SAME_NORMAL, TO_CREASE};
 use crate::vec3::edge_cosine;
 use signorini_fem_mesh::internal::facet_normals;
 use signorini_fem_mesh::vec3::{area_vector, dot, norm, unit};
@@ -25,7 +25,7 @@ impl<'a> Rim<'a> {
             .map(|f| mesh.facets()[*f as usize].nodes)
             .collect();
         let around = surface.around();
-        let crease = crease.to_radians().cos();
+        let crease = crease.to_radians().cos() + TO_CREASE;
         // an edge goes on if some other facet around its first node has both ends and does not meet it at a crease
         let goes_on = |own: usize, [from, to]: [usize; 2]| {
             let others = around.of(surface.triangles()[own][from] as usize).iter();

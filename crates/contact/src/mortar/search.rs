@@ -159,10 +159,10 @@ pub(super) struct Seen {
 
 /// The cover of each facet of a surface, by the nodes of the other one; the normals of the facets beside it.
 ///
-/// What is farther away than four times the largest distance found anywhere is not looked for, unless nothing is found.
-/// Displacements of the other side are those where they are, or [on the facet](Way) if it is `tied`. Facets on which a
-/// gap opens from the `rim` have dual functions, multipliers of those `within` stay within their cover; facets of the
-/// other side are chords of `arcs`.
+/// What is farther away than four times the largest distance found anywhere is not looked for, unless nothing is found:
+/// behind bodies other sides face each other, too. Displacements of the other side are those where they are, or [on the
+/// facet](Way) if it is `tied`. Facets on which a gap opens from the `rim` have dual functions, multipliers of those
+/// `within` stay within their cover; facets of the other side are chords of `arcs`.
 pub(super) fn covers(
     mesh: &TetMesh,
     triangles: &[Triangle],

@@ -76,7 +76,8 @@ pub struct Plan {
 
 impl Plan {
     /// Plans a scene. It refuses what [`Simulation::new`](crate::Simulation::new) would refuse, except loads that
-    /// nothing can hold, since that check needs the set-up.
+    /// nothing can hold, motions that nothing determines, and subdomains that cannot be factored, since that takes the
+    /// set-up.
     ///
     /// # Errors
     /// [`ContactError`] naming what is wrong with the scene or the settings.

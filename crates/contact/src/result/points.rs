@@ -12,7 +12,7 @@ use signorini_tfeti::TangentialRows;
 pub enum ContactState {
     /// No normal force. Tresca friction does not depend on pressure and acts even so.
     Open,
-    /// Pressed, and without tangential difference or without a friction law.
+    /// Pressed, and without tangential difference or without a friction law; where the slip bound is zero all slides.
     Stick,
     /// Pressed and sliding.
     Slip,

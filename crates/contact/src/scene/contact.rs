@@ -6,6 +6,7 @@ use super::obstacle::Obstacle;
 use super::pose::{Pose, Rotation};
 use super::span::Span;
 use crate::error::ContactError;
+use crate::tolerances::FACING;
 use crate::vec3::norm;
 use signorini_fem_mesh::loads::Function;
 use signorini_fem_mesh::{FacetTag, History};
@@ -45,7 +46,7 @@ pub struct Contact {
     /// Whether a constant gap and a gap field were given.
     pub(super) given: [bool; 2],
     /// The half-space across whose plane its gap is measured.
-    plane: Option<Obstacle>,
+    pub(super) plane: Option<Obstacle>,
     pub(crate) normal: ContactNormal,
     pub(crate) friction: Friction,
     /// Whether a law of friction was given, be it none.
@@ -123,11 +124,13 @@ impl Contact {
     /// side on its normal, to within a fiftieth of the size of its facets, and a little more across a gap. Where they
     /// do not, the side with the larger facets has the points, whichever is named first (in meshes of order 2 the
     /// curved side of a Poisson's ratio above 0.45, if the other's is below; of flat sides in meshes of order 1 the
-    /// softer one, if the other is ten times as stiff in shear and reaches beyond it), and the partner of each is a weighted
-    /// mean of nodes (mortar method with dual multipliers): uniform pressure is transferred exactly, for any ratio of
-    /// mesh sizes and for sides that overlap only in part. Nodes with nothing opposite have no point. Put flat sides
-    /// that meet at an edge into separate contacts. Those that go on smoothly in one another on both sides, without
-    /// motions, act as one: each node is in the contact whose partner it sees most of.
+    /// softer one, if the other is ten times as stiff in shear and reaches beyond it), and the partner of each is a
+    /// weighted mean of nodes (mortar method with dual multipliers): uniform pressure is transferred exactly, for any
+    /// ratio of mesh sizes and for sides that overlap only in part. Nodes with nothing opposite have no point, nor
+    /// where it is more than four times as far as the farthest that is found up to there, and than a few facets: give
+    /// far steps a contact of their own. Put flat sides that meet at an edge into separate contacts. Those that go on
+    /// smoothly in one another on both sides, without motions, act as one: each node is in the contact whose partner it
+    /// sees most of.
     ///
     /// All quantities of a contact point are those of the body of its [node](crate::result::PointState::node): the
     /// outward normal, the force on it, its displacement *relative* to the partner; sums over a contact are those of
@@ -213,7 +216,8 @@ impl Contact {
 
     /// Of the gaps measured between two bodies, with quadratic elements node by node, those of at most `reach` (m, not
     /// negative) are closed: there the sides touch without stress, as if nodes had been moved onto each other. Overlaps
-    /// are, too. For facets that deviate from the curves that they stand for.
+    /// are, too. For facets that deviate from the curves that they stand for. Of this and
+    /// [`with_measured_overlaps`](Self::with_measured_overlaps) the last one counts.
     pub fn with_closed_gaps(mut self, reach: f64) -> Self {
         self.closing = Closing::UpTo(reach);
         self
@@ -266,8 +270,8 @@ impl Contact {
     /// The angle between the normals of adjacent facets, in degrees, from which on their common edge is a crease (60 by
     /// default; in (0, 180], 180 for none). At a crease a node has one contact point for each side, so that an edge can
     /// touch both floor and wall; elsewhere, and between bodies, it has one point with the mean normal. Put flat sides
-    /// that meet at a smaller angle, or between bodies, into separate contacts. No effect with
-    /// [`with_normal`](Self::with_normal).
+    /// that meet at a smaller angle, or between bodies, into separate contacts. No effect where one normal or an
+    /// obstacle says the direction.
     pub fn with_crease(mut self, degrees: f64) -> Self {
         self.crease = degrees;
         self
@@ -439,6 +443,19 @@ impl Contact {
     /// Whether the gap changes otherwise than by what an obstacle opens.
     pub(crate) fn changes_gap(&self) -> bool {
         self.carries_field() || self.gap_history.is_some()
+    }
+
+    /// Whether a direction of the body leads to no shape of an obstacle, wherever that has moved: its distance is none
+    /// along it.
+    pub(crate) fn never_faces(&self, place: [f64; 3], normal: &[f64; 3], poses: &[Pose]) -> bool {
+        let Some(shape) = self.shape.as_ref().filter(|_| self.normal == ContactNormal::Body) else {
+            return false;
+        };
+        let faces = |pose: &Pose| {
+            let (_, gradient) = shape.distance(pose.origin(&place));
+            -vector::dot(&gradient, &pose.back(normal)) > FACING
+        };
+        !faces(&Pose::default()) && !poses.iter().any(faces)
     }
 
     /// The gap at a node, m, that is `initial` at first, where the obstacle has moved, times its factor. The part of

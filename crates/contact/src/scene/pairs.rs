@@ -11,7 +11,7 @@ use signorini_fem_mesh::{FacetTag, TetMesh};
 
 use super::contact::{CREASE, Contact};
 use crate::error::ContactError;
-use crate::tolerances::{COVERED, FACING};
+use crate::tolerances::{COVERED, FACING, TO_CREASE};
 
 /// Places in a facet from which others are looked for, in barycentric coordinates: its middle, and near its corners and
 /// the middles of its edges.
@@ -232,7 +232,7 @@ impl Boundary {
         for ([own, other], _) in seen {
             sets.join(places[own], places[other]);
         }
-        let limit = CREASE.to_radians().cos();
+        let limit = CREASE.to_radians().cos() + TO_CREASE;
         let mut edges: HashMap<[u32; 2], usize> = HashMap::new();
         for (place, facet) in facets.iter().enumerate() {
             let [a, b, c] = ascending(self.nodes[*facet as usize]);

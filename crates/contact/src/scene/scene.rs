@@ -148,7 +148,7 @@ impl Scene {
     }
 
     /// Names for parts of the scene, for instance from the file that it comes from: errors and warnings then begin with
-    /// the names of the parts concerned. Scenes from decks have names.
+    /// the names of the parts concerned. Scenes from decks have names. It may be asked for nodes that are not there.
     ///
     /// ```
     /// use signorini_contact::{Contact, Part, Plan, Scene, Settings};

@@ -23,8 +23,8 @@ impl DifferenceFormula {
     /// Any consistent formula.
     ///
     /// # Errors
-    /// [`ContactError::Formula`] unless `alpha > 0`, `alpha + beta + gamma = 0` (a body at rest has rate 0) and
-    /// `-beta - 2 gamma = 1` (uniform motion has its rate).
+    /// [`ContactError::Formula`] unless `alpha > 0`, `alpha + beta + gamma = 0` (a body at rest has rate 0),
+    /// `-beta - 2 gamma = 1` (uniform motion has its rate) and `gamma >= -1/2` (what sticks stays).
     pub fn new(alpha: f64, beta: f64, gamma: f64) -> Result<Self, ContactError> {
         let rule = if !(alpha.is_finite() && beta.is_finite() && gamma.is_finite() && alpha > 0.0) {
             "alpha must be positive and all three finite"
@@ -32,6 +32,8 @@ impl DifferenceFormula {
             "the sum must be 0"
         } else if (-beta - 2.0 * gamma - 1.0).abs() > ROUNDING {
             "-beta - 2 gamma must be 1"
+        } else if gamma < -0.5 {
+            "gamma must be at least -1/2: with less what sticks moves, and ever faster"
         } else {
             return Ok(Self([alpha, beta, gamma]));
         };

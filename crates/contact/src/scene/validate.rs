@@ -150,7 +150,8 @@ impl Scene {
         if contact.tied && (loose || turned) {
             return Err(ContactError::Tied { contact: index });
         }
-        if (contact.moves() && !contact.tied || contact.shape.as_ref().is_some()) && !contact.partner.is_empty() {
+        let shaped = contact.shape.is_some() || contact.plane.is_some();
+        if (contact.moves() && !contact.tied || shaped) && !contact.partner.is_empty() {
             return Err(ContactError::MovedPartner { contact: index });
         }
         let check = |good: bool, name, value, range| {
@@ -187,11 +188,12 @@ impl Scene {
                 needs: "a gap that is measured between bodies or from a shape",
             });
         }
-        if contact.gap_history.is_some() && matches!(contact.gap, Gap::None) && !contact.tied {
+        let none = matches!(contact.gap, Gap::None | Gap::Constant(0.0));
+        if contact.gap_history.is_some() && none && !contact.tied {
             return Err(ContactError::Idle {
                 part: Part::Contact(index),
                 setting: "with_gap_history",
-                needs: "a gap, as of with_gap",
+                needs: "a gap that is not zero, as of with_gap",
             });
         }
         if let Closing::UpTo(reach) = contact.closing {

@@ -10,7 +10,7 @@ pub enum Method {
     /// The default: active sets predicted by the natural map, projected preconditioned conjugate gradients on
     /// each, slip bounds updated once the contact set has settled. Falls back to
     /// [`SuccessiveApproximations`](Self::SuccessiveApproximations) if the prediction makes no progress. The tolerance
-    /// and the floors are those of the [`Settings`](crate::Settings), as in all methods.
+    /// and the floors are those of the [`Settings`](crate::Settings), as in all methods, and the patience is chosen.
     ActiveSet(ActiveSetSettings),
     /// The paper's method (3.17): Tresca problems by SMALSE and KPRGP, repeated with new slip bounds.
     SuccessiveApproximations {
@@ -97,10 +97,10 @@ pub(crate) fn paper_smalse() -> SmalseSettings {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 #[non_exhaustive]
 pub enum InnerAccuracy {
-    /// The final tolerance each time.
+    /// The final tolerance each time, and up to a thousandth of it where changes stall above it.
     Fixed,
-    /// A tenth of the last relative change of the normal multipliers, never looser than 1e-3 and never tighter than the
-    /// final tolerance.
+    /// A tenth of the last relative change of the normal multipliers, never looser than 1e-3 and never tighter than
+    /// that.
     #[default]
     Adaptive,
 }

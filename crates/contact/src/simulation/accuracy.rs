@@ -36,7 +36,8 @@ impl ByCertificate {
         let certified = largest <= self.limit;
         // what is wanted is there, whatever the solver says; or an earlier round converged, and what this one could not
         // improve is certified
-        let enough = largest <= self.aim || certified && (round > 2 || taken && !status.converged());
+        let not_better = round > 2 || (round > 1 || taken) && !status.converged();
+        let enough = largest <= self.aim || certified && not_better;
         let status = if enough { StepStatus::Converged } else { status };
         if enough || !status.converged() || self.tolerance <= LEAST_TOLERANCE {
             let refused = status.converged() && !certified;
@@ -92,7 +93,7 @@ impl Simulation {
     }
 
     /// The same by estimates of the error, which it writes to the report.
-    pub(super) fn judge(
+    fn judge(
         &mut self,
         round: usize,
         report: &mut StepReport,
@@ -121,7 +122,12 @@ impl Simulation {
         } else {
             target
         };
-        let (found, largest) = (algebraic.relative(), contact_violation(&recovered.certificate));
+        let certificate = &recovered.certificate;
+        let (found, mut largest) = (algebraic.relative(), contact_violation(certificate));
+        // the estimate brings bodies into balance by their supports
+        if !self.model.loose_motions()?.is_empty() {
+            largest = largest.max(certificate.equilibrium.relative());
+        }
         let limit = certificate_limit(target);
         let (reached, certified) = (found <= share, largest <= limit);
         report.accuracy = Some(AccuracyReport {
@@ -148,8 +154,25 @@ impl Simulation {
         Ok(Some(match report.status {
             StepStatus::Converged if !reached => StepStatus::Stagnated,
             StepStatus::Converged if !certified => StepStatus::NotCertified,
+            _ if good => StepStatus::Converged,
             status => status,
         }))
+    }
+
+    /// Judges by estimates, where there are any, what took the place of a solver's result.
+    pub(super) fn judge_again(&mut self, report: &mut StepReport, recovered: &Recovered) -> Result<(), ContactError> {
+        let Some(before) = report.accuracy else {
+            return Ok(());
+        };
+        // no further round
+        if let Some(status) = self.judge(ROUNDS, report, recovered)? {
+            report.status = status;
+        }
+        report.accuracy = report.accuracy.map(|own| AccuracyReport {
+            rounds: before.rounds,
+            ..own
+        });
+        Ok(())
     }
 }
 
@@ -170,4 +193,24 @@ fn discretisation(
         scale: own.scale,
     };
     Ok(controller.discretisation)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What an earlier round reached counts, also where the next one, with a smaller tolerance, makes no progress.
+    #[test]
+    fn what_a_further_round_could_not_improve_is_certified() {
+        let rounds = |ends: [(StepStatus, f64); 2]| {
+            let mut certificate = ByCertificate::new(1e-6);
+            let [first, second] = ends;
+            assert_eq!(certificate.judge((1, false), first.0, first.1), None);
+            certificate.judge((2, false), second.0, second.1)
+        };
+        let (converged, stagnated) = (StepStatus::Converged, StepStatus::Stagnated);
+        assert_eq!(rounds([(converged, 5e-6), (stagnated, 5e-6)]), Some(converged));
+        assert_eq!(rounds([(converged, 5e-6), (stagnated, 5e-5)]), Some(stagnated));
+        assert_eq!(rounds([(converged, 5e-5), (converged, 5e-7)]), Some(converged));
+    }
 }

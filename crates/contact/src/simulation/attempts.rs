@@ -12,6 +12,8 @@ use crate::settings::{Accuracy, Method};
 use crate::solve::Attempt;
 use crate::state::State;
 use crate::status::StepStatus;
+use crate::tolerances::ROUNDING;
+use signorini_qp::vector;
 use std::sync::Arc;
 
 /// Whether an attempt starts on the line through the last two steps, or else from the last one.
@@ -95,14 +97,19 @@ impl Simulation {
     ) -> Result<(StepReport, Recovered), ContactError> {
         let mut sets_out = tried.status.converged();
         let mut report = tried;
-        let mut found = None;
+        let (mut found, mut overlapping) = (None, None);
         for (line, attempt) in self.with_apart(attempts, state, way, told.is_some())? {
             self.spare = found.take().unwrap_or_else(|| std::mem::take(&mut self.spare));
             self.controller = state.controller;
             if attempt == Attempt::Apart {
                 let (kept, lost) = (self.iterate.clone(), report.status);
-                if let Some(apart) = self.apart(state, way, &mut report)? {
-                    return Ok((report, apart));
+                let apart = self.apart(state, way, &mut report)?;
+                let overlaps = apart.as_ref().is_some_and(|apart| self.overlaps(apart));
+                if let Some(apart) = apart {
+                    if !overlaps {
+                        return Ok((report, apart));
+                    }
+                    overlapping = Some((std::mem::take(&mut self.iterate), report.status, apart));
                 }
                 (self.iterate, report.status) = (kept, lost);
                 continue;
@@ -124,7 +131,27 @@ impl Simulation {
                 return Ok((report, left));
             }
         }
+        // no contact force was found that an overlap next to none would make
+        if let Some((iterate, status, apart)) = overlapping.filter(|_| !report.status.converged()) {
+            (self.iterate, report.status) = (iterate, status);
+            return Ok((report, apart));
+        }
         Ok((report, found.unwrap_or_default()))
+    }
+
+    /// Whether points overlap by more than solvers and rounding leave: a ride of the whole body has no part in it.
+    fn overlaps(&self, recovered: &Recovered) -> bool {
+        let tfeti = &self.model.tfeti;
+        let strained = tfeti.of_subdomains(|subdomain| {
+            let mut own = recovered.torn[tfeti.torn_range(subdomain)].to_vec();
+            let kernel = tfeti.kernel(subdomain);
+            kernel.add_motion(-1.0, &kernel.transpose_times(&own), &mut own);
+            [vector::max_abs(&own)]
+        });
+        let strained = strained.into_iter().map(|[own]| own).fold(0.0, f64::max);
+        let gap = recovered.certificate.gap;
+        let allowed = self.settings.tolerance * strained + ROUNDING * gap.reference;
+        gap.value > allowed.max(self.model.discrete.rounding)
     }
 
     /// The result without contact forces: bodies then stand apart, or touch without force, and active sets run in

@@ -44,9 +44,9 @@ impl Simulation {
     /// never interrupted.
     ///
     /// The folder is made if need be; the newest checkpoint and the one before are kept, as `step-NUMBER.state`. It
-    /// decides where the run goes on, also of a simulation that has solved steps already. A checkpoint is stored after
-    /// the observer was told of its step, and not where it failed: steps since the last one are solved and told again.
-    /// A run whose last step is stored solves nothing more.
+    /// decides where the run goes on, also of a simulation that has solved steps already, which begins anew where it is
+    /// empty. A checkpoint is stored after the observer was told of its step, and not where it failed: steps since the
+    /// last one are solved and told again. A run whose last step is stored solves nothing more.
     ///
     /// A newest checkpoint that is damaged is kept as `step-NUMBER.state.damaged`, the one before is taken, and
     /// [`Warning::DamagedCheckpoint`] says so.
@@ -124,6 +124,9 @@ impl Simulation {
             });
         }
         let Some(Newest { state, path, warning }) = found else {
+            if self.state.step() > 0 {
+                self.resume(State::default())?;
+            }
             return Ok(None);
         };
         let foreign = |reason: String| format!("{}: {reason}; or give this run a folder of its own", path.display());

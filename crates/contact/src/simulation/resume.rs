@@ -11,10 +11,10 @@ impl Simulation {
     ///
     /// These must be the same: mesh, decomposition, nodes and directions of supports, contact points with their normals
     /// and areas, difference formula, and the times of the steps already solved. Loads, motions of supports, materials,
-    /// gaps, coefficients of friction, future times, settings and method may change; the changed scene then continues
-    /// from the state. What starts, ends or is locked may have other times later on; what has started is held where it
-    /// was then. To start from the state of a different scene on purpose, call [`State::without_origin`]; sizes must
-    /// match in any case.
+    /// gaps, coefficients of friction (but not to or from zero everywhere), future times, settings and method may
+    /// change; the changed scene then continues from the state. What starts, ends or is locked may have other times
+    /// later on; what has started is held where it was then. To start from the state of a different scene on purpose,
+    /// call [`State::without_origin`]; sizes must match in any case.
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the state does not fit; it says which part differs.
@@ -29,8 +29,12 @@ impl Simulation {
             if !state.is_finite() {
                 return refuse(NOT_FINITE.to_owned());
             }
-            let fresh = self.set_up_stage(self.model.scene.clone(), &state.stage);
+            let fresh = self.set_up_stage(self.model.scene.clone(), &state.stage, state.step());
             let mut fresh = fresh.map_err(|error| self.model.scene.names.tell(error))?;
+            // those of all stages are known already
+            if let Some(model) = Arc::get_mut(&mut fresh.model) {
+                model.plan.warn(std::slice::from_ref(&self.model.plan));
+            }
             state.stage = fresh.model.scene.stage();
             fresh.take(state)?;
             *self = fresh;

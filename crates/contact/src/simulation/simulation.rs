@@ -50,10 +50,10 @@ impl std::fmt::Debug for Simulation {
     }
 }
 
-/// The model of a scene that contact and supports can hold.
-fn balanced(scene: Scene, settings: &Settings) -> Result<Model, ContactError> {
+/// The model of a scene that contact and supports can hold, from a `first` step on.
+fn balanced(scene: Scene, settings: &Settings, first: usize) -> Result<Model, ContactError> {
     let model = Model::new(scene, settings)?;
-    check_equilibrium(&model, 0)?;
+    check_equilibrium(&model, first)?;
     Ok(model)
 }
 
@@ -62,7 +62,7 @@ fn plan_later_stages(scene: &Scene, settings: &Settings) -> Result<Vec<Plan>, Co
     let plan = |stage: Stage| {
         let mut scene = scene.clone();
         scene.enter(&stage);
-        let model = balanced(scene, settings)?;
+        let model = balanced(scene, settings, 0)?;
         // what neither supports nor contact hold a solver finds
         if model.points.is_empty() {
             Solver::new(&model, settings)?;
@@ -85,7 +85,7 @@ impl Simulation {
             let start = Instant::now();
             // before the first one, so that two are not held; what is wrong with that is told first
             let later = plan_later_stages(&scene, &settings);
-            let mut first = Self::set_up(scene, settings)?;
+            let mut first = Self::set_up(scene, settings, 0)?;
             let later = later?;
             if let Some(model) = Arc::get_mut(&mut first.model) {
                 model.plan.warn(&later);
@@ -98,9 +98,10 @@ impl Simulation {
         on_pool(set_up).map_err(|error| names.tell(error))
     }
 
-    pub(super) fn set_up(scene: Scene, settings: Settings) -> Result<Self, ContactError> {
+    /// The same before the steps from a `first` one on.
+    pub(super) fn set_up(scene: Scene, settings: Settings, first: usize) -> Result<Self, ContactError> {
         let start = Instant::now();
-        let mut model = balanced(scene, &settings)?;
+        let mut model = balanced(scene, &settings, first)?;
         let origin = || {
             let origin = Fingerprint::new(&model);
             (origin, operator_hash(&origin, &model, &settings))

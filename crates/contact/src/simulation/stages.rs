@@ -52,7 +52,7 @@ impl Simulation {
 
     /// Sets the scene up anew for a stage, and goes on from the state.
     fn enter(&mut self, scene: Scene, stage: &Stage) -> Result<(), ContactError> {
-        let fresh = self.set_up_stage(scene, stage)?;
+        let fresh = self.set_up_stage(scene, stage, self.state.step())?;
         let mut state = self.state.clone();
         let own = Arc::make_mut(&mut state);
         own.carry_over(&self.model, &fresh.model)?;
@@ -64,10 +64,10 @@ impl Simulation {
         Ok(())
     }
 
-    /// The same simulation before its first step, set up for a stage.
-    pub(super) fn set_up_stage(&self, mut scene: Scene, stage: &Stage) -> Result<Self, ContactError> {
+    /// The same simulation before its first step, set up for a stage, of which the steps from this one on are to come.
+    pub(super) fn set_up_stage(&self, mut scene: Scene, stage: &Stage, step: usize) -> Result<Self, ContactError> {
         scene.enter(stage);
-        let fresh = on_pool(|| Self::set_up(scene, self.settings.clone()))?;
+        let fresh = on_pool(|| Self::set_up(scene, self.settings.clone(), step))?;
         let (total, setup) = (self.total, self.setup + fresh.setup);
         Ok(Self { total, setup, ..fresh })
     }

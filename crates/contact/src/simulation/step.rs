@@ -87,23 +87,18 @@ impl Simulation {
         self.controller = state.controller;
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, 0.0)?;
         let attempts = self.attempts(state, increment);
-        let (mut tried, unloaded, told) = self.unload(state, way, attempts[0])?;
+        let (tried, unloaded, told) = self.unload(state, way, attempts[0])?;
         let (mut report, recovered) = match unloaded {
-            Some(recovered) => {
-                // estimates were those of the part of the loads that was left
-                if let Some(accuracy) = tried.accuracy
-                    && let Some(status) = self.judge(accuracy.rounds, &mut tried, &recovered)?
-                {
-                    tried.status = status;
-                }
-                (tried, recovered)
-            }
+            Some(recovered) => (tried, recovered),
             None => {
                 let (report, recovered) = self.attempt(attempts, state, way, (tried, told.as_ref()))?;
                 (report, self.stand(state, recovered, told.unwrap_or_default())?)
             }
         };
         // bodies that stand elsewhere now
+        if self.model.plan.effects.history && !self.model.loose_motions()?.is_empty() {
+            self.judge_again(&mut report, &recovered)?;
+        }
         let by_tolerance = self.settings.accuracy == Accuracy::Tolerance;
         if by_tolerance && recovered.certificate.largest() <= self.settings.tolerance {
             report.status = StepStatus::Converged;

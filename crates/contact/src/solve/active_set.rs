@@ -420,8 +420,13 @@ impl ActiveSetSolver {
                     report.counters.active_sets += if contact { sets } else { 0 };
                     outcome.status
                 }
-                // the prediction ran away, or the free rows do not hold the body: the paper's method needs neither
+                // the prediction ran away, the free rows do not hold the body, or rounding bends F: the paper's method
+                // needs neither
                 Err(QpError::CoarseDeficient { .. } | QpError::NotFinite { .. }) => {
+                    iterate.known = false;
+                    Status::Stagnated
+                }
+                Err(QpError::Indefinite { .. } | QpError::Unbounded { .. }) if contact => {
                     iterate.known = false;
                     Status::Stagnated
                 }

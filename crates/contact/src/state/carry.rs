@@ -42,21 +42,28 @@ impl State {
         let starts = [old, new].map(|model| model.tangential_rows().start);
         let mut traces = [(); 2].map(|()| vec![0.0; new.tangential_rows().len()]);
         for (point, before) in new.points.iter().zip(points) {
-            let before = before.map(|k| &old.points[k]);
-            let mut rows = before
-                .into_iter()
-                .flat_map(ConstrainedPoint::along)
-                .map(|along| along.row);
-            for PointRow { direction, row, .. } in point.along() {
-                let (last, older) = match rows.next() {
-                    Some(row) => self.traces(row - starts[0]),
-                    None => {
-                        let way = self.way(new, point, direction)?;
-                        (way, way)
+            let before: Vec<PointRow> = before.iter().flat_map(|k| old.points[*k].along()).collect();
+            let same = before
+                .iter()
+                .map(|b| b.direction)
+                .eq(point.along().map(|own| own.direction));
+            for (k, PointRow { direction, row, .. }) in point.along().enumerate() {
+                let own = if same {
+                    self.traces(before[k].row - starts[0]).into()
+                } else {
+                    // where it is, less what it had given way elastically along the directions that it had
+                    let mut own = [self.way(new, point, direction)?; 2];
+                    for PointRow {
+                        direction: known, row, ..
+                    } in &before
+                    {
+                        let (way, (last, older)) = (self.way(new, point, *known)?, self.traces(row - starts[0]));
+                        let along = dot(&direction, known);
+                        own = [own[0] - along * (way - last), own[1] - along * (way - older)];
                     }
+                    own
                 };
-                traces[0][row - starts[1]] = last;
-                traces[1][row - starts[1]] = older;
+                (0..2).for_each(|k| traces[k][row - starts[1]] = own[k]);
             }
         }
         self.trace = traces;
@@ -131,15 +138,14 @@ fn hashed_rows(gluing: &Gluing) -> Vec<(u64, usize)> {
     hashed
 }
 
-/// For each point of one model the point of another that has the same contact, sides and directions.
+/// For each point of one model the point of another that has the same contact, sides and normal.
 fn same_points(old: &Model, new: &Model) -> Vec<Option<usize>> {
     let mut known: HashMap<(usize, u32), Vec<usize>> = HashMap::new();
     for (k, point) in old.points.iter().enumerate() {
         known.entry((point.surface(), point.node())).or_default().push(k);
     }
     let same = |a: &ConstrainedPoint, b: &ConstrainedPoint| {
-        let directions = |p: &ConstrainedPoint| p.rows().map(|own| own.direction).collect::<Vec<_>>();
-        a.contact.sides == b.contact.sides && directions(a) == directions(b)
+        a.contact.sides == b.contact.sides && a.frame().normal == b.frame().normal
     };
     let find = |point: &ConstrainedPoint| {
         let mut others = known.get(&(point.surface(), point.node())).into_iter().flatten();

@@ -107,6 +107,7 @@ fn point(point: &ConstrainedPoint) -> impl Iterator<Item = u64> {
     nodes
         .flat_map(|(node, weight)| [u64::from(node), number(weight)])
         .chain(numbers.chain([point.area()]).map(number))
+        .chain([point.along().count() as u64])
         .chain(turns.flatten().flatten().copied().map(number))
 }
 

@@ -221,3 +221,46 @@ fn contacts_of_one_flat_side_do_not_cross() {
         assert_close(&on_blocks(order), &reference, 1e-6, &format!("{order:?}"));
     }
 }
+
+/// One block is tied on the left half of a base, another one lies on its right half: it rests on the seam, too,
+/// whichever side is named first.
+#[test]
+fn a_bond_leaves_what_touches_another_body() {
+    let base = block([2.0, 1.0, 1.0], [2, 1, 1]);
+    let (left, right) = (FacetTag(61), FacetTag(62));
+    let facets: Vec<Facet> = base
+        .facets()
+        .iter()
+        .map(|facet| {
+            let middle = facet.nodes.iter().map(|n| base.points()[*n as usize][0]).sum::<f64>() / 3.0;
+            let side = if middle < 1.0 { left } else { right };
+            let tag = if facet.tag == brick::Z_MAX { side } else { facet.tag };
+            Facet { tag, ..*facet }
+        })
+        .collect();
+    let base = TetMesh::new(base.points().to_vec(), base.tets().to_vec(), facets).expect("base");
+    let placed = |x: f64, tags: u32| {
+        let cube = block([1.0; 3], [1; 3])
+            .map_points(|[a, b, c]| [a + x, b, c + 1.0])
+            .expect("cube");
+        cube.map_tags(|tag| FacetTag(tag.0 + tags))
+    };
+    let mesh = base
+        .append(&placed(0.0, 100))
+        .and_then(|m| m.append(&placed(1.0, 200)))
+        .expect("three");
+    let third = |tag: FacetTag| FacetTag(tag.0 + 200);
+    for swap in [false, true] {
+        let [a, b] = if swap { [third(brick::Z_MIN), right] } else { [right, third(brick::Z_MIN)] };
+        let scene = Scene::new(mesh.clone(), uniform(1e9, 0.0))
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_support(Support::components(third(brick::Y_MIN), [false, true, false]))
+            .with_support(Support::components(third(brick::X_MAX), [true, false, false]))
+            .with_contact(Contact::tied(left, second(brick::Z_MIN)))
+            .with_contact(Contact::between(a, b))
+            .with_load(Load::force(third(brick::Z_MAX), [0.0, 0.0, -1.0]));
+        let found = solve(scene, Settings::default());
+        assert_eq!(found.summary.active, 4, "{swap}");
+        assert!((found.summary.normal_force - 1.0).abs() < 1e-6);
+    }
+}

@@ -189,3 +189,14 @@ fn warm_bodies_that_nothing_holds_rest() {
         assert!(largest(&result.stress()) < 1e-9 * YOUNG * WARM);
     }
 }
+
+/// None at all were taken for a factor of one at each node.
+#[test]
+fn no_factors_are_a_wrong_number_of_them() {
+    let warm = Load::eigenstrain(Eigenstrain::expansion(1e-5).with_factors(Vec::new()));
+    let scene = Scene::new(crate::common::block([1.0; 3], [1; 3]), steel())
+        .with_support(Support::fixed(brick::Z_MIN))
+        .with_load(warm);
+    let text = refused(&scene).to_string();
+    assert!(text.contains("0 factors for 8 nodes"), "{text}");
+}

@@ -109,3 +109,23 @@ fn slip_bounds_are_checked_before_any_step() {
         assert!(error.to_string().contains("the slip bound is -1; it must"), "{error}");
     }
 }
+
+/// A block that rides 0.1 m, and is pressed by half a millionth of that: it was said to stand apart, without a force.
+#[test]
+fn a_long_ride_hides_no_light_touch() {
+    for over in [5e-8, 2e-7] {
+        let scene = Scene::new(block([1.0; 3], [2; 3]), uniform(2e11, 0.0))
+            .with_support(
+                Support::components(brick::X_MIN, [true, false, false]).with_motion([0.1 + over, 0.0, 0.0], ramp()),
+            )
+            .with_support(Support::components(brick::Z_MIN, [false, false, true]))
+            .with_contact(Contact::rigid(brick::X_MAX).with_gap(0.1))
+            .with_analysis(Analysis::quasistatic(1.0, 1));
+        let force = solve(scene, Settings::default()).summary.normal_force;
+        let expected = 2e11 * over;
+        assert!(
+            (force / expected - 1.0).abs() < 1e-3,
+            "{over:e}: {force:e} for {expected:e}"
+        );
+    }
+}

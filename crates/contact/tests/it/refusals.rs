@@ -393,3 +393,31 @@ fn motions_that_a_support_does_not_hold_are_refused() {
         Plan::new(&scene(support), &Settings::default()).expect("accepted");
     }
 }
+
+#[test]
+fn what_would_do_nothing_is_refused() {
+    let text = |scene: Scene| refused(&scene).to_string();
+    let held = || Scene::new(two_blocks(), steel()).with_support(Support::fixed(brick::Z_MIN));
+    let plane = Contact::half_space(second(brick::Z_MIN), [0.0; 3], [0.0, 0.0, 1.0]).with_partner(brick::Z_MAX);
+    assert!(matches!(
+        refused(&held().with_contact(plane)),
+        ContactError::MovedPartner { contact: 0 }
+    ));
+    let nothing = Support::partial(brick::Z_MAX, Directions::Nothing).with_motion([1e-3, 0.0, 0.0], ramp());
+    assert!(matches!(
+        refused(&held().with_support(nothing)),
+        ContactError::MotionNotHeld { support: 1, .. }
+    ));
+    let none = Contact::rigid(brick::Z_MAX).with_gap(0.0).with_gap_history(ramp());
+    assert!(text(held().with_contact(none)).contains("with_gap_history"));
+    for gamma in [-0.5, -0.51] {
+        let formula = DifferenceFormula::new(1.0 + gamma, -1.0 - 2.0 * gamma, gamma);
+        assert_eq!(formula.is_ok(), gamma >= -0.5, "{gamma}");
+    }
+}
+
+/// Two cubes on one another.
+fn two_blocks() -> TetMesh {
+    let cube = block([1.0; 3], [1; 3]);
+    with_second(&cube, &lifted(&cube, 1.0))
+}

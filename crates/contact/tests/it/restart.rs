@@ -409,3 +409,22 @@ fn a_longer_analysis_goes_on_from_the_last_state() {
         }
     }
 }
+
+/// Friction that is elsewhere is another scene, also with as many points and rows.
+#[test]
+fn friction_of_another_contact_is_refused() {
+    let scene = |below: bool| {
+        let rough =
+            |contact: Contact, on: bool| if on { contact.with_friction(Friction::coulomb(0.3)) } else { contact };
+        Scene::new(block([1.0; 3], [2; 3]), steel())
+            .with_support(Support::fixed(brick::X_MIN))
+            .with_load(Load::traction(brick::X_MAX, [1e6, 0.0, -1e6]))
+            .with_contact(rough(Contact::rigid(brick::Z_MIN), below))
+            .with_contact(rough(Contact::rigid(brick::Z_MAX), !below))
+            .with_analysis(Analysis::quasistatic(2.0, 2))
+    };
+    let mut one = Simulation::new(scene(true), Settings::default()).expect("set-up");
+    step(&mut one);
+    let mut other = Simulation::new(scene(false), Settings::default()).expect("set-up");
+    assert!(text(other.resume(one.state().clone())).contains("contact points"));
+}

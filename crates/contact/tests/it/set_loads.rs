@@ -194,18 +194,12 @@ fn other_loads_have_no_names() {
 fn loads_of_every_step_are_known_to_change() {
     let scene = scene(true, true);
     let pressure = |step: usize| 1e6 * (1.0 + step as f64);
-    let told: Vec<(f64, f64)> = (0..6).map(|k| (0.2 * k as f64, pressure(k.max(1) - 1))).collect();
-    let history = History::table(told).expect("table");
-    let whole = scene
-        .clone()
-        .with_load(Load::pressure(brick::Z_MAX, 1.0).with_history(history));
     let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
-    for (k, expected) in run(whole, Settings::default()).1.iter().enumerate() {
+    for k in 0..5 {
         simulation
             .set_loads(vec![Load::pressure(brick::Z_MAX, pressure(k))])
             .expect("loads");
-        let report = simulation.step().expect("step").report().clone();
-        let (found, expected) = (report.counters, expected.report.counters);
+        let found = simulation.step().expect("step").report().counters;
         // the first two tell how loads grow
         assert!(k < 2 || found.products <= 3, "step {k}: {}", found.products);
     }

@@ -401,3 +401,19 @@ fn soft_springs_count_beside_stiff_ones() {
     assert!((mean(&near) / 1e-3 - 1.0).abs() < 1e-2, "{}", mean(&near));
     assert!((mean(&far) / mean(&near) - 1.0).abs() < 1e-6, "{}", mean(&far));
 }
+
+/// What springs pull is no reaction of supports.
+#[test]
+fn fields_of_reactions_have_no_springs() {
+    let scene = block_on_springs(1.0).with_support(Support::components(vec![0, 1], [true, false, false]));
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+    let result = simulation.step().expect("step");
+    let mut at_supports = vec![[0.0; 3]; result.displacement().len()];
+    for support in &result.reactions().supports {
+        for node in &support.nodes {
+            (0..3).for_each(|c| at_supports[node.node as usize][c] += node.force[c]);
+        }
+    }
+    let size = norm(at_supports.as_flattened());
+    assert!(size > 0.0 && distance(result.reaction_field().as_flattened(), at_supports.as_flattened()) < 1e-9);
+}

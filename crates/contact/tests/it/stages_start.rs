@@ -351,3 +351,68 @@ fn supports_that_start_under_a_constant_load_move_nothing() {
         assert!(reaction < 10.0, "{reaction:e}");
     }
 }
+
+/// A step is repeated with loads that only its stage holds, as coupled programs do: steps before it are solved, and
+/// were judged again with these loads.
+#[test]
+fn a_stage_is_entered_again_with_its_own_loads() {
+    let scene = Scene::new(block([1.0; 3], [2; 3]), steel())
+        .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3)))
+        .with_support(Support::fixed(brick::X_MAX).with_start(1.0))
+        .with_load(Load::pressure(brick::Z_MAX, 1e6))
+        .with_analysis(Analysis::quasistatic(3.0, 3));
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+    let _ = step(&mut simulation);
+    let before = simulation.state().clone();
+    let loads = || {
+        vec![
+            Load::pressure(brick::Z_MAX, 1e6),
+            Load::force(brick::X_MIN, [-1e6, 0.0, 0.0]),
+        ]
+    };
+    simulation.set_loads(loads()).expect("loads");
+    let first = step(&mut simulation);
+    simulation.resume(before).expect("the same step");
+    assert_eq!(step(&mut simulation).displacement, first.displacement);
+}
+
+/// A warning of one stage alone is not taken for one of the whole run where that is resumed in another.
+#[test]
+fn a_resumed_run_has_the_warnings_of_all_stages() {
+    let scene = || {
+        Scene::new(block([1.0; 3], [2; 3]), steel())
+            .with_support(Support::fixed(brick::Z_MAX))
+            .with_contact(Contact::rigid(brick::Z_MIN).with_gap(-1e-5).with_end(1.0))
+            .with_analysis(Analysis::quasistatic(3.0, 3))
+    };
+    let set_up = || Simulation::new(scene(), Settings::default()).expect("set-up");
+    let mut simulation = set_up();
+    let known = simulation.plan().warnings().to_vec();
+    (0..2).for_each(|_| _ = step(&mut simulation));
+    let mut resumed = set_up();
+    resumed.resume(simulation.state().clone()).expect("its state");
+    assert_eq!(resumed.plan().warnings(), known);
+}
+
+/// Friction that is stored in elastic slip stays where a support takes away, or gives back, a direction across it.
+#[test]
+fn elastic_slip_stays_where_supports_start_and_end() {
+    // one that ends takes its own forces with it
+    for (side, within) in [(Support::with_start as fn(_, _) -> _, 1e-6), (Support::with_end, 0.05)] {
+        let across = side(Support::components(brick::Z_MIN, [false, true, false]), 1.0);
+        let scene = Scene::new(block([1.0; 3], [2; 3]), uniform(1e9, 0.0))
+            .with_contact(
+                Contact::rigid(brick::Z_MIN)
+                    .with_friction(Friction::coulomb(0.5))
+                    .with_tangential_compliance(1e-9),
+            )
+            .with_support(Support::components(brick::Y_MIN, [false, true, false]))
+            .with_support(across)
+            .with_load(Load::force(brick::Z_MAX, [2e5, 0.0, -1e6]))
+            .with_analysis(Analysis::quasistatic(3.0, 3));
+        let (_, results) = run(scene, at(1e-9));
+        for later in &results[1..] {
+            assert_close(&later.displacement, &results[0].displacement, within, "at rest");
+        }
+    }
+}

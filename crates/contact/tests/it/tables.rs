@@ -136,3 +136,64 @@ fn a_quadratic_block_over_the_edge_of_a_table_lies_on_what_is_below() {
         }
     }
 }
+
+/// A side that a floor runs along is no side that it holds: the distance to the floor counted along the floor.
+#[test]
+fn a_floor_does_not_hold_the_sides_of_a_body() {
+    let bottom = |tags: &[FacetTag]| {
+        let floor = Contact::half_space(brick::Z_MIN, [0.0; 3], [0.0, 0.0, 1.0]);
+        let floor = tags.iter().fold(floor, |floor, tag| floor.with_tag(*tag));
+        let scene = Scene::new(block([1.0; 3], [2; 3]), uniform(1e6, 0.3))
+            .with_support(Support::components(brick::X_MIN, [true, false, false]))
+            .with_support(Support::components(brick::Y_MIN, [false, true, false]))
+            .with_load(Load::pressure(brick::Z_MAX, 1e4))
+            .with_contact(floor.with_body_normals());
+        solve(scene, at(1e-9)).displacement
+    };
+    assert_close(&bottom(&[brick::X_MAX]), &bottom(&[]), 1e-7, "free to grow");
+}
+
+/// Hexagons have their edges at the default angle of a crease, however they lie.
+#[test]
+fn hexagons_have_six_creases() {
+    for turn in [0.0_f64, 0.2, 0.3, 0.7] {
+        let corner = |k: usize| {
+            let angle = turn + std::f64::consts::PI * k as f64 / 3.0;
+            [angle.cos(), angle.sin()]
+        };
+        // a prism of six wedges around its axis
+        let mut points = vec![[0.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
+        for k in 0..6 {
+            let [x, y] = corner(k);
+            points.extend([[x, y, 0.0], [x, y, 1.0]]);
+        }
+        let (mut tets, mut facets) = (Vec::new(), Vec::new());
+        for k in 0..6_u32 {
+            let [a, b] = [2 + 2 * k, 2 + 2 * ((k + 1) % 6)];
+            tets.extend([[0, a, b, 1], [a, b, 1, b + 1], [a, b + 1, 1, a + 1]]);
+            let side = |nodes: [u32; 3]| Facet {
+                nodes,
+                tag: FacetTag(5),
+            };
+            facets.extend([side([a, b, b + 1]), side([a, b + 1, a + 1])]);
+        }
+        for tet in &mut tets {
+            let at = |k: usize| points[tet[k] as usize];
+            let [p, q, r, s] = [at(0), at(1), at(2), at(3)];
+            let d = |a: [f64; 3]| [a[0] - p[0], a[1] - p[1], a[2] - p[2]];
+            let [q, r, s] = [d(q), d(r), d(s)];
+            let volume = q[0] * (r[1] * s[2] - r[2] * s[1]) - q[1] * (r[0] * s[2] - r[2] * s[0])
+                + q[2] * (r[0] * s[1] - r[1] * s[0]);
+            if volume < 0.0 {
+                tet.swap(2, 3);
+            }
+        }
+        let mesh = TetMesh::new(points, tets, facets).expect("a prism");
+        let scene = Scene::new(mesh, uniform(1e6, 0.3))
+            .with_support(Support::fixed(vec![0, 1]))
+            .with_contact(Contact::rigid(FacetTag(5)).with_gap(0.1));
+        let simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        // two at each of the twelve nodes
+        assert_eq!(simulation.constrained_points().len(), 24, "turned by {turn}");
+    }
+}

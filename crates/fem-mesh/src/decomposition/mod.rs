@@ -1,7 +1,7 @@
 //! Subdomains of a mesh, and the copies of each node in them.
 //!
 //! `subdomains` is the decomposition; `boxes` cuts it by a grid, `parts` takes the part numbers of a partitioner,
-//! `compact` makes ragged parts compact, `cracks` joins what a cut leaves hanging, and `even` makes parts for a mesh
+//! `compact` makes ragged parts compact, `cracks` splits those on both sides of one, and `even` makes parts for a mesh
 //! without any, along the axes of `frame` where bodies lie obliquely.
 //!
 //! Uses: `mesh`, `tables`, `vec3`. In: a mesh, and a grid or part numbers. Out: subdomains connected through faces.

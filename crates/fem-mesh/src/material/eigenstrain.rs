@@ -19,7 +19,7 @@ use super::hooke::Hooke;
 pub struct Eigenstrain {
     pub(crate) strain: [f64; 6],
     pub(crate) region: Option<u32>,
-    pub(crate) factors: Vec<f64>,
+    pub(crate) factors: Option<Vec<f64>>,
 }
 
 impl Eigenstrain {
@@ -28,7 +28,7 @@ impl Eigenstrain {
         Self {
             strain,
             region: None,
-            factors: Vec::new(),
+            factors: None,
         }
     }
 
@@ -46,7 +46,7 @@ impl Eigenstrain {
     /// Multiplies it by a factor for each node of the mesh, linear between the corners of a tetrahedron: temperature
     /// rises, if the strain is that of one kelvin.
     pub fn with_factors(mut self, factors: Vec<f64>) -> Self {
-        self.factors = factors;
+        self.factors = Some(factors);
         self
     }
 
@@ -67,10 +67,10 @@ impl Eigenstrain {
     }
 
     fn factor(&self, corners: &[u32; 4], l: &[f64; 4]) -> f64 {
-        if self.factors.is_empty() {
+        let Some(factors) = &self.factors else {
             return 1.0;
-        }
-        let of = |node: u32| self.factors.get(node as usize).copied().unwrap_or(f64::NAN);
+        };
+        let of = |node: u32| factors.get(node as usize).copied().unwrap_or(f64::NAN);
         corners.iter().zip(l).map(|(&node, l)| l * of(node)).sum()
     }
 }

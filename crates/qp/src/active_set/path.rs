@@ -15,21 +15,6 @@ use super::iterate::Lengths;
 use super::run::{Place, Progress, Run};
 use super::view::ActiveSetPreconditioner;
 
-/// What a solve remembers of its path.
-#[derive(Debug, Default)]
-pub(crate) struct Path {
-    /// Whether the start told nothing of the constrained components.
-    pub(crate) unknown: bool,
-    /// Times that a path was begun.
-    pub(crate) begun: i32,
-    /// Active sets when the compliance was changed.
-    pub(crate) since: usize,
-    /// Estimated error on the first active set that was not solved when it was entered.
-    pub(crate) first: Option<f64>,
-    /// Sets in a row whose error was well above that.
-    pub(crate) away: usize,
-}
-
 impl<A: SymmetricOperator, C: EqualityProjector, M: ActiveSetPreconditioner> Run<'_, A, C, M> {
     /// Whether predictions run in circles, or away from a start that told nothing, and a path is to be tried.
     pub(crate) fn wants_path(&mut self, place: &Place) -> bool {

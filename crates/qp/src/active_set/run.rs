@@ -15,7 +15,6 @@ use super::blocks::ActiveSet;
 use super::cg::Goal;
 use super::compliance::Compliance;
 use super::iterate::{Iterate, Lengths, Wanted, natural_map};
-use super::path::Path;
 use super::problem::{ActiveSetPoint, ActiveSetProblem};
 use super::settings::{ActiveSetReport, ActiveSetSettings};
 use super::view::{ActiveSetPreconditioner, ActiveSetView};
@@ -68,6 +67,21 @@ impl Progress {
         best: f64::INFINITY,
         waited: 0,
     };
+}
+
+/// What a solve remembers of its path.
+#[derive(Debug, Default)]
+pub(crate) struct Path {
+    /// Whether the start told nothing of the constrained components.
+    pub(crate) unknown: bool,
+    /// Times that a path was begun.
+    pub(crate) begun: i32,
+    /// Active sets when the compliance was changed.
+    pub(crate) since: usize,
+    /// Estimated error on the first active set that was not solved when it was entered.
+    pub(crate) first: Option<f64>,
+    /// Sets in a row whose error was well above that.
+    pub(crate) away: usize,
 }
 
 /// One solve: the iterate, and what it remembers of earlier active sets.
