@@ -409,7 +409,8 @@ pub(crate) const LARGE_TURN: f64 = 0.05;
 /// Strain from which on it is not small: what is left out is its square, 0.25 %, and more where bodies turn.
 pub(crate) const LARGE_STRAIN: f64 = 0.05;
 
-/// Slip of a step over the longest edge of the facets at the node from which on the point is past them.
+/// Slip of a step, between bodies of all, over the longest edge of the facets at the node from which on the point is
+/// past them.
 pub(crate) const LONG_SLIP: f64 = 1.0;
 
 /// Part of what loads do along a motion, over what they do along all of the body, below which it does not matter; and of

@@ -43,8 +43,8 @@ signorini_fem_mesh::errors! {
             not to be trusted", told(place), 100.0 * strain;
         LongSlip { step: usize, contact: usize, node: u32, place: [f64; 3], slip: f64, edge: f64 } =
             "step {step}: node {node} of contact {contact} at {} slides by {slip:.3e}, its facets are {edge:.3e} long; \
-            it keeps the normal and the partner that it began with: take smaller steps, and where the other side is not \
-            plane a shorter way", told(place);
+            it keeps the normal and the partner that it began with: take smaller steps along an obstacle, and begin with bodies \
+            nearer to where they slide", told(place);
         EdgeOverlap { step: usize, contact: usize, node: u32, place: [f64; 3], overlap: f64, largest: f64 } =
             "step {step}: the sides of contact {contact} are {overlap:.3e} inside each other at node {node}, {}, where \
             another contact has a condition and this one, between meshes that do not match, has none (displacements are up \

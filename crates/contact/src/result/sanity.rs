@@ -205,7 +205,8 @@ fn long_slip(model: &Model, lengths: &Lengths, recovered: &Recovered, step: usiz
     let touching = touching.filter(|p| !is_shaped(model, p.surface));
     let ways = touching.filter_map(|p| {
         let edge = lengths.edges[p.surface][model.discrete.surfaces[p.surface].local(p.node)?];
-        let slip = norm(&p.difference);
+        // a partner stays the same one, however many steps there are
+        let slip = norm(if p.partner.is_some() { &p.tangential_displacement } else { &p.difference });
         Some(((p, slip, edge), slip / edge))
     });
     let ((point, slip, edge), part) = worst(ways)?;

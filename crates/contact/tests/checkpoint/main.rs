@@ -172,6 +172,16 @@ fn a_run_in_a_folder_goes_on_with_the_same_bits() {
     }
 }
 
+/// An empty folder says that nothing is solved, whatever a simulation has solved: it went on from where it stood.
+#[test]
+fn an_empty_folder_begins_anew() {
+    let (folder, mut used) = (Folder::new("anew"), rough());
+    (0..2).for_each(|_| _ = used.step().expect("step"));
+    let report = used.run_or_resume(&folder.0, 1, &mut Silent).expect("run");
+    assert_eq!(report.steps, 4);
+    assert_same_end(&used);
+}
+
 /// Two ranks store what one process reads, and the other way round; ranks that see different folders are told.
 #[test]
 fn checkpoints_of_several_ranks_are_those_of_one_process() {

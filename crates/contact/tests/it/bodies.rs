@@ -364,3 +364,24 @@ fn a_shim_that_slides_on_both_sides_has_no_place() {
         }
     }
 }
+
+/// A block that is drawn over another one keeps its partners in four steps as in one: more steps alone silenced that.
+#[test]
+fn slips_past_the_facets_of_a_partner_are_named_in_any_number_of_steps() {
+    let scene = |way: f64, steps| {
+        let cube = block([1.0; 3], [2; 3]);
+        Scene::new(with_second(&cube, &lifted(&cube, 1.0)), uniform(1e9, 0.3))
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_support(Support::fixed(second(brick::Z_MAX)).with_motion([way, 0.0, -1e-3], ramp()))
+            .with_contact(Contact::between(second(brick::Z_MIN), brick::Z_MAX).with_friction(Friction::coulomb(0.2)))
+            .with_analysis(Analysis::quasistatic(1.0, steps))
+    };
+    for (way, long) in [(0.8, true), (0.3, false)] {
+        for steps in [1, 4] {
+            let mut simulation = Simulation::new(scene(way, steps), Settings::default()).expect("set-up");
+            let report = simulation.run(&mut Silent).expect("run");
+            let found = report.warnings().iter().any(|w| matches!(w, Warning::LongSlip { .. }));
+            assert_eq!(found, long, "{way} in {steps} steps");
+        }
+    }
+}
