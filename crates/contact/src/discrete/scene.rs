@@ -81,7 +81,7 @@ impl DiscreteScene {
         let mut conditions = conditions(scene, (&paired, &poses), rounding)?;
         let ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
         if !ties.is_empty() {
-            leave_bonded(scene, &ties, &mut conditions);
+            leave_bonded(scene, &decomposition, &ties, &mut conditions);
         }
         let faceted = close_faceted(scene, &paired, &mut conditions, rounding)?;
         let handed_on = handed_on(&paired);

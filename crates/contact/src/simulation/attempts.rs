@@ -128,6 +128,7 @@ impl Simulation {
                 && let Some(left) = self.without_forces(state, told, &mut report)?
             {
                 report.status = StepStatus::Converged;
+                self.judge_again(&mut report, &left)?;
                 return Ok((report, left));
             }
         }

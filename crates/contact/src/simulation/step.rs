@@ -88,15 +88,18 @@ impl Simulation {
         Arc::make_mut(&mut self.problem).prepare(&self.model, state, increment, 0.0)?;
         let attempts = self.attempts(state, increment);
         let (tried, unloaded, told) = self.unload(state, way, attempts[0])?;
-        let (mut report, recovered) = match unloaded {
-            Some(recovered) => (tried, recovered),
+        let (mut report, recovered, replaced) = match unloaded {
+            Some(recovered) => (tried, recovered, true),
             None => {
                 let (report, recovered) = self.attempt(attempts, state, way, (tried, told.as_ref()))?;
-                (report, self.stand(state, recovered, told.unwrap_or_default())?)
+                let certificate = recovered.certificate;
+                let stands = self.stand(state, recovered, told.unwrap_or_default())?;
+                let replaced = stands.certificate != certificate;
+                (report, stands, replaced)
             }
         };
         // bodies that stand elsewhere now
-        if self.model.plan.effects.history && !self.model.loose_motions()?.is_empty() {
+        if replaced {
             self.judge_again(&mut report, &recovered)?;
         }
         let by_tolerance = self.settings.accuracy == Accuracy::Tolerance;

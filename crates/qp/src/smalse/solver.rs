@@ -226,11 +226,12 @@ impl<A: SymmetricOperator, C: Equality, S: ConvexSet + ?Sized> Run<'_, A, C, S> 
 
     /// The hook; if it changed the set, `x` is projected on it, and `v.p` keeps it as it was.
     fn call_hook(&mut self) -> Result<bool, QpError> {
-        let changed = self.hook.as_mut().is_some_and(|hook| hook(self.x, self.set));
-        if self.hook.is_some() {
-            self.set.validate()?;
-            expect_length("the set after the hook", self.set.dim(), self.x.len())?;
-        }
+        let Some(hook) = &mut self.hook else {
+            return Ok(false);
+        };
+        let changed = hook(self.x, self.set);
+        self.set.validate()?;
+        expect_length("the set after the hook", self.set.dim(), self.x.len())?;
         if changed {
             vector::copy(self.x, &mut self.v.p);
             self.set.project(self.x);
