@@ -111,6 +111,8 @@ pub(crate) struct Increment {
     pub(crate) end: f64,
     /// Its length, s; `None` in a static scene.
     pub(crate) length: Option<f64>,
+    /// A step's length over that of the step before; 1 for the first one.
+    pub(crate) ratio: f64,
     /// The difference formula; `None` in a static scene.
     pub(crate) formula: Option<DifferenceFormula>,
 }
@@ -197,12 +199,17 @@ impl Analysis {
     pub(crate) fn increment(&self, step: usize) -> Option<Increment> {
         let end = self.time(step)?;
         let start = step.checked_sub(1).and_then(|before| self.time(before));
+        let before = step.checked_sub(2).and_then(|before| self.time(before));
         let formula = self.formula();
+        let length = end - start.unwrap_or(0.0);
+        let ratio = start.map_or(1.0, |start| length / (start - before.unwrap_or(0.0)));
         Some(Increment {
             index: step,
             start,
             end,
-            length: formula.map(|_| end - start.unwrap_or(0.0)),
+            length: formula.map(|_| length),
+            // of equal steps, rounding apart
+            ratio: if (ratio - 1.0).abs() > UNEQUAL { ratio } else { 1.0 },
             formula,
         })
     }

@@ -56,7 +56,8 @@ impl Way {
     /// Its length over that of the one before; 1 from rest.
     pub(super) fn ratio(&self) -> f64 {
         let power = |halved: u32| 0.5_f64.powi(halved as i32);
-        self.last.map_or(1.0, |last| power(self.halved) / power(last))
+        let whole = if self.passed == 0 { self.whole.ratio } else { 1.0 };
+        self.last.map_or(1.0, |last| whole * power(self.halved) / power(last))
     }
 
     /// How often it is halved.
@@ -173,7 +174,7 @@ impl Before {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::Analysis;
+    use crate::{Analysis, DifferenceFormula};
 
     /// Ends of the increments of a step of length 1, failing where `fails` says so.
     fn walk(most: u32, last: Option<u32>, fails: impl Fn(f64, f64) -> bool) -> (Vec<f64>, Way) {
@@ -223,5 +224,17 @@ mod tests {
         }
         assert_eq!(ratios, [2.0, 1.0]);
         assert_eq!(Way::new(whole, 2, None).ratio(), 1.0);
+        // of unequal steps the first increment only
+        let (times, formula) = (vec![0.5, 1.0, 1.125], DifferenceFormula::BACKWARD_EULER);
+        let unequal = Analysis::Quasistatic { times, formula };
+        let steps = (0..3).map(|step| unequal.increment(step).expect("a step"));
+        let ratios: Vec<f64> = steps.clone().map(|step| Way::new(step, 0, Some(0)).ratio()).collect();
+        assert_eq!(ratios, [1.0, 1.0, 0.25]);
+        let mut way = Way::new(steps.last().expect("three"), 1, Some(1));
+        assert_eq!((way.ratio(), way.increment().length), (0.5, Some(0.125)));
+        way = Way::new(way.whole, 1, Some(2));
+        let first = way.ratio();
+        way.pass();
+        assert_eq!([first, way.ratio()], [0.5, 1.0]);
     }
 }
