@@ -12,6 +12,7 @@ use crate::status::StepStatus;
 use crate::tolerances::{
     BALANCING, IMBALANCE_FALLS, INNER_FACTOR, INNER_LOOSEST, INNER_STALL, NEAR_BALANCE, SMALSE_SAFETY,
 };
+use signorini_qp::KprgpSettings;
 use signorini_qp::internal::Contraction;
 use signorini_qp::smalse::{SmalseReport, SmalseWorkspace};
 use signorini_qp::{
@@ -57,6 +58,11 @@ impl SmalseSolver {
         let (smalse, accuracy, one_loop) = match &settings.method {
             Method::OneLoop { smalse } => (*smalse, InnerAccuracy::Fixed, true),
             Method::SuccessiveApproximations { smalse, accuracy } => (*smalse, *accuracy, false),
+            // the limit of the fall-back is that of its only problem
+            Method::ActiveSet(_) if !is_coulomb(model) => {
+                let inner = KprgpSettings::default().with_max_products(usize::MAX);
+                (paper_smalse().with_inner(inner), InnerAccuracy::default(), false)
+            }
             Method::ActiveSet(_) => (paper_smalse(), InnerAccuracy::default(), false),
         };
         let factor = model.tfeti.coarse_factor()?;

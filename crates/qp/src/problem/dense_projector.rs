@@ -121,16 +121,15 @@ impl EqualityProjector for DenseProjector {
         }
         self.w = w.to_vec();
         let n = self.rows;
-        let mut largest = 0.0_f64;
         for i in 0..n {
             for j in 0..=i {
                 let products = self.row(i).iter().zip(self.row(j)).zip(w);
                 let value: f64 = products.map(|((a, b), w)| a * b * w).sum();
                 let known: f64 = (0..j).map(|k| self.factor[i * n + k] * self.factor[j * n + k]).sum();
                 if i == j {
-                    largest = largest.max(value);
                     let pivot = value - known;
-                    if pivot <= SINGULAR_PIVOT * largest {
+                    // beside its own square: rows may have different units
+                    if pivot <= SINGULAR_PIVOT * value {
                         self.w.clear();
                         return Err(deficient(i));
                     }

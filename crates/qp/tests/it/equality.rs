@@ -78,3 +78,19 @@ fn a_load_in_the_equality_is_solved_at_once() {
     assert!(solved.report.status.converged() && solved.report.products() <= 2);
     assert!(vector::norm(&solved.x) < 1e-13);
 }
+
+/// Rows of different units, as balances of forces and of moments are, in any order.
+#[test]
+fn rows_of_any_size_are_independent() {
+    for [first, second] in [[1e7, 1.0], [1.0, 1e7]] {
+        let mut projector = DenseProjector::new(2, 2, vec![first, 0.0, 0.0, second]).expect("rows");
+        let mut x = [1.0, 2.0];
+        signorini_qp::EqualityProjector::project(&mut projector, &mut x);
+        assert_eq!(x, [0.0; 2]);
+    }
+    let same = DenseProjector::new(2, 2, vec![1.0, 1.0, 1e7, 1e7]).err();
+    assert!(
+        matches!(same, Some(signorini_qp::QpError::CoarseDeficient { .. })),
+        "{same:?}"
+    );
+}
