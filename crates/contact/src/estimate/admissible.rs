@@ -241,7 +241,8 @@ impl Correction {
         if conditions.along().is_empty() {
             return moved;
         }
-        let k = of_row(1);
+        // across the axis of friction a row of length l gives way l² times as far
+        let k = of_row(1) / node.stretch[1].powi(2).max(1.0);
         let value = node.value(v);
         let mut start = [0.0; 2];
         for (j, (own, offset)) in conditions.along().iter().enumerate() {

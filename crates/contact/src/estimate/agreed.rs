@@ -60,8 +60,8 @@ impl Caches {
         let Some(shared) = &weights.shared else {
             return rows.into();
         };
-        let missing = tied.map(|row| offset[row] - rows[row]).collect();
-        let change = shared.change_of_ties(missing);
+        let missing: Vec<f64> = tied.clone().map(|row| offset[row] - rows[row]).collect();
+        let change = shared.change_of_ties(tied.start, &missing);
         let mut out = rows.to_vec();
         for row in model.tangential_rows() {
             out[row] += model

@@ -98,7 +98,6 @@ impl SharedNodes {
         let dragging = dragging(model, &rows);
         is_scarce |= !dragging.is_empty();
         fixed.extend(dragging);
-        rows.extend(fixed.iter().map(|&number| row(number, 1.0)));
         let mut stiffness = stiffness();
         sprung.stiffness().for_each(|(node, k)| stiffness[node as usize] += k);
         // couplings stay as they are
@@ -112,6 +111,9 @@ impl SharedNodes {
             }
         }
         let square = |row: &Row| row.iter().map(|&(at, v)| v * v * compliance[at]).sum::<f64>();
+        // those of coupled nodes alone move nothing
+        fixed.retain(|&number| square(&row(number, 1.0)) > 0.0);
+        rows.extend(fixed.iter().map(|&number| row(number, 1.0)));
         let inverse = Diagonal::new(rows.iter().map(square).map(f64::recip).collect()).ok()?;
         Some(Self {
             rows,
@@ -215,13 +217,13 @@ impl SharedNodes {
         solved.ok().map(drop)
     }
 
-    /// The smallest change of a displacement by which rows of ties grow by so much.
-    pub(super) fn change_of_ties(&self, growth: Vec<f64>) -> Vec<f64> {
+    /// The smallest change of a displacement by which rows of ties grow by so much, of those from the `first` on.
+    pub(super) fn change_of_ties(&self, first: usize, growth: &[f64]) -> Vec<f64> {
         let mut change = vec![0.0; self.compliance.len()];
         let points = self.rows.len() - self.fixed.len();
         let mut targets = vec![Target::Any; points];
-        targets.extend(growth.into_iter().map(Target::At));
-        targets.resize(self.rows.len(), Target::At(0.0));
+        let growth = |row: &usize| row.checked_sub(first).and_then(|tie| growth.get(tie)).copied();
+        targets.extend(self.fixed.iter().map(|row| Target::At(growth(row).unwrap_or(0.0))));
         self.reach_all(&targets, &mut change);
         change
     }

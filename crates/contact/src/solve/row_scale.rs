@@ -10,6 +10,12 @@ pub(super) fn row_scale(model: &Model, rows: usize) -> Vec<f64> {
     let contact = model.contact_rows().end;
     let mut scale = vec![0.0; rows];
     model.tfeti.row_stiffness(0..contact, &mut scale[..contact]);
+    // a row of length l moves l times as far and takes l times the force: of `b K bᵀ` its step needs the part l⁻⁴
+    for point in model.points.iter().filter(|point| point.stretch[1] != 1.0) {
+        if let Some((row, 2, _)) = point.tangential_rows() {
+            scale[row + 1] /= point.stretch[1].powi(4);
+        }
+    }
     let mut compliance = vec![0.0; contact];
     model.tfeti.row_compliance(0..contact, &mut compliance);
     let flat = || scale.iter().zip(&compliance).any(|(k, c)| k * c > STIFF_ROWS);

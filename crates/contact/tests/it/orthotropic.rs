@@ -201,6 +201,12 @@ fn an_ellipse_has_two_axes() {
         let [a, b] = [a, b].map(|r| r.summary.friction_work);
         assert!((a - b).abs() <= 1e-6 * a.abs().max(1e-9), "{a} {b}");
     }
+    // nor does it take more to find
+    let products = |floor: Contact| run(pulled(floor, 4), Settings::default()).0.counters().products;
+    let one = products(floor(0.05, [1.0, 0.5, 0.0], 10.0));
+    let other = products(floor(0.5, [-0.5, 1.0, 0.0], 0.1));
+    println!("{one}, {other} products");
+    assert!(other <= one + one / 4, "{one} {other}");
 }
 
 /// Where supports leave one direction of slip, friction along it is that of the ellipse's extent in this direction: the
