@@ -93,7 +93,7 @@ impl Estimate {
         }
     }
 
-    /// Bytes of everything but the vectors.
+    /// Bytes of inverses, coarse factor and tables.
     pub fn setup_bytes(&self) -> u64 {
         self.inverse_bytes + self.coarse_bytes + self.table_bytes
     }

@@ -106,7 +106,8 @@ impl Plan {
 
     /// Counts the vectors of other loads.
     pub(crate) fn set_loads(&mut self, [before, loads]: [usize; 2]) {
-        let of = |loads: usize| (8 * loads * self.primal) as u64;
+        let each = self.primal + self.dual() + self.coarse;
+        let of = |loads: usize| (8 * loads * each) as u64;
         self.vector_bytes = self.vector_bytes - of(before) + of(loads);
     }
 
@@ -202,7 +203,7 @@ impl Plan {
             gaps: points.iter().fold(None, gap),
             apart: discrete.apart.clone(),
             normal_rows: points.len(),
-            tangential_rows: points.iter().filter(rough).map(|p| free(p) - 1).sum(),
+            tangential_rows: points.iter().filter(rough).map(|p| free(p).saturating_sub(1)).sum(),
             // each copy of a node but one is glued
             interface_rows: 3 * (decomposition.torn_nodes().flatten().count() - nodes),
             dirichlet_rows: fixed.fixed().map(|held| held.directions.len()).sum::<usize>()
@@ -231,7 +232,9 @@ impl Plan {
             MethodKind::Linear | MethodKind::ActiveSet => 16,
             MethodKind::SuccessiveApproximations | MethodKind::OneLoop => 18,
         };
-        plan.vector_bytes = 8 * (vectors * plan.dual() + (1 + scene.loads.len()) * primal) as u64;
+        // displacements, and residuals that leave what subdomains do not agree on
+        plan.vector_bytes = 8 * (vectors * plan.dual() + 2 * primal) as u64;
+        plan.set_loads([0, scene.loads.len()]);
         let contact = plan.normal_rows + plan.tangential_rows;
         let formed = active_sets && settings.preconditioner != Preconditioner::None;
         if formed && may_be_formed(plan.dual(), contact, subdomains) {
@@ -278,13 +281,16 @@ fn row_groups(scene: &Scene, discrete: &DiscreteScene, points: &[&ContactPoint])
 /// Number of directions of a point that supports leave free: an estimate at nodes with one or two fixed directions; the
 /// set-up counts exactly.
 fn free_directions(point: &ContactPoint, supports: &Supports) -> usize {
-    let held = |(node, _): (u32, f64)| supports.merged.directions(node).len();
     let sides = &point.sides;
-    // a side of several nodes is held where a good part of it is
+    // a side of several nodes is held where a good part of it is, not from where a solve has left it
     let enough = sides.own.held_from();
     let of_side = |nodes: &[(u32, f64)]| {
+        let held = |node: u32| {
+            let directions = supports.merged.directions(node).iter();
+            directions.filter(|d| nodes.len() == 1 || !d.left).count()
+        };
         let part = |least: usize| {
-            let nodes = nodes.iter().filter(|n| held(**n) >= least);
+            let nodes = nodes.iter().filter(|n| held(n.0) >= least);
             nodes.map(|n| n.1).sum::<f64>()
         };
         (1..=3).rev().find(|&least| part(least) >= enough).unwrap_or(0)

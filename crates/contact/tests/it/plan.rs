@@ -30,6 +30,18 @@ fn the_plan_tells_the_range_of_the_gaps() {
     assert_eq!(none.gaps, None);
 }
 
+/// What the set-up refuses the plan does.
+#[test]
+fn the_plan_keeps_the_memory_limit() {
+    let settings = Settings::default().with_inverse(signorini_tfeti::InverseSettings::default().with_memory_limit(10));
+    let plan = Plan::new(&statics(Friction::None), &settings).expect_err("a limit");
+    let set_up = Simulation::new(statics(Friction::None), settings).expect_err("a limit");
+    assert!(
+        plan.to_string() == set_up.to_string() && plan.to_string().contains("memory"),
+        "{plan}"
+    );
+}
+
 #[test]
 fn the_plan_predicts_the_rows() {
     for scene in [

@@ -300,6 +300,7 @@ fn supports_start_where_contact_has_left_their_nodes() {
                 .with_contact(floor.clone().with_normal_compliance(compliance))
                 .with_analysis(Analysis::quasistatic(4.0, 4));
             let (simulation, results) = run(scene, Settings::default());
+            assert_eq!(simulation.plan().dual(), simulation.tfeti().dual_dim());
             let [before, after] = [1, 3].map(|k| results[k].displacement.as_chunks::<3>().0);
             let largest = before.iter().map(|u| norm(u)).fold(0.0, f64::max);
             for node in simulation.scene().mesh().nodes_on(side) {

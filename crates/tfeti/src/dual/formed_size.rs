@@ -124,9 +124,10 @@ pub fn may_be_formed(rows: usize, contact: usize, subdomains: usize) -> bool {
 }
 
 impl FormedSize {
-    /// Of all that is in memory at once.
+    /// Of all that is in memory at once: of contact rows a corner, a complement, a factor of it, and for interior points
+    /// two more.
     fn bytes(&self, boundary: usize) -> f64 {
-        let dense = 2.0 * self.contact.powi(2) + (boundary as f64).powi(2);
+        let dense = 5.0 * self.contact.powi(2) + (boundary as f64).powi(2);
         8.0 * (dense + self.stored) + 16.0 * self.entries
     }
 }

@@ -168,7 +168,7 @@ pub struct FixedDirection {
     /// `(case, value in metres)` along the direction, cases ascending, no zeros.
     pub(super) values: Vec<(u32, f64)>,
     /// Whether it is held from where a solve has left it.
-    pub(super) left: bool,
+    pub left: bool,
     /// Position in the list of the first support that fixes it.
     pub support: usize,
 }

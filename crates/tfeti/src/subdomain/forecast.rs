@@ -90,7 +90,7 @@ impl<'a> Forecast<'a> {
             copies += class.members.len() * boundary;
             sizes.push(Size::new(class, boundary, packed::counts(class, pattern, symbolic)));
         }
-        let dense = choose(&sizes, settings).unwrap_or_else(|_| vec![false; sizes.len()]);
+        let dense = choose(&sizes, settings)?;
         let classes: Vec<ClassReport> = sizes
             .iter()
             .zip(dense)

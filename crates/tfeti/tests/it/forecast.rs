@@ -91,14 +91,13 @@ fn forecast_and_set_up_keep_the_same_limit() {
         let settings = InverseSettings::default().with_kind(InverseKind::Sparse);
         let settings = settings.with_memory_limit(limit);
         let touched = |node| supports[0].nodes.contains(&node);
-        Forecast::new(&mesh, &decomposition, &materials, true, &settings, &[], touched).unwrap()
+        Forecast::new(&mesh, &decomposition, &materials, true, &settings, &[], touched)
     };
-    let needed = forecast(u64::MAX).inverse_bytes;
-    let build = |limit| {
-        let found = forecast(limit);
-        TfetiBuilder::of_forecast(&found).with_supports(&supports).build()
-    };
-    assert_eq!(build(needed).unwrap().report().inverse_bytes, needed);
-    let (limit, refused) = (needed - 1, build(needed - 1).err());
+    let needed = forecast(u64::MAX).unwrap().inverse_bytes;
+    let built = TfetiBuilder::of_forecast(&forecast(needed).unwrap())
+        .with_supports(&supports)
+        .build();
+    assert_eq!(built.unwrap().report().inverse_bytes, needed);
+    let (limit, refused) = (needed - 1, forecast(needed - 1).err());
     assert_eq!(refused, Some(TfetiError::Memory { needed, limit }));
 }
