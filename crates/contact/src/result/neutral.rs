@@ -16,21 +16,40 @@ use nalgebra::{DMatrix, DVector, SymmetricEigen};
 use signorini_fem_mesh::vec3::cross;
 use signorini_tfeti::{BodyMotion, FreeMotion};
 
-/// A neutral motion at the end of a step.
+/// A neutral motion at the end of a step: of each body, and those joined to it, by themselves.
 pub(super) fn neutral_motion(model: &Model, extents: &Extents, recovered: &Recovered, step: usize) -> Option<Warning> {
     let all = model.loose_motions().ok()?;
     if all.is_empty() {
         return None;
     }
-    let points = model.points.iter().zip(&recovered.points);
-    let pressed: Vec<Pressed<'_>> = points.filter(|(_, state)| state.normal_force < 0.0).collect();
-    let motions = of_sliding_bodies(model, extents, &pressed, all);
-    if motions.is_empty() {
-        return None;
+    let pressed = pressed_points(model, recovered);
+    let motions = of_sliding_bodies(model, extents, pressed.iter().flatten(), all);
+    let mut of_bodies = vec![Vec::new(); pressed.len()];
+    for motion in motions {
+        let body = motion.bodies.first().map_or(0, |own| model.bodies.of_body(own.body));
+        of_bodies[body].push(motion);
     }
+    let mut bodies = pressed
+        .iter()
+        .zip(&of_bodies)
+        .filter(|(_, motions)| !motions.is_empty());
+    bodies.find_map(|(pressed, motions)| of_motions(model, pressed, motions, step))
+}
+
+/// The points that are pressed, by [bodies](Model::bodies).
+pub(super) fn pressed_points<'a>(model: &'a Model, recovered: &'a Recovered) -> Vec<Vec<Pressed<'a>>> {
+    let mut out = vec![Vec::new(); model.bodies.count().max(1)];
+    let points = model.points.iter().zip(&recovered.points);
+    for (point, state) in points.filter(|(_, state)| state.normal_force < 0.0) {
+        out[model.bodies.of_row(point.row)].push((point, state));
+    }
+    out
+}
+
+fn of_motions(model: &Model, pressed: &[Pressed<'_>], motions: &[&FreeMotion], step: usize) -> Option<Warning> {
     let ways = pressed
         .iter()
-        .map(|(point, state)| (*state, model.ways(point, &motions)));
+        .map(|(point, state)| (*state, model.ways(point, motions)));
     let moved = ways.filter(|(_, ways)| ways.iter().any(|way| *way != [0.0; 3]));
     let moved: Vec<Moved<'_>> = moved.collect();
     let eigen = SymmetricEigen::new(blocked(&moved, motions.len()));
@@ -39,7 +58,7 @@ pub(super) fn neutral_motion(model: &Model, extents: &Extents, recovered: &Recov
     let (range, longest) = range(&moved, factors.as_slice());
     let neutral = least <= NEUTRAL * eigen.eigenvalues.max() && range.is_finite() && range >= NEUTRAL_WAY * longest;
     neutral.then(|| {
-        let slide = slide(model, &motions, factors.as_slice());
+        let slide = slide(model, motions, factors.as_slice());
         Warning::NeutralPlace {
             step,
             body: slide.body as usize,
@@ -51,7 +70,7 @@ pub(super) fn neutral_motion(model: &Model, extents: &Extents, recovered: &Recov
 }
 
 /// A point, and its state.
-type Pressed<'a> = (&'a ConstrainedPoint, &'a PointState);
+pub(super) type Pressed<'a> = (&'a ConstrainedPoint, &'a PointState);
 
 /// The state of a point, and how each motion moves its sides relative to each other.
 type Moved<'a> = (&'a PointState, Vec<[f64; 3]>);
@@ -60,11 +79,11 @@ type Moved<'a> = (&'a PointState, Vec<[f64; 3]>);
 fn of_sliding_bodies<'a>(
     model: &Model,
     extents: &Extents,
-    pressed: &[Pressed<'_>],
+    pressed: impl Iterator<Item = &'a Pressed<'a>>,
     all: &'a [FreeMotion],
 ) -> Vec<&'a FreeMotion> {
     let [mut sticks, mut slides] = [(); 2].map(|()| vec![false; extents.bodies()]);
-    for (point, state) in pressed.iter().filter(|(_, state)| state.slip_bound > 0.0) {
+    for (point, state) in pressed.filter(|(_, state)| state.slip_bound > 0.0) {
         let slips = state.state == ContactState::Slip && norm(&state.difference) > 0.0;
         for (node, _) in point.contact.sides.nodes() {
             let body = extents.body(node as usize);

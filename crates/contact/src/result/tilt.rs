@@ -5,6 +5,7 @@
 //! that the mesh alone decides. Such motions are those across which normals differ from those of the facets around
 //! them more than they block.
 
+use super::neutral::pressed_points;
 use super::points::ContactState;
 use super::recovered::Recovered;
 use crate::model::{Model, loose_motions_of, slide};
@@ -57,11 +58,9 @@ pub(super) fn held_by_tilt(
     }
     let all = model.loose_motions().ok()?;
     let mut worst: Option<(f64, Warning)> = None;
-    for body in 0..model.bodies.count().max(1) {
+    for (body, pressed) in pressed_points(model, recovered).into_iter().enumerate() {
         let motions = loose_motions_of(model, body, all);
-        let points = model.points.iter().zip(&recovered.points);
-        let pressed = points.filter(|(p, state)| state.normal_force < 0.0 && model.bodies.of_row(p.row) == body);
-        let blurred = pressed.map(|(point, state)| {
+        let blurred = pressed.into_iter().map(|(point, state)| {
             let own = model.discrete.surfaces[state.surface].local(state.node);
             let blur = own.and_then(|local| spreads[state.surface].get(local));
             (point, state, blur.copied().unwrap_or_default())
