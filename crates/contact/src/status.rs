@@ -8,7 +8,8 @@ use std::fmt;
 #[non_exhaustive]
 pub enum StepStatus {
     /// The certificate is at most the tolerance (usually a tenth), however the solver ended; or the solver reached the
-    /// tolerance, and smaller ones did not bring the certificate below it, but to at most thirty times it, or 1e-10.
+    /// tolerance, and smaller ones did not bring the certificate below it, but to at most thirty times it (above a
+    /// tolerance of 3e-4 to 0.01, or the tolerance where that is more), or 1e-10.
     Converged,
     /// A limit of iterations or products was reached first; the result is the last iterate.
     #[default]
@@ -21,8 +22,7 @@ pub enum StepStatus {
     /// Under the normal forces of this step friction does not hold a body: with consistent slip bounds and normal
     /// forces there is no balance with the loads. The set-up checks only whether some normal forces could hold it.
     NotHeld,
-    /// The solver met its tolerance, and smaller ones, but the certificate is more than thirty times the tolerance
-    /// (with an [`Accuracy`](crate::Accuracy) by estimates, above
+    /// The solver met its tolerance, and smaller ones, but the certificate is more than that (with an [`Accuracy`](crate::Accuracy) by estimates, above
     /// [`certificate_limit`](crate::report::AccuracyReport::certificate_limit)): mostly the problem is too badly
     /// conditioned for it. The parts of the certificate name the violated condition.
     NotCertified,

@@ -209,4 +209,9 @@ impl Observer for ResultWriter {
     fn step(&mut self, result: &StepResult) -> Flow {
         Flow::from(self.write(result))
     }
+
+    /// Another run opens its files anew: of several processes only one may have failed to write them.
+    fn finished(&mut self, _: usize) {
+        self.files = None;
+    }
 }

@@ -9,7 +9,7 @@ use crate::result::{Recovered, contact_violation};
 use crate::settings::Accuracy;
 use crate::state::{Controller, Discretisation, certificate_limit};
 use crate::status::StepStatus;
-use crate::tolerances::{CERTIFIED, LEAST_TOLERANCE, NEXT_AIM, NEXT_TOLERANCE, ROUNDS};
+use crate::tolerances::{CERTIFIED, CONTACT_LIMITS, LEAST_TOLERANCE, NEXT_AIM, NEXT_TOLERANCE, ROUNDS};
 
 /// Ends the rounds of a step by its certificate, which has the last word: where it is above the tolerance, the solver
 /// goes on once or twice with a smaller one; where it stays far above (thin bodies, whose displacement magnifies errors
@@ -26,7 +26,9 @@ impl ByCertificate {
         Self {
             tolerance,
             aim: tolerance.max(LEAST_TOLERANCE),
-            limit: (CERTIFIED * tolerance).max(LEAST_TOLERANCE),
+            limit: (CERTIFIED * tolerance)
+                .min(tolerance.max(CONTACT_LIMITS[1]))
+                .max(LEAST_TOLERANCE),
         }
     }
 
@@ -212,5 +214,15 @@ mod tests {
         assert_eq!(rounds([(converged, 5e-6), (stagnated, 5e-6)]), Some(converged));
         assert_eq!(rounds([(converged, 5e-6), (stagnated, 5e-5)]), Some(stagnated));
         assert_eq!(rounds([(converged, 5e-5), (converged, 5e-7)]), Some(converged));
+        // of a rough tolerance, too, what is accepted is no gross violation
+        for (tolerance, largest, end) in [(1e-3, 9e-3, converged), (1e-3, 2e-2, stagnated), (0.05, 0.8, stagnated)] {
+            let mut certificate = ByCertificate::new(tolerance);
+            assert_eq!(certificate.judge((1, false), converged, largest), None);
+            assert_eq!(
+                certificate.judge((2, false), stagnated, largest),
+                Some(end),
+                "{tolerance:e}, {largest:e}"
+            );
+        }
     }
 }

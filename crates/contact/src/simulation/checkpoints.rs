@@ -62,7 +62,10 @@ impl Simulation {
         every: impl Into<Every>,
         observer: &mut (impl Observer + ?Sized),
     ) -> Result<RunReport, ContactError> {
-        let folder = folder.as_ref();
+        let folder = match folder.as_ref() {
+            empty if empty.as_os_str().is_empty() => Path::new("."),
+            folder => folder,
+        };
         let every = every.into();
         ContactError::check(every != Every::Steps(0), "every", 0.0, "of at least one step")?;
         let warnings = self.resume_in_turn(folder)?;

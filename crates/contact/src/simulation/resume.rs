@@ -12,7 +12,8 @@ impl Simulation {
     /// These must be the same: mesh, decomposition, nodes and directions of supports, contact points with their normals
     /// and areas, difference formula, and the times of the steps already solved. Loads, motions of supports, materials,
     /// gaps, coefficients of friction (but not to or from zero everywhere), future times, settings and method may
-    /// change; the changed scene then continues from the state. What starts, ends or is locked may have other times
+    /// change, as long as rough points have the same directions of slip (a support that begins to move them along
+    /// their surface gives them others); the changed scene then continues from the state. What starts, ends or is locked may have other times
     /// later on; what has started is held where it was then. To start from the state of a different scene on purpose,
     /// call [`State::without_origin`]; sizes must match in any case.
     ///
@@ -87,16 +88,61 @@ mod tests {
     use signorini_qp::{SymmetricOperator, vector};
 
     fn simulation(young: f64) -> Simulation {
+        Simulation::new(scene(young), Settings::default()).expect("set-up")
+    }
+
+    fn scene(young: f64) -> Scene {
         let mesh = Brick::new([2.0, 1.0, 1.0], [2, 1, 1]).build().expect("mesh");
         let hooke = Hooke::isotropic(young, 0.3).expect("Hooke");
         let ramp = History::ramp(1.0, 1.0).expect("ramp");
-        let scene = Scene::new(mesh, Materials::uniform(hooke))
+        Scene::new(mesh, Materials::uniform(hooke))
             .with_support(Support::fixed(brick::X_MIN))
             .with_load(Load::traction(brick::Z_MAX, [0.0, 0.0, -1e6]).with_history(ramp))
             .with_contact(Contact::rigid(brick::Z_MIN).with_friction(Friction::coulomb(0.3)))
             .with_boxes([2, 1, 1])
-            .with_analysis(Analysis::quasistatic(1.0, 4));
-        Simulation::new(scene, Settings::default()).expect("set-up")
+            .with_analysis(Analysis::quasistatic(1.0, 4))
+    }
+
+    /// Equal steps of a longer analysis end elsewhere by rounding; what starts where the first one ended is held there.
+    #[test]
+    fn longer_analyses_go_on() {
+        let with = |end: f64, steps: usize, holds: bool| {
+            let scene = scene(1e9).with_analysis(Analysis::quasistatic(end, steps));
+            let support = Support::fixed(brick::X_MAX).with_start(1.0);
+            let scene = if holds { scene.with_support(support) } else { scene };
+            Simulation::new(scene, Settings::default()).expect("set-up")
+        };
+        let mut short = with(1.0, 10, false);
+        for _ in 0..10 {
+            let _ = short.step().expect("step");
+        }
+        assert_ne!(1.0 * 3.0 / 10.0, 1.1 * 3.0 / 11.0);
+        let mut longer = with(1.1, 11, true);
+        longer.resume(short.state().clone()).expect("resume");
+        let last = longer.step().expect("step").displacement();
+        let before = short.result().expect("a step").displacement();
+        let largest = vector::max_abs(before.as_flattened());
+        for node in longer.scene().mesh().nodes_on(brick::X_MAX) {
+            let [from, to] = [&before, &last].map(|u| u[node as usize]);
+            assert!(
+                (0..3).all(|c| (to[c] - from[c]).abs() <= 1e-6 * largest),
+                "{node}: {from:?} {to:?}"
+            );
+        }
+        let mut other = with(2.0, 10, false);
+        assert!(other.resume(short.state().clone()).is_err());
+    }
+
+    /// A support that moves from now on leaves another K+.
+    #[test]
+    fn products_are_of_what_supports_hold_at_zero() {
+        let ramp = History::ramp(1.0, 1.0).expect("ramp");
+        let roller = Support::components(brick::X_MAX, [true, false, false]);
+        let [rests, moves] = [roller.clone(), roller.with_motion([1e-3, 0.0, 0.0], ramp)].map(|roller| {
+            let scene = scene(1e9).with_support(roller);
+            Simulation::new(scene, Settings::default()).expect("set-up")
+        });
+        assert_ne!(rests.operator, moves.operator);
     }
 
     /// A state with damaged places of a support that starts: it was set up for without end.

@@ -48,7 +48,10 @@ impl Simulation {
                 break;
             }
             let stop = matches!(flow, Flow::Stop);
-            keep(self, stop || self.is_finished())?;
+            if let Err(error) = keep(self, stop || self.is_finished()) {
+                failed = Some(error);
+                break;
+            }
             if stop {
                 report.stopped = !self.is_finished();
                 break;

@@ -210,8 +210,10 @@ impl Simulation {
         let along = |(k, motion)| model.discrete.couplings.along(k, motion);
         state.motions = motions.map(along).collect();
         let spans = model.scene.has_spans() && model.scene.stage_steps().end < model.plan.steps;
+        // what a longer analysis may hold from here on
+        let ends = model.plan.steps > 1 && problem.index + 1 == model.plan.steps;
         let is_held = || model.loose_motions().is_ok_and(|motions| motions.is_empty());
-        state.displacement = if spans || history && !is_held() {
+        state.displacement = if spans || ends || history && !is_held() {
             model.tfeti.nodal_mean(&recovered.torn)
         } else {
             Vec::new()

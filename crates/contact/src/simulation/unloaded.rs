@@ -141,7 +141,7 @@ impl Simulation {
         let rounding = ROUNDING * rests.iter().copied().fold(0.0, f64::max);
         let points = model.points.iter().zip(&recovered.points);
         let touching = points.filter(move |(point, at)| {
-            let own = self.settings.tolerance * rests[model.bodies.of_row(point.row)];
+            let own = self.wanted() * rests[model.bodies.of_row(point.row)];
             at.state != ContactState::Open && -at.normal_force > own.max(rounding)
         });
         touching.map(|(point, _)| point)

@@ -6,7 +6,7 @@ use signorini_fem_mesh::internal::replace_file;
 use std::path::Path;
 
 /// Marks the format of stored states.
-const MAGIC: u32 = 0x5349_4711;
+const MAGIC: u32 = 0x5349_4712;
 
 /// FNV-1a of 64 bits: any one changed byte changes it.
 fn checksum(bytes: &[u8]) -> u64 {

@@ -48,8 +48,9 @@ impl Fingerprint {
         }
     }
 
-    /// The fingerprint after a further step at this time.
+    /// The fingerprint after a further step at this time, rounded: equal steps of a longer analysis end a bit elsewhere.
     pub(crate) fn pass(&mut self, time: f64) {
+        let time = f64::from(time as f32);
         self.times = mix(self.times ^ number(time)).wrapping_add(1);
     }
 
@@ -131,12 +132,18 @@ pub(crate) fn operator_hash(origin: &Fingerprint, model: &Model, settings: &Sett
             std::iter::once(row as u64).chain(numbers)
         })
     });
+    // K+ is made with what is held at zero
+    let held = model.discrete.supports.merged.at_zero();
+    let held = held.into_iter().flat_map(|(node, direction)| {
+        let direction = direction.map(number);
+        std::iter::once(u64::from(node)).chain(direction)
+    });
     let how = format!("{:?}", (settings.share_translates, settings.inverse));
     let words = body.into_iter().chain(laws.map(|x| number(*x)));
     let words = words.chain(mesh.regions().iter().map(|r| u64::from(*r)));
     let springs = gluing.springs().iter().map(|s| s.compliance);
     let compliance = springs.chain(gluing.contact_compliance().iter().copied()).map(number);
-    let words = words.chain(entries).chain(compliance).chain(scales);
+    let words = words.chain(entries).chain(compliance).chain(scales).chain(held);
     hash(words.chain(how.bytes().map(u64::from)))
 }
 
