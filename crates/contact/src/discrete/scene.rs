@@ -1,6 +1,6 @@
 //! The discrete scene: a scene at the nodes of its mesh, made and checked once.
 
-use super::bonded::leave_bonded;
+use super::bonded::{leave_bonded, tie_once};
 use super::couplings::Couplings;
 use super::equations::equations;
 use super::faceted::{FacetedOverlaps, close_faceted};
@@ -79,8 +79,9 @@ impl DiscreteScene {
         let times = scene.analysis.times();
         let poses: Vec<Vec<Pose>> = scene.contacts.iter().map(|c| c.poses(times)).collect();
         let mut conditions = conditions(scene, (&paired, &poses), rounding)?;
-        let ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
+        let mut ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
         if !ties.is_empty() {
+            tie_once(scene, &couplings, &mut ties);
             leave_bonded(scene, &decomposition, &ties, &mut conditions);
         }
         let faceted = close_faceted(scene, &paired, &mut conditions, rounding)?;
