@@ -110,6 +110,9 @@ impl ContactError {
             }
             Self::SupportInObstacle {
                 support, contact, node, ..
+            }
+            | Self::PartedTie {
+                support, contact, node, ..
             } => vec![Part::Support(*support), Part::Contact(*contact), Part::Node(*node)],
             Self::Probe { node, .. } => vec![Part::Node(*node)],
             Self::NotHeld {

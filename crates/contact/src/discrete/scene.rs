@@ -5,6 +5,7 @@ use super::couplings::Couplings;
 use super::equations::equations;
 use super::faceted::{FacetedOverlaps, close_faceted};
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
+use super::parted::check_parted;
 use super::penetration::check_penetration;
 use super::points::{ContactPoint, HandedOn, conditions, handed_on, of_contact, points};
 use super::springs::Springs;
@@ -103,6 +104,7 @@ impl DiscreteScene {
         let equation_rows = independent_equations(&equations, &decomposition, held, &constraints)?.len();
         let prescribed = prescribed_points(&constraints, &supports.merged)?;
         check_penetration(scene, &points, &prescribed, (&supports, &poses), rounding)?;
+        check_parted(scene, &ties, &constraints, &supports, rounding)?;
         let loads = nodal_loads(scene, (&decomposition, &couplings), softest)?;
         // both in the order of the points
         let mut without = prescribed.iter().map(|p| p.point).peekable();
