@@ -460,7 +460,12 @@ fn stays(
     if !x.changes_gap() && !y.changes_gap() {
         return Ok(true);
     }
-    for pose in x.poses(scene.analysis.times()) {
+    let times = scene.analysis.times();
+    for (pose, time) in x.poses(times).into_iter().zip(times) {
+        // what has ended, or not begun, is nowhere
+        if !(x.span.has(*time) && y.span.has(*time)) {
+            continue;
+        }
         let difference = other.gap_after(scene, &pose)? - point.gap_after(scene, &pose)?;
         if order(difference, rounding) != nearer {
             return Ok(false);

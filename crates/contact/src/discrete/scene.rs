@@ -90,7 +90,9 @@ impl DiscreteScene {
         let surfaces: Vec<Surface> = paired.into_iter().map(|p| p.surface).collect();
         for (index, own) in surfaces.iter().enumerate() {
             let own_conditions = &conditions[of_contact(&conditions, index)];
-            check_turn(scene, index, own, own_conditions, &poses[index])?;
+            let poses = poses[index].iter().zip(times.iter().copied());
+            let acting = poses.filter(|(_, time)| scene.contacts[index].span.has(*time));
+            check_turn(scene, index, own, own_conditions, &acting.collect::<Vec<_>>())?;
         }
         let (points, stands) = points(scene, &conditions, rounding)?;
         couplings.check_contact(points.iter().chain(&ties), &supports)?;
