@@ -103,7 +103,7 @@ impl DiscreteScene {
         let constraints = constraints(scene, &points, &ties, &couplings);
         couplings.check_ties(scene, (&points, rounding), &constraints, &supports)?;
         let held = (&supports.merged, &couplings.supports[..]);
-        let equation_rows = independent_equations(&equations, &decomposition, held, &constraints)?.len();
+        let equation_rows = independent_equations(&equations, (&scene.mesh, &decomposition), held, &constraints)?.len();
         let prescribed = prescribed_points(&constraints, &supports.merged)?;
         check_penetration(scene, &points, &prescribed, (&supports, &poses), rounding)?;
         check_parted(scene, &ties, &constraints, &supports, rounding)?;
