@@ -146,8 +146,8 @@ signorini_fem_mesh::errors! {
         PartedTie {
             support: usize, contact: usize, node: u32, position: [f64; 3], apart: f64, along: [f64; 3], time: f64
         } =
-            "support {support}: it holds node {node}, {}, of tied contact {contact}, and with others the other side, so \
-            that at time {time} s the sides are {apart} m along {along:.4?} from where the tie has them; move both \
+            "support {support}: it holds node {node}, {}, of tied contact {contact}, and with others the other side, \
+            so that at time {time} s the sides are {apart} m along {along:.4?} from where the tie has them; move both \
             alike, give the tie the motion (Contact::with_motion), or leave the nodes of one side out of the supports",
             place(position);
         ObstacleNormal { contact: usize, normal: [f64; 3] } =

@@ -202,6 +202,7 @@ fn of_tfeti(error: &TfetiError) -> Vec<Part> {
             equations.chain(node.map(Part::Node)).collect()
         }
         TfetiError::Spring { node, .. }
+        | TfetiError::SpringRest { node, .. }
         | TfetiError::UnknownNode { node, .. }
         | TfetiError::ContactNodeTwice { node }
         | TfetiError::BadFrame { node, .. }

@@ -347,7 +347,7 @@ impl Builder<'_> {
     /// both together are `1 / k` as for other rows.
     fn springs(&mut self, (springs, all): (&[NodalSpring], &CopyStiffness)) -> Result<(), TfetiError> {
         for (k, spring) in springs.iter().enumerate() {
-            let NodalSpring { node, stiffness, .. } = *spring;
+            let (node, stiffness) = (spring.node, spring.stiffness);
             check_node(node, self.decomposition.nodes(), || format!("spring {k}"))?;
             let copies = self.decomposition.copies(node as usize);
             let compliance = 1.0 / (self.stiffness.squares(copies) * stiffness);
@@ -361,7 +361,14 @@ impl Builder<'_> {
             let wanted = (1.0 + compliance * own).sqrt().recip();
             let scale = wanted.max(SOFTEST);
             self.spread(node, spring.direction.map(|c| scale * c));
-            self.close(node);
+            let row = self.close(node);
+            let length = scale / self.stiffness.squares(copies).sqrt();
+            for &(case, value) in &spring.rest {
+                let of_case = self.gluing.prescribed.get_mut(case as usize);
+                let of_case = of_case.filter(|_| value.is_finite());
+                let of_case = of_case.ok_or(TfetiError::SpringRest { node, case, value })?;
+                of_case.push((row as u32, length * value));
+            }
             self.gluing.springs.push(SpringRow {
                 compliance: scale * scale * compliance,
                 scale,

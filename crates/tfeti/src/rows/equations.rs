@@ -213,8 +213,9 @@ struct Line {
     size: f64,
 }
 
-/// The rows in the order of elimination: equations, before them what else says something of their nodes and places, ties
-/// with the motion that their sides have against each other, and behind them contact rows that are connected with them.
+/// The rows in the order of elimination: equations, before them what else says something of their nodes and places,
+/// ties with the motion that their sides have against each other, and behind them contact rows that are connected with
+/// them.
 fn lines(
     equations: &[FreeEquation],
     (mesh, decomposition): (&TetMesh, &Decomposition),
