@@ -143,6 +143,13 @@ signorini_fem_mesh::errors! {
             "support {support} holds node {node}, {}, at time {time} s {depth} inside the obstacle of contact \
             {contact} (normal displacement {displacement}, gap {gap}); shorten the motion of the support, correct the \
             gap or the place of the obstacle, or leave the node free along the normal", place(position);
+        PartedTie {
+            support: usize, contact: usize, node: u32, position: [f64; 3], apart: f64, along: [f64; 3], time: f64
+        } =
+            "support {support}: it holds node {node}, {}, of tied contact {contact}, and with others the other side, \
+            so that at time {time} s the sides are {apart} m along {along:.4?} from where the tie has them; move both \
+            alike, give the tie the motion (Contact::with_motion), or leave the nodes of one side out of the supports",
+            place(position);
         ObstacleNormal { contact: usize, normal: [f64; 3] } =
             "contact {contact}: the obstacle's normal {normal:?} must be finite and not zero";
         ObstacleSide { contact: usize, direction: [f64; 3], nodes: usize } =

@@ -110,6 +110,9 @@ impl ContactError {
             }
             Self::SupportInObstacle {
                 support, contact, node, ..
+            }
+            | Self::PartedTie {
+                support, contact, node, ..
             } => vec![Part::Support(*support), Part::Contact(*contact), Part::Node(*node)],
             Self::Probe { node, .. } => vec![Part::Node(*node)],
             Self::NotHeld {
@@ -199,6 +202,7 @@ fn of_tfeti(error: &TfetiError) -> Vec<Part> {
             equations.chain(node.map(Part::Node)).collect()
         }
         TfetiError::Spring { node, .. }
+        | TfetiError::SpringRest { node, .. }
         | TfetiError::UnknownNode { node, .. }
         | TfetiError::ContactNodeTwice { node }
         | TfetiError::BadFrame { node, .. }

@@ -24,6 +24,9 @@ signorini_fem_mesh::errors! {
         Spring { node: u32, stiffness: f64 } =
             "spring at node {node}: its direction must be a unit vector, and its stiffness, {stiffness}, positive and \
             neither so small nor so large that its inverse overflows or vanishes";
+        SpringRest { node: u32, case: u32, value: f64 } =
+            "spring at node {node}: at rest its displacement is {value} in case {case}; give a finite value, and a \
+            case that supports have";
         RigidSupport { subdomain: usize } =
             "subdomain {subdomain}: what is held of a rigid motion must be a displacement along a unit vector or a \
             rotation about one, of a subdomain without elements, at a finite point, with finite values of cases that \

@@ -100,7 +100,7 @@ pub mod internal {
     pub use crate::processes::threads::on_ranks;
     pub use crate::projector::active_set::ActiveSetFactor;
     pub use crate::projector::forecast::forecast_levels;
-    pub use crate::rows::contact::{PrescribedPoint, prescribed_points, unsaid_directions};
+    pub use crate::rows::contact::{HeldTie, PrescribedPoint, held_ties, prescribed_points};
     pub use crate::rows::dependencies::Dependency;
     pub use crate::rows::equations::independent_equations;
     pub use crate::rows::rigid::forces_at_three;

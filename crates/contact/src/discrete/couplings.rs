@@ -11,7 +11,7 @@ use signorini_fem_mesh::decomposition::Rigid;
 use signorini_fem_mesh::internal::distinct;
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, is_finite, norm, scale, sub};
 use signorini_fem_mesh::{Decomposition, History, LoadError, SurfaceFrame};
-use signorini_tfeti::internal::{FixedDirection, forces_at_three, unsaid_directions};
+use signorini_tfeti::internal::{FixedDirection, HeldTie, forces_at_three, held_ties};
 use signorini_tfeti::{ContactConstraint, Directions, NodeSupport, RigidSupport, Side};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -283,8 +283,8 @@ impl Couplings {
                 return Err(ContactError::coupling(coupling, Some(node), reason));
             }
         }
-        for (k, direction) in unsaid_directions(constraints, &supports.merged) {
-            let (tied, node) = (&constraints[k], constraints[k].side.nodes()[0].0);
+        for HeldTie { point, direction, .. } in held_ties(constraints, &supports.merged) {
+            let (tied, node) = (&constraints[point], constraints[point].side.nodes()[0].0);
             let Some(index) = coupling(tied) else {
                 continue;
             };

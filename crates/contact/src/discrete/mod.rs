@@ -5,8 +5,8 @@
 //! contacts that go on in one another: `united`); in a mesh of order 2 it is a mean around the node (`means`); bodies
 //! that overlap only because their facets are straight touch (`faceted`), and where contacts cross one of them may hand
 //! its conditions on (`crossing`). Scenes that make no sense are refused here, before any stiffness is assembled
-//! (`scene`, `overflow`, `penetration`, `turn`). `side` has the nodes and weights of a contact point; what is tied does
-//! not touch as well (`bonded`).
+//! (`scene`, `overflow`, `penetration`, `parted`, `turn`). `side` has the nodes and weights of a contact point; what is
+//! tied does not touch as well (`bonded`).
 //!
 //! Rigid couplings are subdomains of their own (`couplings`); `equations` may have some that are points.
 //!
@@ -24,6 +24,7 @@ mod free_points;
 mod means;
 mod normals;
 mod overflow;
+mod parted;
 mod partners;
 mod penetration;
 mod points;

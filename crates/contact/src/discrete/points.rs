@@ -3,7 +3,7 @@
 //! A node of a smooth surface is one point. Where facets meet at a crease it is one for each side, and where two
 //! contacts meet one for each of them, so that nodes in an edge between a floor and a wall, or in a corner, meet all
 //! of their obstacles. Only where the normals of two contacts are the same is the node one point for both: one of the
-//! conditions follows from the other. Between bodies a node is one point, with a partner.
+//! conditions follows from the other. Between bodies a node is one point for each partner.
 //!
 //! What contacts say of each node ([`conditions`]) is kept beside the points that are made of it: the certificate
 //! judges the former.
@@ -364,7 +364,7 @@ pub(super) fn points(
             continue;
         }
         let others = known.entry(node).or_default();
-        let same = |k: &&usize| condition.sides.partner.is_none() && out[**k].is_same(condition);
+        let same = |k: &&usize| out[**k].is_same(condition);
         match others.iter().find(same).copied() {
             Some(k) => {
                 join(scene, rounding, &mut out[k], condition)?;
@@ -460,7 +460,12 @@ fn stays(
     if !x.changes_gap() && !y.changes_gap() {
         return Ok(true);
     }
-    for pose in x.poses(scene.analysis.times()) {
+    let times = scene.analysis.times();
+    for (pose, time) in x.poses(times).into_iter().zip(times) {
+        // what has ended, or not begun, is nowhere
+        if !(x.span.has(*time) && y.span.has(*time)) {
+            continue;
+        }
         let difference = other.gap_after(scene, &pose)? - point.gap_after(scene, &pose)?;
         if order(difference, rounding) != nearer {
             return Ok(false);

@@ -1,10 +1,11 @@
 //! The discrete scene: a scene at the nodes of its mesh, made and checked once.
 
-use super::bonded::leave_bonded;
+use super::bonded::{leave_bonded, tie_once};
 use super::couplings::Couplings;
 use super::equations::equations;
 use super::faceted::{FacetedOverlaps, close_faceted};
 use super::overflow::{check_compliance, check_gaps, check_materials, check_motions, nodal_loads};
+use super::parted::check_parted;
 use super::penetration::check_penetration;
 use super::points::{ContactPoint, HandedOn, conditions, handed_on, of_contact, points};
 use super::springs::Springs;
@@ -79,8 +80,9 @@ impl DiscreteScene {
         let times = scene.analysis.times();
         let poses: Vec<Vec<Pose>> = scene.contacts.iter().map(|c| c.poses(times)).collect();
         let mut conditions = conditions(scene, (&paired, &poses), rounding)?;
-        let ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
+        let mut ties: Vec<ContactPoint> = conditions.extract_if(.., |c| scene.contacts[c.surface].tied).collect();
         if !ties.is_empty() {
+            tie_once(scene, &couplings, &mut ties);
             leave_bonded(scene, &decomposition, &ties, &mut conditions);
         }
         let faceted = close_faceted(scene, &paired, &mut conditions, rounding)?;
@@ -88,7 +90,9 @@ impl DiscreteScene {
         let surfaces: Vec<Surface> = paired.into_iter().map(|p| p.surface).collect();
         for (index, own) in surfaces.iter().enumerate() {
             let own_conditions = &conditions[of_contact(&conditions, index)];
-            check_turn(scene, index, own, own_conditions, &poses[index])?;
+            let poses = poses[index].iter().zip(times.iter().copied());
+            let acting = poses.filter(|(_, time)| scene.contacts[index].span.has(*time));
+            check_turn(scene, index, own, own_conditions, &acting.collect::<Vec<_>>())?;
         }
         let (points, stands) = points(scene, &conditions, rounding)?;
         couplings.check_contact(points.iter().chain(&ties), &supports)?;
@@ -99,9 +103,10 @@ impl DiscreteScene {
         let constraints = constraints(scene, &points, &ties, &couplings);
         couplings.check_ties(scene, (&points, rounding), &constraints, &supports)?;
         let held = (&supports.merged, &couplings.supports[..]);
-        let equation_rows = independent_equations(&equations, &decomposition, held, &constraints)?.len();
+        let equation_rows = independent_equations(&equations, (&scene.mesh, &decomposition), held, &constraints)?.len();
         let prescribed = prescribed_points(&constraints, &supports.merged)?;
         check_penetration(scene, &points, &prescribed, (&supports, &poses), rounding)?;
+        check_parted(scene, &ties, &constraints, &supports, rounding)?;
         let loads = nodal_loads(scene, (&decomposition, &couplings), softest)?;
         // both in the order of the points
         let mut without = prescribed.iter().map(|p| p.point).peekable();

@@ -16,35 +16,42 @@ use std::collections::BTreeMap;
 pub(crate) struct Springs {
     /// Those of all foundations together, along their principal directions.
     pub(crate) nodal: Vec<NodalSpring>,
-    /// Of each foundation of the scene the stiffness at its nodes, N/m, without what supports fix.
+    /// Of each foundation of the scene the stiffness at its nodes, N/m, between what supports leave free.
     pub(crate) by_spring: Vec<BTreeMap<u32, Matrix3<f64>>>,
 }
 
 impl Springs {
     pub(super) fn new(scene: &Scene, supports: &Supports) -> Result<Self, ContactError> {
         let mut springs = Self::default();
-        // of each node, and the largest entry before what supports fix is taken off
-        let mut sum: BTreeMap<u32, (Matrix3<f64>, f64)> = BTreeMap::new();
+        let mut sum: BTreeMap<u32, Matrix3<f64>> = BTreeMap::new();
         for (index, spring) in scene.springs.iter().enumerate() {
             let mut own = at_nodes(&scene.mesh, spring)?;
             for (node, stiffness) in &mut own {
                 check_spring(index, *node, stiffness.amax())?;
-                let (sum, largest) = sum.entry(*node).or_default();
-                *largest = largest.max(stiffness.amax());
+                *sum.entry(*node).or_default() += *stiffness;
                 let free = free_part(supports, *node);
                 *stiffness = free * *stiffness * free;
-                *sum += *stiffness;
             }
             springs.by_spring.push(own);
         }
-        for (node, (stiffness, largest)) in sum {
-            let eigen = SymmetricEigen::new(stiffness);
-            for (k, direction) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
-                if *k > NO_SPRING * largest {
+        for (node, whole) in sum {
+            let free = free_part(supports, node);
+            let moved = supports.merged.prescribed(node);
+            let eigen = SymmetricEigen::new(free * whole * free);
+            for (&stiffness, direction) in eigen.eigenvalues.iter().zip(eigen.eigenvectors.column_iter()) {
+                if stiffness > NO_SPRING * whole.amax() {
+                    // what supports move an inclined spring by pulls along what they leave free
+                    let pulled = whole * direction;
+                    let rest = |(case, by): &(u32, [f64; 3])| {
+                        let force = pulled.dot(&Vector3::from(*by));
+                        let counts = force.abs() > NO_SPRING * whole.amax() * vec3::norm(*by);
+                        counts.then(|| (*case, -force / stiffness))
+                    };
                     springs.nodal.push(NodalSpring {
                         node,
                         direction: [direction[0], direction[1], direction[2]],
-                        stiffness: *k,
+                        stiffness,
+                        rest: moved.iter().filter_map(rest).collect(),
                     });
                 }
             }

@@ -143,7 +143,8 @@ fn hold_where_they_are(
     Ok(())
 }
 
-/// The directions of a support that others do not hold, node by node.
+/// The directions of a support that others do not hold, node by node: as they are given, so that what it prescribes is
+/// along these, or, where it holds what others hold in part, what is left of them.
 fn left_free(support: &NodeSupport, held: &MergedSupports) -> Directions {
     let given = match &support.directions {
         Directions::EachNode(lists) if lists.len() == support.nodes.len() => lists.clone(),
@@ -151,21 +152,37 @@ fn left_free(support: &NodeSupport, held: &MergedSupports) -> Directions {
         Directions::EachNode(_) => return support.directions.clone(),
         others => vec![others.vectors(); support.nodes.len()],
     };
-    let rest = |node: &u32, direction: &Vec3| {
-        let others = held.directions(*node).iter().map(|other| other.direction);
-        let rest = others.fold(*direction, |rest, other| sub(rest, scale(dot(rest, other), other)));
-        // what is no direction is told with the others
-        let gone = norm(rest) <= HELD_ALREADY * norm(*direction) && norm(*direction) > 0.0;
-        (!gone).then_some(rest)
-    };
     let lists = support.nodes.iter().zip(given);
-    let lists = lists.map(|(node, list)| list.iter().filter_map(|d| rest(node, d)).collect());
+    let lists = lists.map(|(node, list)| left_of(list, held.directions(*node).iter().map(|other| other.direction)));
     let lists: Vec<Vec<Vec3>> = lists.collect();
     if lists.iter().all(Vec::is_empty) {
         Directions::Nothing
     } else {
         Directions::EachNode(lists)
     }
+}
+
+/// The same at one node.
+fn left_of(mut given: Vec<Vec3>, held: impl Iterator<Item = Vec3>) -> Vec<Vec3> {
+    let mut basis: Vec<Vec3> = held.collect();
+    let rest = |direction: Vec3, others: &[Vec3]| {
+        let rest = others
+            .iter()
+            .fold(direction, |rest, other| sub(rest, scale(dot(rest, *other), *other)));
+        // what is no direction is told with the others
+        let gone = norm(rest) <= HELD_ALREADY * norm(direction) && norm(direction) > 0.0;
+        (!gone).then_some(rest)
+    };
+    given.retain(|direction| rest(*direction, &basis).is_some());
+    let left: Vec<Vec3> = given.iter().filter_map(|direction| rest(*direction, &basis)).collect();
+    let is_independent = |direction: &Vec3| match rest(*direction, &basis) {
+        Some(rest) => {
+            basis.push(unit(rest));
+            true
+        }
+        None => false,
+    };
+    if given.iter().all(is_independent) { given } else { left }
 }
 
 /// The case of a history, which is a new one if it is not known.

@@ -9,13 +9,14 @@ use signorini_fem_mesh::{Surface, vec3};
 use signorini_qp::vector;
 
 /// Refuses motions that turn the normals of obstacles, and gap fields that move far along a curved surface, on which
-/// the field and the normals of the nodes part. `own` are the conditions of the contact, `poses` those of its obstacle.
+/// the field and the normals of the nodes part. `own` are the conditions of the contact, `poses` those of its obstacle
+/// while it acts, with the times, s.
 pub(super) fn check_turn(
     scene: &Scene,
     index: usize,
     surface: &Surface,
     own: &[ContactPoint],
-    poses: &[Pose],
+    poses: &[(&Pose, f64)],
 ) -> Result<(), ContactError> {
     let contact = &scene.contacts[index];
     match (&contact.shape, contact.normal) {
@@ -30,7 +31,7 @@ pub(super) fn check_turn(
         }
     }
     // a motion in one direction is worst where it is largest
-    let mut poses: Vec<&Pose> = poses.iter().collect();
+    let mut poses: Vec<&Pose> = poses.iter().map(|(pose, _)| *pose).collect();
     if contact.rotation.is_none() {
         let size = |pose: &&Pose| vec3::norm(pose.small(&[0.0; 3]));
         let largest = poses.iter().copied().max_by(|a, b| size(a).total_cmp(&size(b)));
@@ -82,11 +83,11 @@ fn check_shape(
     scene: &Scene,
     (index, surface): (usize, &Surface),
     own: &[ContactPoint],
-    poses: &[Pose],
+    poses: &[(&Pose, f64)],
 ) -> Result<(), ContactError> {
     let mut worst = (0.0, 0, 0.0);
     let beside: Vec<_> = beside(surface, own).collect();
-    for (pose, &time) in poses.iter().zip(scene.analysis.times()) {
+    for &(pose, time) in poses {
         let met = own
             .iter()
             .map(|point| (point.node(), turned(scene, point, pose, &point.centre)));

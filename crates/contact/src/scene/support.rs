@@ -91,7 +91,7 @@ impl Support {
     /// # use signorini_fem_mesh::{Brick, Surface, brick};
     ///
     /// # let mesh = Brick::new([1.0; 3], [2; 3]).build()?;
-    /// // nodes of a surface of any shape stay on it
+    /// // nodes of a surface of any shape stay on it; in a mesh of order 2 its corners: mid-nodes are free
     /// let surface = Surface::new(&mesh, &[brick::X_MAX])?;
     /// let normals = surface.frames().iter().map(|frame| vec![frame.normal]).collect();
     /// let guide = Support::partial(surface.nodes(), Directions::EachNode(normals));

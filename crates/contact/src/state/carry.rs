@@ -138,18 +138,27 @@ fn hashed_rows(gluing: &Gluing) -> Vec<(u64, usize)> {
     hashed
 }
 
-/// For each point of one model the point of another that has the same contact, sides and normal.
+/// For each point of one model the point of another with the same sides and normal that stood for one of its
+/// conditions: which of the contacts of a seam has the point depends on which of them act.
 fn same_points(old: &Model, new: &Model) -> Vec<Option<usize>> {
+    let standing = |model: &'_ Model| {
+        let all = model.discrete.conditions.iter().zip(&model.standing);
+        let known = all.filter_map(|(condition, point)| Some(((condition.surface, condition.node()), (*point)?)));
+        known.collect::<Vec<_>>()
+    };
     let mut known: HashMap<(usize, u32), Vec<usize>> = HashMap::new();
-    for (k, point) in old.points.iter().enumerate() {
-        known.entry((point.surface(), point.node())).or_default().push(k);
+    for (condition, point) in standing(old) {
+        known.entry(condition).or_default().push(point);
     }
-    let same = |a: &ConstrainedPoint, b: &ConstrainedPoint| {
-        a.contact.sides == b.contact.sides && a.frame().normal == b.frame().normal
-    };
-    let find = |point: &ConstrainedPoint| {
-        let mut others = known.get(&(point.surface(), point.node())).into_iter().flatten();
-        others.find(|&&k| same(&old.points[k], point)).copied()
-    };
-    new.points.iter().map(find).collect()
+    let mut out = vec![None; new.points.len()];
+    for (condition, point) in standing(new) {
+        let own = &new.points[point];
+        let same = |k: &&usize| {
+            let other = &old.points[**k];
+            other.contact.sides == own.contact.sides && other.frame().normal == own.frame().normal
+        };
+        let before = known.get(&condition).into_iter().flatten().find(same);
+        out[point] = out[point].or(before.copied());
+    }
+    out
 }

@@ -199,6 +199,54 @@ fn equations_that_depend_on_others_say_so_or_drop_out() {
     assert!(message.contains("more digits"), "{message}");
 }
 
+/// Sides of a tie that a coupling lets move against each other say nothing of that motion, so that equations may. They
+/// were told to say what the tie says.
+#[test]
+fn equations_say_how_tied_sides_move() {
+    let scene = |coupling: Coupling| {
+        let column = column(3).with_support(Support::fixed(brick::Z_MAX));
+        column.with_contact(Contact::tied(UPPER, LOWER)).with_coupling(coupling)
+    };
+    let coupling = || Coupling::relative(0, [0.4, 0.5, 1.0]);
+    let free = |motion: usize| coupling().with_held([0, 1, 2, 3, 4, 5].map(|c| c != motion));
+    let at = |place: [f64; 3]| {
+        let scene = scene(free(2));
+        let is_there = |pair: &&(u32, u32)| distance(&scene.mesh().points()[pair.0 as usize], &place) < 1e-9;
+        *pairs(&scene).iter().find(is_there).expect("a pair")
+    };
+    let corners = [at([1.0, 1.0, 1.0]), at([1.0, 0.0, 1.0])];
+    let parted = |k: usize, c: usize| {
+        let (above, below) = corners[k];
+        Equation::new([(above, AXES[c]), (below, minus(AXES[c]))])
+    };
+    let shorter = -5e-5;
+    let said = scene(free(2)).with_equation(parted(0, 2).with_value(shorter, ramp()));
+    let said = solved(said, tight(), "equation");
+    let moved = coupling()
+        .with_held([true; 6])
+        .with_motion([0.0, 0.0, shorter, 0.0, 0.0, 0.0], ramp());
+    let moved = solved(scene(moved), tight(), "coupling");
+    assert_close(&said.one.displacement, &moved.one.displacement, 1e-7, "displacement");
+    // about z the side y moves by 0.6 of the angle at both corners, and by 0.5 along x, not along z
+    let angle = 1e-5;
+    let said = scene(free(5)).with_equation(parted(1, 1).with_value(0.6 * angle, ramp()));
+    let said = solved(said, tight(), "angle");
+    let turned = coupling()
+        .with_held([true; 6])
+        .with_motion([0.0, 0.0, 0.0, 0.0, 0.0, angle], ramp());
+    let turned = solved(scene(turned), tight(), "turned");
+    assert_close(&said.one.displacement, &turned.one.displacement, 1e-7, "turned");
+    for (motion, equations) in [
+        (2, vec![parted(0, 0)]),
+        (5, vec![parted(0, 2)]),
+        (5, vec![parted(0, 1), parted(1, 1)]),
+    ] {
+        let scene = equations.into_iter().fold(scene(free(motion)), Scene::with_equation);
+        let message = refused(&scene).to_string();
+        assert!(message.contains("what a tied contact says"), "{message}");
+    }
+}
+
 #[test]
 fn what_is_refused_says_why() {
     let bar = || {

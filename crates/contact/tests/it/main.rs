@@ -61,6 +61,7 @@ mod refusals;
 mod relative;
 mod restart;
 mod sanity;
+mod seams;
 #[cfg(feature = "serde")]
 mod serialised;
 mod set_loads;

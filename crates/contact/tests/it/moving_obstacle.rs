@@ -249,3 +249,33 @@ fn a_floor_that_is_drawn_and_tilts_is_where_it_stands() {
         }
     }
 }
+
+/// A contact that has ended says nothing: its obstacle may go where it turns normals, or is nearer than another one.
+#[test]
+fn obstacles_of_contacts_that_have_ended_go_anywhere() {
+    let line = |values: [f64; 3]| History::table((0..).map(f64::from).zip(values).collect()).expect("table");
+    let held = |contacts: Vec<Contact>| {
+        let scene = Scene::new(block([1.0; 3], [2, 2, 2]), uniform(1e6, 0.3))
+            .with_support(Support::fixed(brick::Z_MIN))
+            .with_analysis(Analysis::quasistatic(2.0, 2));
+        contacts.into_iter().fold(scene, Scene::with_contact)
+    };
+    let ball = Contact::obstacle(brick::Z_MAX, Obstacle::sphere([0.5, 0.5, 11.0], 10.0))
+        .with_motion([0.0, 0.0, -1e-3], line([0.0, 1.0, 0.0]))
+        .with_motion([5.0, 0.0, 0.0], line([0.0, 0.0, 1.0]));
+    let error = refused(&held(vec![ball.clone()]));
+    assert!(matches!(error, ContactError::TurnedNormal { time: 2.0, .. }), "{error}");
+    let (_, results) = run(held(vec![ball.with_end(1.0)]), at(1e-9));
+    assert!(results[0].summary.normal_force > 0.0);
+    assert!(norm(&results[1].displacement) < 1e-9 * norm(&results[0].displacement));
+    // two ceilings on one side, of which the first comes nearer when it has ended
+    let ceiling = |hole: f64| {
+        let field = move |place: [f64; 3]| if place[0] < -1.0 { hole } else { 0.1 };
+        let ceiling = Contact::rigid(brick::Z_MAX).with_gap_field(field);
+        ceiling.with_motion([3.0, 0.0, 0.0], line([0.0, 0.0, 1.0]))
+    };
+    let both = |first: Contact| held(vec![first, ceiling(0.1)]);
+    let error = refused(&both(ceiling(0.0)));
+    assert!(matches!(error, ContactError::SharedNode { .. }), "{error}");
+    Plan::new(&both(ceiling(0.0).with_end(1.0)), &Settings::default()).expect("ended");
+}

@@ -165,11 +165,27 @@ fn the_algebraic_error_is_estimated() {
     }
 }
 
+/// Two leaves of a spring, clamped together at one end, where nothing holds them yet.
+fn leaves(cells: [usize; 2], order: usize) -> Scene {
+    let leaf = |long: f64, cells| block([long, 10.0, 1.0], [cells, 3, 1]);
+    let both = with_second(&leaf(100.0, cells[0]), &lifted(&leaf(85.0, cells[1]), 1.0));
+    let both = match order {
+        2 => both.raise_order().expect("order 2"),
+        _ => both,
+    };
+    let tip = Load::force(brick::X_MAX, [0.0, 0.0, 3.0]);
+    let touching = Contact::between(brick::Z_MAX, second(brick::Z_MIN));
+    Scene::new(both, uniform(2.1e5, 0.3))
+        .with_contact(touching.with_friction(Friction::coulomb(0.1)))
+        .with_load(tip)
+}
+
+const CLAMPS: [FacetTag; 2] = [brick::X_MIN, FacetTag(brick::X_MIN.0 + 100)];
+
 /// Two leaves of a spring, clamped together at one end, of meshes that match nowhere else: where supports hold both
 /// sides no force belongs to contact.
 #[test]
 fn leaves_clamped_together_press_on_each_other_only_where_they_move() {
-    let leaf = |long: f64, cells| block([long, 10.0, 1.0], [cells, 3, 1]);
     for (cells, order) in [
         ([20, 20], 1),
         ([20, 23], 1),
@@ -177,24 +193,14 @@ fn leaves_clamped_together_press_on_each_other_only_where_they_move() {
         ([20, 20], 2),
         ([20, 40], 2),
     ] {
-        let both = with_second(&leaf(100.0, cells[0]), &lifted(&leaf(85.0, cells[1]), 1.0));
-        let both = match order {
-            2 => both.raise_order().expect("order 2"),
-            _ => both,
-        };
-        let tip = Load::force(brick::X_MAX, [0.0, 0.0, 3.0]);
-        let touching = Contact::between(brick::Z_MAX, second(brick::Z_MIN));
-        let loose = Scene::new(both, uniform(2.1e5, 0.3))
-            .with_contact(touching.with_friction(Friction::coulomb(0.1)))
-            .with_load(tip);
-        let ends = [brick::X_MIN, second(brick::X_MIN)];
+        let loose = leaves(cells, order);
         // a coupling that is held clamps as well, but would tell no force where both sides are rigid
-        let rigid = ends.map(|end| Coupling::rigid(end, [0.0; 3]).with_held([true; 6]));
+        let rigid = CLAMPS.map(|end| Coupling::rigid(end, [0.0; 3]).with_held([true; 6]));
         let rigid = rigid.into_iter().fold(loose.clone(), Scene::with_coupling);
         let refused = Simulation::new(rigid, Settings::default()).map(|_| ());
         let refused = refused.expect_err("rigid on both sides").to_string();
         assert!(refused.contains("no contact force is determined"), "{refused}");
-        let fixed = ends.map(Support::fixed);
+        let fixed = CLAMPS.map(Support::fixed);
         let scene = fixed.into_iter().fold(loose, Scene::with_support);
         let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
         let result = simulation.step().expect("step");
@@ -208,5 +214,69 @@ fn leaves_clamped_together_press_on_each_other_only_where_they_move() {
         assert!((clamps.iter().sum::<f64>() + 3.0).abs() < 1e-6, "{clamps:?}");
         // as the part of the upper leaf in the load
         assert!(clamps.iter().all(|force| (-2.0..-1.0).contains(force)), "{clamps:?}");
+    }
+}
+
+/// Clamps that move together do not move the leaves against each other, however much of a mean they hold: refused.
+#[test]
+fn leaves_whose_clamps_move_together_are_clamped_leaves() {
+    for (cells, order) in [([20, 23], 1), ([20, 20], 2)] {
+        let moved = |by: f64| {
+            let clamp = |end| Support::fixed(end).with_motion([0.0, 0.0, by], History::constant(1.0));
+            let clamps = CLAMPS.map(clamp).into_iter();
+            solve(clamps.fold(leaves(cells, order), Scene::with_support), tight())
+        };
+        let (still, moved) = (moved(0.0), moved(1.0));
+        let there: Vec<f64> = (moved.displacement.iter().enumerate())
+            .map(|(k, u)| if k % 3 == 2 { u - 1.0 } else { *u })
+            .collect();
+        assert_close(&there, &still.displacement, 1e-6, &format!("{cells:?} order {order}"));
+    }
+}
+
+/// Where supports hold both sides of a tie no row says how these move: supports that part them are refused, and were
+/// not. A tie that moves as they do may.
+#[test]
+fn supports_do_not_part_tied_sides() {
+    let way = [0.0, 1e-3, 1e-3];
+    for (cells, order) in [(2, 1), (3, 1), (2, 2), (3, 2)] {
+        let mesh = block_on(&block([1.0; 3], [cells, cells, 2]));
+        let mesh = if order == 2 { mesh.raise_order().expect("order 2") } else { mesh };
+        let scene = |ways: [[f64; 3]; 2], tie: Contact| {
+            let sides = [brick::X_MIN, second(brick::X_MIN)].into_iter().zip(ways);
+            let scene = Scene::new(mesh.clone(), uniform(1e9, 0.3))
+                .with_contact(tie)
+                .with_load(Load::traction(second(brick::Z_MAX), [1e5, 0.0, 0.0]))
+                .with_analysis(Analysis::quasistatic(1.0, 2));
+            sides.fold(scene, |scene, (side, way)| {
+                scene.with_support(Support::fixed(side).with_motion(way, ramp()))
+            })
+        };
+        let tied = || Contact::tied(second(brick::Z_MIN), brick::Z_MAX);
+        for (ways, tie) in [
+            ([[0.0; 3], way], tied()),
+            (
+                [way, [0.0; 3]],
+                Contact::tied(brick::Z_MAX, second(brick::Z_MIN)).with_motion(way.map(|c| -c), ramp()),
+            ),
+            ([way; 2], tied().with_motion(way, ramp())),
+        ] {
+            let error = refused(&scene(ways, tie)).to_string();
+            assert!(
+                error.contains("contact 0") && error.contains("tied") && error.contains("0.5 s"),
+                "{error}"
+            );
+        }
+        for (ways, tie) in [
+            ([way; 2], tied()),
+            ([[0.0; 3], way], tied().with_motion(way, ramp())),
+            (
+                [way, [0.0; 3]],
+                Contact::tied(brick::Z_MAX, second(brick::Z_MIN)).with_motion(way, ramp()),
+            ),
+        ] {
+            let (_, results) = run(scene(ways, tie), at(1e-8));
+            assert!(norm(&results[1].displacement) > 1e-3);
+        }
     }
 }

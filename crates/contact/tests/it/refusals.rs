@@ -177,6 +177,37 @@ fn supports_that_touch_or_stay_outside_are_accepted() {
     );
 }
 
+/// In a quadratic mesh supports hold a part of the mean around a node, and all of it moves with that.
+#[test]
+fn supports_take_means_with_them() {
+    let beam = |way: f64, floor: Contact| {
+        let mesh = block([3.0, 1.0, 1.0], [6, 2, 2]).raise_order().expect("order 2");
+        Scene::new(mesh, steel())
+            .with_support(Support::fixed(brick::X_MIN).with_motion([0.0, 0.0, way], ramp()))
+            .with_contact(floor)
+            .with_load(Load::pressure(brick::Z_MAX, 1e5))
+            .with_analysis(Analysis::quasistatic(1.0, 4))
+    };
+    match refused(&beam(-0.15, floor(0.1))) {
+        ContactError::SupportInObstacle {
+            time,
+            displacement,
+            depth,
+            ..
+        } => {
+            assert_eq!(time, 0.75);
+            assert!((displacement - 0.1125).abs() < 1e-12 && (depth - 0.0125).abs() < 1e-12);
+        }
+        error => panic!("{error}"),
+    }
+    for (way, floor) in [
+        (-0.1, floor(0.1)),
+        (0.1, floor(0.0).with_motion([0.0, 0.0, 0.1], ramp())),
+    ] {
+        Plan::new(&beam(way, floor), &Settings::default()).expect("accepted");
+    }
+}
+
 /// A block that is moved on two adjacent sides, the second with history `h`.
 fn two_sides(second: [f64; 3], first_history: &History, second_history: &History) -> Scene {
     Scene::new(block([1.0; 3], [2, 2, 2]), steel())

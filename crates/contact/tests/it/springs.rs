@@ -417,3 +417,81 @@ fn fields_of_reactions_have_no_springs() {
     let size = norm(at_supports.as_flattened());
     assert!(size > 0.0 && distance(result.reaction_field().as_flattened(), at_supports.as_flattened()) < 1e-9);
 }
+
+/// A block with inclined springs at an edge, where a support holds z.
+fn inclined(support: impl Fn(Vec<u32>) -> Support, steps: usize) -> (Scene, Vec<u32>) {
+    let mesh = block([1.0; 3], [2; 3]);
+    let place = |n: &u32| mesh.points()[*n as usize];
+    let edge: Vec<u32> = mesh
+        .nodes_on(brick::X_MAX)
+        .into_iter()
+        .filter(|n| place(n)[2] == 1.0)
+        .collect();
+    let scene = Scene::new(mesh, uniform(YOUNG, 0.3))
+        .with_support(Support::fixed(brick::X_MIN))
+        .with_support(support(edge.clone()))
+        .with_spring(Spring::along(edge.clone(), [1.0, 0.0, 1.0], YOUNG))
+        .with_load(Load::traction(brick::X_MAX, [1e8, 0.0, 5e7]).with_history(ramp()))
+        .with_analysis(Analysis::quasistatic(steps as f64, steps));
+    (scene, edge)
+}
+
+/// A spring that is inclined pulls along x by what a support moves along z, too: beside the dense system.
+#[test]
+fn inclined_springs_feel_what_supports_move() {
+    let (lift, half) = (1e-3, 0.5 * YOUNG);
+    let up = |edge| Support::components(edge, [false, false, true]).with_motion([0.0, 0.0, lift], ramp());
+    let (scene, edge) = inclined(up, 1);
+    let mesh = scene.mesh().clone();
+    let n = 3 * mesh.points().len();
+    let load = LoadDensity::Traction(brick::X_MAX, [1e8, 0.0, 5e7]);
+    let mut force = assemble_load(&mesh, &Decomposition::whole(&mesh), &load)
+        .expect("load")
+        .remove(0);
+    let mut matrix = vec![vec![0.0; n]; n];
+    let hooke = Hooke::isotropic(YOUNG, 0.3).expect("Hooke");
+    let stiffness = assemble_stiffness(mesh.points(), mesh.tets(), |_| &hooke).expect("stiffness");
+    stiffness.iter().for_each(|(&value, (i, j))| matrix[i][j] += value);
+    for x in edge.iter().map(|n| 3 * *n as usize) {
+        for (i, j) in [(x, x), (x, x + 2), (x + 2, x), (x + 2, x + 2)] {
+            matrix[i][j] += half;
+        }
+    }
+    let held = mesh
+        .nodes_on(brick::X_MIN)
+        .into_iter()
+        .flat_map(|n| [0, 1, 2].map(|c| (3 * n as usize + c, 0.0)));
+    let held: Vec<(usize, f64)> = held.chain(edge.iter().map(|n| (3 * *n as usize + 2, lift))).collect();
+    for &(i, value) in &held {
+        for j in 0..n {
+            force[j] -= matrix[j][i] * value;
+            (matrix[i][j], matrix[j][i]) = (0.0, 0.0);
+        }
+        matrix[i][i] = YOUNG;
+    }
+    held.iter().for_each(|&(i, value)| force[i] = YOUNG * value);
+    let exact = cholesky_solve(matrix, &force);
+    for boxes in [[1, 1, 1], [2, 1, 2]] {
+        let mut simulation = Simulation::new(scene.clone().with_boxes(boxes), tight()).expect("set-up");
+        let result = simulation.step().expect("step");
+        assert_close(&result.displacement().into_flattened(), &exact, 1e-8, "dense");
+        let reactions = result.reactions();
+        let way: f64 = edge.iter().map(|n| exact[3 * *n as usize] + lift).sum();
+        let pull = reactions.springs[0].resultant.force;
+        assert!((pull[0] / (-half * way) - 1.0).abs() < 1e-7, "{pull:?}");
+        assert!(norm(&reactions.imbalance().force) < 1e-6 * norm(&pull));
+        let error = result.algebraic_error();
+        assert!(error.relative() < 1e-6, "{error:?}");
+    }
+}
+
+/// The spring pulls on where the support takes over its node: its force along x fell by half.
+#[test]
+fn inclined_springs_pull_on_where_supports_start() {
+    let (scene, _) = inclined(
+        |edge| Support::components(edge, [false, false, true]).with_start(1.0),
+        2,
+    );
+    let (_, steps) = run(scene, tight());
+    assert_close(&steps[1].displacement, &steps[0].displacement, 1e-7, "held where it is");
+}

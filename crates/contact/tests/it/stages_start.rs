@@ -69,6 +69,38 @@ fn a_roller_on_the_plane_of_another_holds_nothing_more() {
     assert!(loaded > 1e-4 && back < 1e-9 * loaded, "{loaded:e} {back:e}");
 }
 
+/// Supports on the same nodes keep their directions where one of them starts later: nodes stay on an inclined plane,
+/// and move along z, or x, by what is told. They moved by the half.
+#[test]
+fn oblique_supports_that_start_keep_their_directions() {
+    let way = 1e-4;
+    let line = History::table(vec![(2.0, 0.0), (4.0, 1.0)]).expect("table");
+    let incline = || Support::partial(brick::X_MAX, Directions::Vectors(vec![[1.0, 0.0, 1.0]]));
+    let moved = |c: usize, by: f64| {
+        let own = [0, 1, 2].map(|k| k == c);
+        Support::components(brick::X_MAX, own).with_motion(own.map(|on| if on { by } else { 0.0 }), line.clone())
+    };
+    for (clamps, along, way) in [
+        (vec![incline(), moved(2, way).with_start(2.0)], 2, way),
+        (vec![moved(2, way).with_start(2.0), incline()], 2, way),
+        (vec![incline().with_start(2.0), moved(0, -way)], 0, -way),
+    ] {
+        let (simulation, steps) = run(grabbed(clamps, Friction::None), tight());
+        let size = norm(&steps[1].displacement);
+        for node in simulation.scene().mesh().nodes_on(brick::X_MAX) {
+            let at = |k: usize, c: usize| steps[k].displacement[3 * node as usize + c];
+            for k in [2, 3] {
+                let slid = at(k, along) - at(1, along) - way * line.value(steps[k].time);
+                let lifted = at(k, 0) + at(k, 2) - at(1, 0) - at(1, 2);
+                assert!(
+                    slid.abs() < 1e-8 * size && lifted.abs() < 1e-8 * size,
+                    "{slid:e} {lifted:e}"
+                );
+            }
+        }
+    }
+}
+
 /// Supports that start one after another, end, and share nodes with others that move, touch or are held for longer.
 #[test]
 fn supports_share_nodes_with_those_before() {

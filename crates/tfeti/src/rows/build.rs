@@ -14,7 +14,7 @@ use crate::subdomain::copy_stiffness::CopyStiffness;
 use crate::tolerances::{SAME, SOFTEST, UNIT};
 use signorini_fem_mesh::Decomposition;
 use signorini_fem_mesh::decomposition::NodeCopy;
-use signorini_fem_mesh::vec3::{combine, dot, norm};
+use signorini_fem_mesh::vec3::{dot, norm};
 
 impl Gluing {
     /// Builds the rows. `stiffness` weighs the copies of a node in contact and support rows. Those that hold rigid
@@ -253,13 +253,11 @@ impl Builder<'_> {
         let own = self.decomposition.subdomains().get(subdomain as usize);
         let own = own.filter(|own| own.is_relative);
         let factor = -factor * row.scale;
-        for (k, &(node, weight)) in tied.side.nodes().iter().enumerate() {
+        for (node, vector) in tied.on_side(row.direction) {
             let what = "the subdomain of its relative motion does not have its nodes";
             let local = own.and_then(|own| own.local(node));
             let local = local.ok_or(TfetiError::BadSide { point, what })? as u32;
-            let turn = tied.side.turn().get(k);
-            let turned = turn.map_or([0.0; 3], |turn| combine(turn, row.direction));
-            let vector = [0, 1, 2].map(|c| factor * (weight * row.direction[c] + turned[c]));
+            let vector = vector.map(|c| factor * c);
             self.entries.push(CopyEntry {
                 subdomain,
                 local,
@@ -349,7 +347,7 @@ impl Builder<'_> {
     /// both together are `1 / k` as for other rows.
     fn springs(&mut self, (springs, all): (&[NodalSpring], &CopyStiffness)) -> Result<(), TfetiError> {
         for (k, spring) in springs.iter().enumerate() {
-            let NodalSpring { node, stiffness, .. } = *spring;
+            let (node, stiffness) = (spring.node, spring.stiffness);
             check_node(node, self.decomposition.nodes(), || format!("spring {k}"))?;
             let copies = self.decomposition.copies(node as usize);
             let compliance = 1.0 / (self.stiffness.squares(copies) * stiffness);
@@ -363,7 +361,14 @@ impl Builder<'_> {
             let wanted = (1.0 + compliance * own).sqrt().recip();
             let scale = wanted.max(SOFTEST);
             self.spread(node, spring.direction.map(|c| scale * c));
-            self.close(node);
+            let row = self.close(node);
+            let length = scale / self.stiffness.squares(copies).sqrt();
+            for &(case, value) in &spring.rest {
+                let of_case = self.gluing.prescribed.get_mut(case as usize);
+                let of_case = of_case.filter(|_| value.is_finite());
+                let of_case = of_case.ok_or(TfetiError::SpringRest { node, case, value })?;
+                of_case.push((row as u32, length * value));
+            }
             self.gluing.springs.push(SpringRow {
                 compliance: scale * scale * compliance,
                 scale,

@@ -7,6 +7,7 @@ use crate::rows::supports::{FixedNode, MergedSupports};
 use crate::tolerances::{ANGLE, FIXED, HELD_OF_OTHER, ONE_DIRECTION};
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 use signorini_fem_mesh::vec3::dot;
+use std::ops::Range;
 
 /// A contact point whose normal displacement is fixed by supports, so that it has no normal row.
 #[derive(Debug, Clone, PartialEq)]
@@ -17,7 +18,21 @@ pub struct PrescribedPoint {
     /// Its first mesh node.
     pub node: u32,
     /// `(case, relative normal displacement in metres)`: what supports prescribe for a factor of one, cases ascending.
+    /// Of a side that they hold in part all moves with that.
     pub normal: Vec<(u32, f64)>,
+}
+
+/// A direction in which supports hold both sides of a tied constraint, so that no row says there how they move.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct HeldTie {
+    /// Position in the list of contact points.
+    pub point: usize,
+    /// Of length one.
+    pub direction: [f64; 3],
+    /// `(case, relative displacement along it in metres)`: what supports prescribe for a factor of one, cases
+    /// ascending. `None` where they hold a part of a side whose nodes do not move alike.
+    pub values: Option<Vec<(u32, f64)>>,
 }
 
 /// The contact points whose normal displacement supports fix at all nodes, in the order of the points.
@@ -34,16 +49,21 @@ pub fn prescribed_points(
     Ok(contact_rows(contact, supports, |_| 1.0)?.prescribed)
 }
 
-/// Directions in which supports hold both sides of tied constraints whose sides move
-/// [relative](ContactConstraint::relative) to each other, with the position of the constraint: no row says there how
-/// they do.
-pub fn unsaid_directions(contact: &[ContactConstraint], supports: &MergedSupports) -> Vec<(usize, [f64; 3])> {
-    let moving = contact.iter().enumerate().filter(|(_, point)| point.relative.is_some());
-    let of = |(k, point): (usize, &ContactConstraint)| {
-        let fixed = Space::new(point, supports, &|_| 1.0).fixed(point, Vector3::zeros());
-        fixed.into_iter().map(move |d| (k, d.into()))
+/// The directions in which supports hold both sides of tied constraints, in the order of the constraints. Whether what
+/// they prescribe is what the tie says is to be judged by whoever knows how its sides move.
+pub fn held_ties(contact: &[ContactConstraint], supports: &MergedSupports) -> Vec<HeldTie> {
+    let tied = contact.iter().enumerate().filter(|(_, point)| point.tied);
+    let of = |(index, point): (usize, &ContactConstraint)| {
+        let space = Space::new(point, supports, &|_| 1.0);
+        let held = |d: Vector3<f64>| HeldTie {
+            point: index,
+            direction: d.into(),
+            values: space.moves_alike(point, d).then(|| space.prescribed_along(point, d)),
+        };
+        let fixed = space.fixed(point, Vector3::zeros());
+        fixed.into_iter().map(held).collect::<Vec<_>>()
     };
-    moving.flat_map(of).collect()
+    tied.flat_map(of).collect()
 }
 
 /// One contact row: what it does to the mean displacements of the nodes of both sides.
@@ -107,6 +127,8 @@ struct Space {
     /// Gram matrix of the rows `direction -> coefficient * projector * direction`.
     gram: Matrix3<f64>,
     prescribed: Vec<(u32, [f64; 3])>,
+    /// What of it each node is moved by.
+    moved: Vec<Vec<(u32, [f64; 3])>>,
 }
 
 impl Space {
@@ -118,6 +140,7 @@ impl Space {
         let mut nodes = Vec::with_capacity(2);
         let mut held = Vec::with_capacity(2);
         let mut turns = point.turns();
+        let mut moved = Vec::with_capacity(2);
         for (k, (node, weight)) in point.nodes().enumerate() {
             let fixed = supports.at(node);
             let [mut free, mut own] = [Matrix3::identity(), Matrix3::zeros()];
@@ -131,7 +154,8 @@ impl Space {
             }
             held.push(own);
             nodes.push((scale * squares(node).sqrt() * weight, free));
-            for (case, value) in fixed.map(FixedNode::prescribed).unwrap_or_default() {
+            let own = fixed.map(FixedNode::prescribed).unwrap_or_default();
+            for &(case, value) in &own {
                 let sum = entry(&mut prescribed, case, [0.0; 3]);
                 (0..3).for_each(|c| sum[c] += weight * value[c]);
                 if let Some(turn) = turns.get(k) {
@@ -139,6 +163,7 @@ impl Space {
                     (0..3).for_each(|c| sum[c] += turned[c]);
                 }
             }
+            moved.push(own);
             if let Some(turn) = turns.get_mut(k) {
                 *turn *= scale * squares(node).sqrt();
             }
@@ -152,7 +177,61 @@ impl Space {
             scale,
             gram,
             prescribed,
+            moved,
         }
+    }
+
+    /// How much of a direction supports hold at a node.
+    fn held_of(&self, node: usize, d: Vector3<f64>) -> f64 {
+        1.0 - d.dot(&(self.nodes[node].1 * d))
+    }
+
+    /// The sides of which supports hold some nodes along a direction and not all, with the share of the mean.
+    fn parts(&self, point: &ContactConstraint, d: Vector3<f64>) -> Vec<(Range<usize>, f64)> {
+        let (own, all) = (point.side.nodes().len(), self.nodes.len());
+        let weights: Vec<f64> = point.nodes().map(|n| n.1).collect();
+        let sides = [0..own, own..all].into_iter();
+        let parts = sides.filter(|side| side.clone().any(|k| self.held_of(k, d) < 1.0 - ANGLE));
+        let share = |side: &Range<usize>| side.clone().map(|k| weights[k] * self.held_of(k, d)).sum::<f64>();
+        parts.map(|side| (side.clone(), share(&side).abs())).collect()
+    }
+
+    /// What supports prescribe of the relative displacement along a direction, by case, with copies that count alike:
+    /// what they hold of a side takes the rest, which has no row of its own, with it.
+    fn prescribed_along(&self, point: &ContactConstraint, d: Vector3<f64>) -> Vec<(u32, f64)> {
+        let along = |v: &[f64; 3]| d.dot(&Vector3::from(*v));
+        let mut out: Vec<(u32, f64)> = self.prescribed.iter().map(|(case, v)| (*case, along(v))).collect();
+        let weights: Vec<f64> = point.nodes().map(|n| n.1).collect();
+        for (side, share) in self.parts(point, d) {
+            let more = share.max(HELD_OF_OTHER).recip() - 1.0;
+            for k in side {
+                for (case, v) in &self.moved[k] {
+                    // a side that is shifted does not turn
+                    let turned = self
+                        .turns
+                        .get(k)
+                        .map_or(0.0, |turn| d.dot(&(turn * Vector3::from(*v))) / self.scale);
+                    *entry(&mut out, *case, 0.0) += weights[k] * more * along(v) - turned;
+                }
+            }
+        }
+        out
+    }
+
+    /// Whether the nodes that supports hold of a side move alike along a direction in which others are free.
+    fn moves_alike(&self, point: &ContactConstraint, d: Vector3<f64>) -> bool {
+        let moved = |k: usize| -> Vec<(u32, f64)> {
+            let values = self.moved[k].iter().map(|(case, v)| (*case, d.dot(&Vector3::from(*v))));
+            values.filter(|v| v.1 != 0.0).collect()
+        };
+        self.parts(point, d).into_iter().all(|(side, _)| {
+            let mut held = side.filter(|k| self.held_of(*k, d) > ANGLE);
+            let first = held.next();
+            first.is_none_or(|first| {
+                let alike = |k| self.held_of(k, d) > 1.0 - ANGLE && moved(k) == moved(first);
+                alike(first) && held.all(alike)
+            })
+        })
     }
 
     /// The row of a direction times a factor, without what supports fix, or `whole`.
@@ -289,11 +368,10 @@ impl AllRows {
         let fixed = space.fixed(point, normal);
         let along: Vector3<f64> = fixed.iter().map(|d| *d * d.dot(&normal)).sum();
         if fixed.len() == 3 || (normal - along).norm() <= ONE_DIRECTION {
-            let value = |(case, v): &(u32, [f64; 3])| (*case, dot(*v, point.frame.normal));
             self.prescribed.push(PrescribedPoint {
                 point: index,
                 node: point.side.first(),
-                normal: space.prescribed.iter().map(value).collect(),
+                normal: space.prescribed_along(point, normal),
             });
             return;
         }

@@ -13,9 +13,9 @@ use crate::error::TfetiError;
 use crate::linalg::entry;
 use crate::rows::contact::contact_rows;
 use crate::tolerances::{AGREEING, ALMOST, CASES, COEFFICIENTS, FIXED, PIVOTAL};
-use signorini_fem_mesh::Decomposition;
 use signorini_fem_mesh::internal::DisjointSets;
-use signorini_fem_mesh::vec3::{dot, is_finite, norm, scale, sub};
+use signorini_fem_mesh::vec3::{add, cross, dot, is_finite, norm, scale, sub};
+use signorini_fem_mesh::{Decomposition, TetMesh};
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 /// Most other equations that an error names.
@@ -147,7 +147,7 @@ fn refused(equation: usize, node: Option<u32>, reason: &'static str) -> TfetiErr
 /// [`TfetiError`] as of a set-up: contradictions, and contact or ties that say what equations say.
 pub fn independent_equations(
     equations: &[NodalEquation],
-    decomposition: &Decomposition,
+    (mesh, decomposition): (&TetMesh, &Decomposition),
     (supports, rigid): (&MergedSupports, &[RigidSupport]),
     contact: &[ContactConstraint],
 ) -> Result<Vec<usize>, TfetiError> {
@@ -158,7 +158,7 @@ pub fn independent_equations(
     let all = equations.iter().enumerate();
     let all = all.map(|given| FreeEquation::new(given, decomposition, supports));
     let all: Vec<FreeEquation> = all.collect::<Result<_, _>>()?;
-    let lines = lines(&all, decomposition, rigid, (contact, &rows));
+    let lines = lines(&all, (mesh, decomposition), rigid, (contact, &rows));
     let mut elimination = Elimination::new(&lines);
     let mut needed = Vec::with_capacity(all.len());
     for line in &lines {
@@ -203,7 +203,7 @@ enum Kind {
     Contact(u32),
 }
 
-/// A row over the displacements of nodes and places.
+/// A row over the displacements of nodes and places, and the motions of one part relative to another.
 #[derive(Debug)]
 struct Line {
     kind: Kind,
@@ -213,11 +213,12 @@ struct Line {
     size: f64,
 }
 
-/// The rows in the order of elimination: equations, before them what else says something of their nodes and places, and
-/// behind them contact rows that are connected with them.
+/// The rows in the order of elimination: equations, before them what else says something of their nodes and places,
+/// ties with the motion that their sides have against each other, and behind them contact rows that are connected with
+/// them.
 fn lines(
     equations: &[FreeEquation],
-    decomposition: &Decomposition,
+    (mesh, decomposition): (&TetMesh, &Decomposition),
     rigid: &[RigidSupport],
     (contact, rows): (&[ContactConstraint], &AllRows),
 ) -> Vec<Line> {
@@ -228,7 +229,21 @@ fn lines(
             .filter(move |c| vector[*c] != 0.0)
             .map(move |c| (3 * at + c, vector[c]))
     };
-    let mut sets = DisjointSets::new(nodes + decomposition.subdomains().len());
+    let subdomains = decomposition.subdomains().len();
+    // displacement and rotation of a subdomain
+    let moving = |subdomain: u32, [shift, turn]: &[[f64; 3]; 2]| {
+        let at = nodes + subdomain as usize;
+        columns(at, shift)
+            .chain(columns(at + subdomains, turn))
+            .collect::<Vec<_>>()
+    };
+    let about = |subdomain: u32| {
+        rigid
+            .iter()
+            .find(|held| held.subdomain == subdomain)
+            .map_or([0.0; 3], |held| held.point)
+    };
+    let mut sets = DisjointSets::new(nodes + subdomains);
     let of_point = |point: &PointRows| contact[point.point].nodes().map(|n| n.0 as usize).collect::<Vec<_>>();
     let places = |e: &FreeEquation| -> Vec<usize> {
         let own = e.places.iter().map(|p| nodes + p.0 as usize);
@@ -246,9 +261,20 @@ fn lines(
                 continue;
             }
             for row in std::iter::once(&point.normal).chain(&point.tangential) {
+                let own = all.iter().zip(&row.parts).flat_map(|(at, v)| columns(*at, v));
+                let of = &contact[point.point];
+                let relative = of.relative.map_or_else(Vec::new, |(subdomain, factor)| {
+                    let mut motion = [[0.0; 3]; 2];
+                    for (node, vector) in of.on_side(row.direction) {
+                        let vector = scale(-factor * row.scale, vector);
+                        let arm = sub(mesh.points()[node as usize], about(subdomain));
+                        motion = [add(motion[0], vector), add(motion[1], cross(arm, vector))];
+                    }
+                    moving(subdomain, &motion)
+                });
                 out.push(Line {
                     kind: kind(all[0] as u32),
-                    entries: all.iter().zip(&row.parts).flat_map(|(at, v)| columns(*at, v)).collect(),
+                    entries: own.chain(relative).collect(),
                     values: Vec::new(),
                     size: 0.0,
                 });
@@ -257,15 +283,16 @@ fn lines(
         out
     };
     let (tied, touching) = (own(&rows.tied, &|_| Kind::Tied), own(&rows.rows, &Kind::Contact));
-    let held = rigid
-        .iter()
-        .filter(|held| held.direction[0] != [0.0; 3])
-        .map(|held| Line {
+    let held = rigid.iter().map(|held| {
+        let [shift, turn] = held.direction;
+        let arm = sub(held.point, about(held.subdomain));
+        Line {
             kind: Kind::Held,
-            entries: columns(nodes + held.subdomain as usize, &held.direction[0]).collect(),
+            entries: moving(held.subdomain, &[shift, add(turn, cross(arm, shift))]),
             values: held.values.clone(),
             size: held.values.iter().fold(0.0, |most, v| most.max(v.1.abs())),
-        });
+        }
+    });
     let equation = |(k, e): (usize, &FreeEquation)| {
         let terms = e.terms.iter().flat_map(|(node, v)| columns(*node as usize, v));
         let places = e.places.iter().flat_map(|(s, v)| columns(nodes + *s as usize, v));

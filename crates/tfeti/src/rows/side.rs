@@ -5,7 +5,7 @@ use crate::rows::supports::check_node;
 use crate::tolerances::{HELD, HELD_MEANS, SAME, UNIT};
 use nalgebra::Matrix3;
 use signorini_fem_mesh::SurfaceFrame;
-use signorini_fem_mesh::vec3::{dot, skewed};
+use signorini_fem_mesh::vec3::{add, combine, dot, scale, skewed};
 use std::collections::HashMap;
 
 /// One side of a contact constraint: nodes with weights that sum to one. It moves by the weighted mean of their
@@ -162,6 +162,18 @@ impl ContactConstraint {
             .iter()
             .copied()
             .chain(partner.map(|&(node, weight)| (node, -weight)))
+    }
+
+    /// What a direction is of the displacements of the nodes of the first side.
+    pub(crate) fn on_side(&self, direction: [f64; 3]) -> impl Iterator<Item = (u32, [f64; 3])> {
+        self.side.nodes().iter().enumerate().map(move |(k, &(node, weight))| {
+            let turned = self
+                .side
+                .turn()
+                .get(k)
+                .map_or([0.0; 3], |turn| combine(turn, direction));
+            (node, add(scale(weight, direction), turned))
+        })
     }
 
     /// What sides add by turning, node by node as [`nodes`](Self::nodes); nothing where none does.

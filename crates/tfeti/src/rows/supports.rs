@@ -149,8 +149,9 @@ fn keep<T>(list: Vec<T>, kept: &[bool]) -> Vec<T> {
 }
 
 /// A spring between a node and the ground: it pushes the body by `-stiffness` times its displacement along the
-/// direction. Springs of a node stand at right angles to one another and to what supports fix.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// direction, less that at which it is at rest. Springs of a node stand at right angles to one another and to what
+/// supports fix.
+#[derive(Debug, Clone, PartialEq)]
 pub struct NodalSpring {
     /// Mesh node.
     pub node: u32,
@@ -158,6 +159,9 @@ pub struct NodalSpring {
     pub direction: [f64; 3],
     /// N/m, positive.
     pub stiffness: f64,
+    /// `(case, displacement in metres)` at which it is at rest for a factor of one, as where supports move the node
+    /// across an inclined spring; zero in other cases. Cases are those of supports.
+    pub rest: Vec<(u32, f64)>,
 }
 
 /// A direction that supports fix at a node.
@@ -234,6 +238,11 @@ impl MergedSupports {
     /// The directions that supports fix at a node.
     pub fn directions(&self, node: u32) -> &[FixedDirection] {
         self.at(node).map_or(&[], |fixed| &fixed.directions)
+    }
+
+    /// The displacement that supports prescribe at a node, by case, m.
+    pub fn prescribed(&self, node: u32) -> Vec<(u32, [f64; 3])> {
+        self.at(node).map_or_else(Vec::new, FixedNode::prescribed)
     }
 
     /// Nodes with at least one fixed direction, ascending.

@@ -214,7 +214,7 @@ impl<'a> TfetiBuilder<'a> {
             .map(|support| support.row(self.mesh, self.decomposition));
         let rigid: Vec<RigidRow> = rigid.collect::<Result<_, _>>()?;
         let held = (supports, self.rigid);
-        let needed = independent_equations(self.equations, self.decomposition, held, self.contact)?;
+        let needed = independent_equations(self.equations, (self.mesh, self.decomposition), held, self.contact)?;
         let needed: Vec<_> = needed.into_iter().map(|k| (k, &self.equations[k])).collect();
         let (supports, contact) = ((supports, &rigid[..]), (self.contact, &needed[..]));
         let gluing = Gluing::new(self.decomposition, supports, contact, stiffness, springs)?;

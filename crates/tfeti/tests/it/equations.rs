@@ -157,8 +157,8 @@ fn many_are_judged_in_little_time() {
             });
         }
         let started = Instant::now();
-        let found =
-            independent_equations(&equations, &cut, (&MergedSupports::default(), &[]), &[]).expect("no contradiction");
+        let found = independent_equations(&equations, (&mesh, &cut), (&MergedSupports::default(), &[]), &[])
+            .expect("no contradiction");
         println!("{stride}: {:?}", started.elapsed());
         assert_eq!(found.len(), count + 3);
         assert!(!found.contains(&count));

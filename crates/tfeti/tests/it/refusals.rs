@@ -110,15 +110,17 @@ fn bad_directions_are_named_by_their_nodes() {
 #[test]
 fn springs_have_unit_directions() {
     let b = Brick::new(1, 2);
-    let of = |direction, stiffness| {
+    let resting = |direction, stiffness, rest| {
         let springs = [NodalSpring {
             node: 0,
             direction,
             stiffness,
+            rest,
         }];
         let supports = b.supports();
         b.builder(&supports).with_springs(&springs).build()
     };
+    let of = |direction, stiffness| resting(direction, stiffness, Vec::new());
     assert!(of([0.6, 0.0, -0.8], 1e9).is_ok());
     for direction in [
         [0.0; 3],
@@ -128,6 +130,13 @@ fn springs_have_unit_directions() {
     ] {
         let error = of(direction, 1e9).err();
         assert!(matches!(error, Some(TfetiError::Spring { node: 0, .. })), "{error:?}");
+    }
+    for rest in [(7, 1e-3), (u32::MAX, 0.0)] {
+        let error = resting([0.6, 0.0, -0.8], 1e9, vec![rest]).err();
+        assert!(
+            matches!(error, Some(TfetiError::SpringRest { node: 0, .. })),
+            "{error:?}"
+        );
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::common::{Brick, column, distance, dot, gluing, is_orthonormal, noise, norm, product};
 use signorini_fem_mesh::{SurfaceFrame, brick};
 use signorini_qp::EqualityProjector;
-use signorini_tfeti::internal::{ActiveSetFactor, MergedSupports, prescribed_points};
+use signorini_tfeti::internal::{ActiveSetFactor, MergedSupports, held_ties, prescribed_points};
 use signorini_tfeti::{
     ActiveSetProjector, ContactConstraint, Directions, Motion, NodeSupport, Side, TangentialRows, Tfeti, TfetiError,
 };
@@ -179,6 +179,54 @@ fn supports_at_some_nodes_leave_the_row() {
         (a + 0.8 * 2e-3).abs() < 1e-16 && (c - 0.8 * -1e-3).abs() < 1e-16,
         "{a} {c}"
     );
+}
+
+/// Where supports hold a part of both sides, so that no row says how these move, all of a side moves with that.
+#[test]
+fn what_supports_hold_of_a_side_takes_the_rest_with_it() {
+    let b = Brick::new(1, 2);
+    let [down, turn] = [[0.0, 0.0, -1.0], [0.2, -0.1, 0.3]];
+    let partner = side(&[2, 3], &[0.4, 0.6]).with_turn(vec![[turn; 3]; 2]);
+    let point = ContactConstraint::new(side(&[0, 1], &[0.7, 0.3]), SurfaceFrame::from_normal(down).unwrap());
+    let point = point.with_partner(Some(partner));
+    let moved = |node: u32, case, by: f64| {
+        let held = NodeSupport::partial(vec![node], Directions::Components([false, false, true]));
+        held.with_motion(Motion::new(case, vec![[0.0, 0.0, by]]))
+    };
+    let merged = |supports: &[NodeSupport]| MergedSupports::new(supports, b.mesh.points().len()).unwrap();
+    let supports = merged(&[moved(0, 0, 2e-3), moved(2, 1, 5e-4)]);
+    let held = prescribed_points(std::slice::from_ref(&point), &supports).unwrap();
+    let [(0, own), (1, other)] = held[0].normal[..] else {
+        panic!("{held:?}");
+    };
+    assert!((own + 2e-3).abs() < 1e-16 && (other - 5e-4).abs() < 1e-16, "{held:?}");
+    // so of a tie, but where nodes of a side do not move alike
+    let tied = [ContactConstraint { tied: true, ..point }];
+    let along = |supports: &MergedSupports| {
+        let held = held_ties(&tied, supports);
+        let [held] = &held[..] else {
+            panic!("{held:?}");
+        };
+        assert!(
+            (held.direction[2].abs() - 1.0).abs() < 1e-12 && held.point == 0,
+            "{held:?}"
+        );
+        let values = held.values.clone();
+        values.map(|values| values.iter().map(|v| v.1 * held.direction[2]).collect::<Vec<_>>())
+    };
+    let [own, other] = along(&supports).unwrap()[..] else {
+        panic!("two cases");
+    };
+    assert!(
+        (own - 2e-3).abs() < 1e-16 && (other + 5e-4).abs() < 1e-16,
+        "{own} {other}"
+    );
+    let three = ContactConstraint {
+        side: side(&[0, 1, 4], &[0.4, 0.3, 0.3]),
+        ..tied[0].clone()
+    };
+    let unlike = merged(&[moved(0, 0, 2e-3), moved(1, 0, 1e-3), moved(2, 1, 5e-4)]);
+    assert_eq!(held_ties(&[three], &unlike)[0].values, None);
 }
 
 /// Matrices of a side are in its rows beside the mean, whatever supports hold.
