@@ -126,6 +126,8 @@ fn levels_of(
                 ContactError::NotDetermined { .. } => "NotDetermined",
                 ContactError::SharedNode { .. } => "SharedNode",
                 ContactError::SupportInObstacle { .. } => "SupportInObstacle",
+                // bodies that overhang may miss the one below
+                ContactError::NoPartner { .. } => "NoPartner",
                 _ => return Err(error.into()),
             };
             return Ok(Some((name.to_owned(), error.to_string())));
