@@ -11,22 +11,28 @@ use signorini::prelude::*;
 const CELL: f64 = 0.0025;
 
 fn main() -> Result<(), Error> {
-    let mut simulation = Simulation::new(scene()?, Settings::default())?;
     println!("  t in s  pull in kN  bolt in kN  plates in kN  shortened by in um");
+    for [time, pull, bolt, plates, shortened] in rows()? {
+        println!("{time:>8.2} {pull:>11.2} {bolt:>11.3} {plates:>13.3} {shortened:>19.3}");
+    }
+    Ok(())
+}
+
+/// Of each step the time, s, the forces that pull, in the bolt and between the plates, kN, and by how much the bolt has
+/// been shortened, micrometres.
+pub fn rows() -> Result<Vec<[f64; 5]>, Error> {
+    let mut simulation = Simulation::new(scene()?, Settings::default())?;
+    let mut rows = Vec::new();
     while !simulation.is_finished() {
         let result = simulation.step()?;
         result.require_converged()?;
         let reactions = result.reactions();
-        println!(
-            "{:>8.2} {:>11.2} {:>11.3} {:>13.3} {:>19.3}",
-            result.time(),
-            reactions.loads.force[2] / 1e3,
-            reactions.contacts[0].force[2] / 1e3,
-            reactions.contacts[1].force[2] / 1e3,
-            result.couplings()[0].displacement[2] * 1e6
-        );
+        let [pull, bolt, plates] =
+            [reactions.loads, reactions.contacts[0], reactions.contacts[1]].map(|r| r.force[2] / 1e3);
+        let shortened = result.couplings()[0].displacement[2] * 1e6;
+        rows.push([result.time(), pull, bolt, plates, shortened]);
     }
-    Ok(())
+    Ok(rows)
 }
 
 /// The part of a block of cells about the origin whose places `is_inside` says, with the tags of its faces across z.

@@ -1,6 +1,8 @@
-//! The plain programs: each runs, and finds what it must find.
+//! What plain programs must find. `.ci/run` runs all of them.
 #![allow(dead_code, missing_docs, unreachable_pub)]
 
+#[path = "../bolt.rs"]
+mod bolt;
 #[path = "../coupled.rs"]
 mod coupled;
 #[path = "../crack.rs"]
@@ -39,12 +41,39 @@ fn the_readme_shows_the_first_program() {
 }
 
 /// Slip is that without friction under what friction leaves of the shear: 0.7 of it at first, then 0.5, -0.7, -0.7,
-/// 0.7.
+/// 0.7. In a plate without an end it is `4 (1 - nu^2) / E` times that stress times `sqrt(1 - x^2)`; edges that are held
+/// a crack's length away take a fifth of it.
 #[test]
 fn the_crack_slides_as_the_formula_says() {
     let slips = crack::slips(4).expect("crack");
     for (slip, expected) in slips.iter().zip([0.0, 1.0, 5.0 / 7.0, -1.0, -1.0, 1.0]) {
         assert!((slip / slips[1] - expected).abs() < 1e-5, "{slips:?}");
+    }
+    let scene = crack::scene(4).expect("scene");
+    let nodes = scene.mesh().nodes_on(scene.contacts()[0].tags()[0]);
+    let across = |n: &u32| (1.0 - scene.mesh().points()[*n as usize][0].powi(2)).max(0.0).sqrt();
+    let mean = nodes.iter().map(across).sum::<f64>() / nodes.len() as f64;
+    let stress = (1.0 - crack::FRICTION) * 1e-3 * 1e9 / (2.0 * 1.25);
+    let endless = 4.0 * (1.0 - 0.25 * 0.25) / 1e9 * stress * mean;
+    assert!((slips[1] / endless - 0.8).abs() < 0.04, "{} {endless}", slips[1]);
+}
+
+/// What tightens goes through plates and bolt; then these hardly give the bolt any of the pull until they part.
+#[test]
+fn the_bolt_takes_the_pull_once_the_plates_part() {
+    let rows = bolt::rows().expect("bolt");
+    assert_eq!(rows.len(), 12);
+    let near = |a: f64, b: f64| (a - b).abs() < 1e-3;
+    for [time, pull, bolt, plates, shortened] in &rows {
+        let tightened = 10.0 * time.min(1.0);
+        let what = format!("{time}: {pull} {bolt} {plates} {shortened}");
+        assert!(near(bolt - plates, *pull), "{what}");
+        if *pull <= 7.5 {
+            assert!((-1e-3..0.02 * pull + 1e-3).contains(&(bolt - tightened)), "{what}");
+        } else if *pull > 12.0 {
+            assert!(near(*bolt, *pull) && near(*plates, 0.0), "{what}");
+        }
+        assert!(*time < 1.0 || near(*shortened, rows[5][4]), "{what}");
     }
 }
 

@@ -4,6 +4,8 @@ use std::collections::BTreeMap;
 use std::fs::read_to_string;
 use std::path::{Path, PathBuf};
 
+use signorini::prelude::*;
+
 fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("..")
 }
@@ -96,12 +98,13 @@ fn tutorials_show_the_programs() {
         if !path.starts_with(root().join("docs/tutorials")) {
             continue;
         }
-        let Some(command) = text.split("--example ").nth(1) else {
-            continue;
-        };
-        let name = command.split_whitespace().next().expect("a name");
-        let file = root().join(format!("examples/{name}.rs"));
-        let program = read_to_string(&file).expect("the program of the tutorial");
+        // a page without a program of its own shows lines of the test below
+        let program = text
+            .split("--example ")
+            .nth(1)
+            .and_then(|c| c.split_whitespace().next());
+        let file = program.map_or("tests/docs/mod.rs".to_owned(), |name| format!("{name}.rs"));
+        let program = read_to_string(root().join("examples").join(file)).expect("the program of the tutorial");
         let program: Vec<&str> = program.lines().map(str::trim).collect();
         let mut rust = false;
         for line in text.lines() {
@@ -114,4 +117,24 @@ fn tutorials_show_the_programs() {
         }
     }
     assert!(shown > 40, "{shown}");
+}
+
+/// The lines of the tutorial about certificates, which shows and explains all their parts.
+#[test]
+fn a_certificate_has_the_parts_that_are_explained() {
+    let page = read_to_string(root().join("docs/tutorials/certificate.md")).expect("a page");
+    let scene = crate::crack::scene(2).expect("scene");
+    let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+    let result = simulation.step().expect("step");
+    let report = result.report();
+    println!("{}, {} products", report.status, report.counters.products);
+    for (name, violation) in result.certificate().parts() {
+        println!("  {name}: {:.1e}", violation.relative());
+        for shown in [format!("\n  {name}: "), format!("\n| {name} | ")] {
+            assert_eq!(page.matches(&shown).count(), 1, "{name}");
+        }
+    }
+    let explained = page.lines().filter(|line| line.starts_with("| ")).count();
+    // with their head
+    assert_eq!(explained, result.certificate().parts().len() + 1);
 }

@@ -56,7 +56,7 @@ pub struct Finding {
     pub value: f64,
     /// What it should be; 0 where the value is an error itself.
     pub target: f64,
-    /// Largest relative error (or value) that is asked for on the full mesh.
+    /// Largest relative error (or value) that passes on the full mesh; 0 where nothing is asked for.
     pub asked: f64,
     /// The run.
     pub run: RunFacts,
@@ -175,7 +175,22 @@ pub fn execute(options: &CasesOptions, out: &mut impl Write) -> Result<Vec<Findi
     if let Some(path) = &options.out {
         save(path, &page(&all, options))?;
     }
+    // coarse meshes are not what the limits are for
+    if !options.short {
+        within_limits(&all)?;
+    }
     Ok(all)
+}
+
+/// Refuses errors above what is asked for.
+pub fn within_limits(findings: &[Finding]) -> Result<(), Failure> {
+    let above = |f: &&Finding| f.asked > 0.0 && (f.error() > f.asked || f.error().is_nan());
+    let list: Vec<String> = findings.iter().filter(above).map(|f| row(f).join(" | ")).collect();
+    if list.is_empty() {
+        Ok(())
+    } else {
+        Err(format!("errors above their limits:\n{}", list.join("\n")).into())
+    }
 }
 
 const HEADS: [[&str; 2]; 10] = [

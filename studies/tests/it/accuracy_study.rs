@@ -24,6 +24,10 @@ fn short_run_writes_all_files_and_errors_fall() {
         for pair in c.samples.windows(2) {
             assert!(pair[1].errors.u < pair[0].errors.u, "{name}: {text}");
         }
+        for sample in &c.samples {
+            let index = sample.estimate.expect("an estimate") / sample.errors.u;
+            assert!((0.3..10.0).contains(&index), "{name}, {index}: {text}");
+        }
     }
     // mesh: both ways to refine see the same errors, and balanced ones do not lose accuracy
     let fixed = curve(&curves, Study::Mesh, "H/h = 2, 1e-6");

@@ -256,6 +256,7 @@ fn start_values_change_nothing() {
         ..Block::default()
     };
     let a = run_block(block.clone());
+    let mut came = 0;
     for seed in 0..12 {
         let (block, size) = (block.clone(), 10_f64.powf(17.0 * next() - 3.0));
         let b = run(&Case::new("", "", "", move || {
@@ -278,13 +279,16 @@ fn start_values_change_nothing() {
             let off = difference(&a.figures, &b.figures);
             assert!(off < 1e-4, "{seed}, {size:e}: {:?} {:?}", a.figures, b.figures);
         }
+        came += usize::from(solved);
     }
+    assert!(came >= 10, "{came} of 12 are solved");
 }
 
 /// Random loads on a loose block: refused, certified, or a status; never anything else.
 #[test]
 fn loose_blocks_are_refused_or_certified() {
     let mut next = dice(13);
+    let (mut refused, mut certified) = (0, 0);
     for _ in 0..24 {
         let (shear, across, lift) = (next() - 0.5, next() - 0.5, 1.3 * next() - 1.0);
         let coefficient = 0.8 * next();
@@ -308,13 +312,19 @@ fn loose_blocks_are_refused_or_certified() {
                 assert!(text.contains("cannot be in equilibrium"), "{what}");
                 // flat enough not to tip before it slides
                 assert!(lift >= 0.0 || along > -coefficient * lift * 0.999, "{what}");
+                refused += 1;
             }
             Ended::Solved(status, _) => {
                 assert!(along <= -coefficient * lift * 1.001, "{what}");
                 if status.converged() {
                     assert!(m.certificate.0 < 1e-5 && m.balance.largest() < 1e-4, "{what}");
+                    certified += 1;
                 }
             }
         }
     }
+    assert!(
+        refused >= 12 && certified >= 8,
+        "{refused} refused, {certified} certified"
+    );
 }

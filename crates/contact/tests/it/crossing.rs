@@ -166,7 +166,8 @@ fn estimates_see_no_contradiction_between_contacts() {
     }
 }
 
-/// Where all loads have gone a block lay where it was at first, and its slips were lost.
+/// Where all loads have gone a block lay where it was at first, and its slips were lost. A millionth of the loads moves
+/// it by 7e-4 of its displacement, and by less when they return.
 #[test]
 fn without_loads_a_block_stays_where_it_slid() {
     let of = |least: f64| {
@@ -183,13 +184,11 @@ fn without_loads_a_block_stays_where_it_slid() {
     };
     let (exact, nearly) = (of(0.0), of(1e-6));
     let off = distance(&exact[7].displacement, &nearly[7].displacement);
-    println!("{off:e}");
     assert!(exact[7].points.iter().all(|p| p.normal_force == 0.0));
-    assert!(off < 0.7, "{off:e}");
+    assert!(off < 2e-3, "{off:e}");
     for step in 8..12 {
         let off = distance(&exact[step].displacement, &nearly[step].displacement);
-        println!("{off:e}");
-        assert!(off < 0.2, "{step}: {off:e}");
+        assert!(off < 1e-3, "{step}: {off:e}");
     }
 }
 

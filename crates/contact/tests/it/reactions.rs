@@ -445,3 +445,24 @@ fn a_node_that_a_support_names_twice_reacts_once() {
     let force = reactions.supports[0].resultant.force;
     assert!(norm(&[force[0] + 1e3, force[1], force[2] - 1e4]) < 1e-4, "{force:?}");
 }
+
+/// Loads in a region act on it alone: the weight of each of two bodies comes to its own support.
+#[test]
+fn the_weight_of_a_region_comes_to_its_support() {
+    let mesh = with_second(&block([1.0; 3], [2; 3]), &lifted(&block([1.0, 1.0, 2.0], [2; 3]), 3.0));
+    let regions = mesh.components();
+    let mesh = mesh.with_regions(regions).expect("regions");
+    let weights = [[0.0, 0.0, -7.0], [3.0, 0.0, -5.0]];
+    let scene = Scene::new(mesh, uniform(1e6, 0.3))
+        .with_support(Support::fixed(brick::Z_MIN))
+        .with_support(Support::fixed(second(brick::Z_MIN)))
+        .with_load(Load::body_in(0, weights[0]))
+        .with_load(Load::body_in(1, weights[1]));
+    let (simulation, _) = run(scene, at(1e-9));
+    let reactions = simulation.result().expect("a result").reactions();
+    let supports = reactions.supports.iter();
+    for ((support, weight), volume) in supports.zip(weights).zip([1.0, 2.0]) {
+        let expected = weight.map(|w| -w * volume);
+        assert_close(&support.resultant.force, &expected, 1e-6, "reaction");
+    }
+}

@@ -133,7 +133,7 @@ fn a_seal_between_rough_plates_is_solved() {
     }
 }
 
-/// Supports, obstacles, gaps and ties that stop are at rest as loads are; one that goes on is not.
+/// Supports, obstacles and gaps that stop are at rest as loads are; one that goes on is not.
 #[test]
 fn all_that_moves_has_to_stop_before_a_step_rests() {
     let stops = || History::table(vec![(0.0, 0.0), (0.2, 0.5), (0.5, 1.0), (1.0, 1.0)]).expect("table");

@@ -5,14 +5,16 @@ use std::time::{Duration, Instant};
 
 use allocation_counter::measure;
 use signorini_deck::Deck;
+use signorini_fem_mesh::{Brick, FacetTag};
 
 use crate::grid::Grid;
-use crate::write::{cube, face, folder};
+use crate::pretension::section;
+use crate::write::{STEEL, cube, face, folder, mesh};
 
-/// A small deck with everything that is read.
+/// A small deck with sets, rigid bodies, couplings, contact and loads.
 fn valid() -> String {
-    let mesh = signorini_fem_mesh::Brick::new([1.0; 3], [2, 2, 2]);
-    let (element, number) = face(&mesh.build().expect("brick"), 40);
+    let brick = Brick::new([1.0; 3], [2, 2, 2]).build().expect("brick");
+    let (element, number) = face(&brick, 40);
     let deck = cube(
         "*NSET, NSET=FEW, GENERATE\n1, 9, 2\n*NSET, NSET=MORE\nFEW, 10\n*AMPLITUDE, NAME=UP, TIME=TOTAL TIME\n0., 0., 1., 1.\n\
         *SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n*FRICTION\n0.3, 1e4\n\
@@ -43,7 +45,35 @@ fn assembled() -> String {
     )
 }
 
-/// Reads what may be broken, within a second.
+/// A small deck with what ties nodes to one another, axes and temperatures.
+fn joined() -> String {
+    let bar = Brick::new([2.0, 1.0, 1.0], [2, 1, 1]).build().expect("brick");
+    let cube = Brick::new([1.0; 3], [1; 3]).build().expect("brick");
+    let cube = |z: f64, tags: u32| {
+        let cube = cube.clone().map_points(|x| [x[0], x[1], x[2] + z]).expect("lifted");
+        cube.map_tags(|tag| FacetTag(tag.0 + tags))
+    };
+    let two = bar.append(&cube(1.0, 10)).expect("two");
+    let all = two.append(&cube(2.05, 20)).expect("three");
+    let steel = STEEL.trim_end().to_owned() + ", ORIENTATION=GRAIN\n";
+    format!(
+        "{}{steel}*EXPANSION, TYPE=ORTHO\n1e-5, 2e-5, 3e-5\n*ORIENTATION, NAME=GRAIN\n\
+        1., 0.5, 0.2, -0.4, 1., 0.3\n3, 25.\n\
+        {}*PRE-TENSION SECTION, SURFACE=CUT, NODE=9000\n1., 0., 0.\n*TIE, NAME=T, POSITION TOLERANCE=0.1\nS15, S6\n\
+        *SURFACE INTERACTION, NAME=I\n*FRICTION\n0.2\n*CONTACT PAIR, INTERACTION=I, TYPE=SURFACE TO SURFACE\nS25, S16\n\
+        *CLEARANCE, SLAVE=S25, MASTER=S16, VALUE=0.01\n*NSET, NSET=EVERY, GENERATE\n1, {}\n\
+        *INITIAL CONDITIONS, TYPE=TEMPERATURE\nEVERY, 20.\n*TRANSFORM, NSET=N2, TYPE=C\n-1., -1., 0., -1., -1., 5.\n\
+        *NODE\n9001\n*EQUATION\n3\nN2, 1, 1., 9001, 1, -2.\n9001, 2, 0.5\n*MPC\nPLANE, N26\n\
+        *BOUNDARY\nN1, 1, 3\nN26, 1\nN26, 2\n9001, 2\n*STEP\n*STATIC\n0.5, 1.\n*TEMPERATURE\nEVERY, 100.\n\
+        *CLOAD\n9000, 1, 5.\n9001, 1, 3.\nN26, 3, -1.\n*END STEP\n\
+        *STEP\n*STATIC\n*BOUNDARY, FIXED\n9000, 1\n*TEMPERATURE, OP=NEW\n*END STEP\n",
+        mesh(&all),
+        section(&bar, 1.0),
+        all.points().len()
+    )
+}
+
+/// Reads what may be broken, within five seconds on a busy machine.
 fn survive(path: &std::path::Path, bytes: &[u8]) -> bool {
     std::fs::write(path, bytes).expect("written");
     let start = Instant::now();
@@ -87,9 +117,10 @@ impl Dice {
 
 #[test]
 fn cut_anywhere() {
-    for text in [valid(), assembled()] {
+    for text in [valid(), assembled(), joined()] {
         let (_folder, path) = folder(&[("part.inp", &text)]);
-        Deck::read(&path).expect("the deck before it is broken");
+        let deck = Deck::read(&path).expect("the deck before it is broken");
+        let _ = deck.scene().expect("its scene");
         for (at, _) in text.match_indices('\n') {
             survive(&path, &text.as_bytes()[..at]);
         }
@@ -101,10 +132,11 @@ fn cut_anywhere() {
 
 #[test]
 fn bytes_are_flipped() {
-    let text = valid();
-    let (_folder, path) = folder(&[("part.inp", &text)]);
+    let texts = [valid(), joined()];
+    let (_folder, path) = folder(&[("part.inp", "")]);
     let mut dice = Dice(15);
-    for round in 0..4000 {
+    for round in 0..8000 {
+        let text = &texts[round % 2];
         let mut bytes = text.clone().into_bytes();
         for _ in 0..=(round % 3) {
             let at = dice.roll(bytes.len());
@@ -121,11 +153,11 @@ fn bytes_are_flipped() {
 
 #[test]
 fn lines_are_repeated_lost_and_swapped() {
-    let texts = [valid(), assembled()];
+    let texts = [valid(), assembled(), joined()];
     let (_folder, path) = folder(&[("part.inp", "")]);
     let mut dice = Dice(16);
-    for round in 0..2500 {
-        let text = &texts[round % 2];
+    for round in 0..3750 {
+        let text = &texts[round % 3];
         let mut lines: Vec<&str> = text.lines().collect();
         let (a, b) = (dice.roll(lines.len()), dice.roll(lines.len()));
         match dice.roll(3) {
@@ -249,16 +281,17 @@ fn sets_of_everything() {
 /// Any number of a deck set to what no model has.
 #[test]
 fn huge_numbers() {
-    let text = valid();
-    let (_folder, path) = folder(&[("part.inp", &text)]);
+    let (_folder, path) = folder(&[("part.inp", "")]);
     let huge = ["99999999999999999999", "4294967295", "-1", "1e308", "nan", "inf", ""];
     let is_number = |word: &str| word.trim().starts_with(|c: char| c.is_ascii_digit() || c == '-');
-    let words: Vec<&str> = text.split_inclusive([',', '\n', '=']).collect();
-    let numbers = (0..words.len()).filter(|&k| is_number(words[k]));
-    for (count, at) in numbers.enumerate() {
-        let new = huge[count % huge.len()];
-        let end = &words[at][words[at].len() - 1..];
-        let broken = [&words[..at].concat(), new, end, &words[at + 1..].concat()].concat();
-        survive(&path, broken.as_bytes());
+    for text in [valid(), joined()] {
+        let words: Vec<&str> = text.split_inclusive([',', '\n', '=']).collect();
+        let numbers = (0..words.len()).filter(|&k| is_number(words[k]));
+        for (count, at) in numbers.enumerate() {
+            let new = huge[count % huge.len()];
+            let end = &words[at][words[at].len() - 1..];
+            let broken = [&words[..at].concat(), new, end, &words[at + 1..].concat()].concat();
+            survive(&path, broken.as_bytes());
+        }
     }
 }

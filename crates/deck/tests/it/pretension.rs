@@ -8,20 +8,23 @@ use std::fmt::Write as _;
 use crate::couplings::step;
 use crate::write::{STEEL, face, mesh, read};
 
+/// Where bars are cut, mm.
+const MIDDLE: f64 = 20.0;
+
 /// A bar of 40 mm, held at both ends and cut in the middle.
 fn bar(order: usize) -> TetMesh {
     let brick = Brick::new([40.0, 10.0, 10.0], [8, 2, 2]).build().expect("a brick");
     if order == 2 { brick.raise_order().expect("quadratic") } else { brick }
 }
 
-/// The section of the elements on its left, whose node has no place in the mesh.
-fn section(mesh: &TetMesh) -> String {
+/// The section at this x of the elements on its left, whose node has no place in the mesh.
+pub(crate) fn section(mesh: &TetMesh, at: f64) -> String {
     let mut deck = String::from("*NODE\n9000, 0., 0., 0.\n*SURFACE, NAME=CUT\n");
     const FACES: [[usize; 3]; 4] = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]];
     for tet in 0..mesh.tets().len() {
         let points = mesh.tet_points(tet);
         for (number, face) in (1..).zip(FACES) {
-            if centroid(&points)[0] < 20.0 && face.iter().all(|i| (points[*i][0] - 20.0).abs() < 1e-9) {
+            if centroid(&points)[0] < at && face.iter().all(|i| (points[*i][0] - at).abs() < 1e-9) {
                 writeln!(deck, "{}, S{number}", tet + 1).expect("text");
             }
         }
@@ -33,7 +36,7 @@ const HELD: &str = "*BOUNDARY\nN1, 1, 3\n";
 
 fn deck(mesh_: &TetMesh, steps: &str) -> String {
     let node = "*PRE-TENSION SECTION, SURFACE=CUT, NODE=9000\n";
-    format!("{}{STEEL}{}{node}{HELD}{steps}", mesh(mesh_), section(mesh_))
+    format!("{}{STEEL}{}{node}{HELD}{steps}", mesh(mesh_), section(mesh_, MIDDLE))
 }
 
 const FORCE: &str = "*STEP\n*STATIC\n1., 1.\n*BOUNDARY\nN2, 1, 3\n*CLOAD\n9000, 1, 1000.\n*END STEP\n";
@@ -197,7 +200,7 @@ fn what_is_no_section_is_refused() {
     let at = mesh_.points().iter().position(|x| x[0] == 20.0).expect("a node") + 1;
     refused(text(&step(&format!("*CLOAD\n{at}, 2, 1.\n"))), "two displacements");
     let whole = text(FORCE);
-    let first = section(&mesh_);
+    let first = section(&mesh_, MIDDLE);
     let one = first.lines().take(4).collect::<Vec<_>>().join("\n") + "\n";
     refused(whole.replace(&first, &one), "ends inside the body");
     let outside = whole.replace("SURFACE=CUT, NODE", "SURFACE=S2, NODE");
@@ -257,11 +260,11 @@ fn a_closed_section_changes_nothing() {
         let cut = format!(
             "{}{warm}{}{set}{node}{model}{ends}{steps}",
             mesh(&mesh_),
-            section(&mesh_)
+            section(&mesh_, MIDDLE)
         );
         let plain = cut
             .replace(node, "")
-            .replace(&section(&mesh_), "")
+            .replace(&section(&mesh_, MIDDLE), "")
             .replace("9000, 1\n", "");
         let solved = |text: &str| {
             let scene = read(text).expect("deck").scene().expect("scene");

@@ -50,7 +50,7 @@ pub(crate) enum Outcome {
     /// Refused before anything was solved: the kind of the error, and its words.
     Refused(String, String),
     Solved(Vec<Level>),
-    /// A panic, or another error in a level.
+    /// A panic, an error that is no verdict on the scene, or any in a level.
     Broken(String),
 }
 
@@ -126,7 +126,9 @@ fn levels_of(
                 ContactError::NotDetermined { .. } => "NotDetermined",
                 ContactError::SharedNode { .. } => "SharedNode",
                 ContactError::SupportInObstacle { .. } => "SupportInObstacle",
-                _ => "another error",
+                // bodies that overhang may miss the one below
+                ContactError::NoPartner { .. } => "NoPartner",
+                _ => return Err(error.into()),
             };
             return Ok(Some((name.to_owned(), error.to_string())));
         }

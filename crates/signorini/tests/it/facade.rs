@@ -186,9 +186,15 @@ fn a_frame_gives_stress_energy_and_states() -> Result<(), Error> {
     let frame = simulation.step()?;
     assert_eq!(frame.displacement().len(), nodes);
     assert_eq!(frame.stress().len(), elements);
-    // a linear body without gap work: twice the energy is the work of all forces on the displacements
-    let energy = frame.strain_energy();
-    let points = frame.points();
+    // one step from rest: twice the energy is the work of all forces on the displacements; facets of a brick are equal
+    let (energy, points, u) = (frame.strain_energy(), frame.points(), frame.displacement());
+    let facets = frame.scene().mesh().facets().iter();
+    let top: Vec<_> = facets.filter(|f| f.tag == brick::Z_MAX).collect();
+    let down: f64 = top.iter().flat_map(|f| f.nodes).map(|n| u[n as usize][2]).sum();
+    let load = -3e9 * 3.0 * down / (3 * top.len()) as f64;
+    let along = |p: &PointState| (0..3).map(|c| p.force()[c] * u[p.node as usize][c]).sum::<f64>();
+    let work = load + points.iter().map(along).sum::<f64>();
+    assert!((work / (2.0 * energy) - 1.0).abs() < 1e-6, "{work:e} {energy:e}");
     let pressing = points.iter().filter(|p| p.state != ContactState::Open).count();
     assert_eq!(pressing, frame.summary().active);
     assert!(energy > 0.0 && pressing > 0);
