@@ -1,5 +1,6 @@
 //! Meshes that are cut open.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use rand::RngExt;
@@ -197,6 +198,30 @@ fn cracks_that_are_none_are_refused() {
     assert_eq!(whole.crack(is_one, is_lower, TAGS), Err(MeshError::NoCut));
     let error = whole.crack(in_plane, |_| true, TAGS).expect_err("one side");
     assert!(matches!(error, MeshError::CrackSides { .. }), "{error}");
+}
+
+/// Whatever is said of a face holds for both sides.
+#[test]
+fn a_face_is_asked_for_once() {
+    for order in [1, 2] {
+        let whole = layers(order);
+        let is_lower = |tet: usize| middle(&whole, tet)[2] < 0.5;
+        let upward = |face: [[f64; 3]; 3]| in_plane(face) && area_vector(&face)[2] > 0.0;
+        let turn = Cell::new(0);
+        let at_times = |face| {
+            turn.set(turn.get() + 1);
+            in_plane(face) && turn.get() % 3 > 0
+        };
+        let found = [
+            whole.crack(upward, is_lower, TAGS),
+            whole.crack(at_times, is_lower, TAGS),
+        ];
+        for (cracked, _) in found.into_iter().flatten() {
+            assert_sound(&cracked);
+        }
+        let faces = whole.tets().len() * 4 - whole.boundary_facets().len();
+        assert_eq!(turn.get(), faces / 2);
+    }
 }
 
 /// No subdomain hangs together by what is left around a crack; a crack that is small against its part stays in it.
