@@ -224,6 +224,40 @@ fn a_face_is_asked_for_once() {
     }
 }
 
+/// A crack without tags moves with its body; what else meets in a map is a fault.
+#[test]
+fn cracks_without_tags_are_moved() {
+    for order in [1, 2] {
+        let whole = layers(order);
+        let is_lower = |tet: usize| middle(&whole, tet)[2] < 0.5;
+        let is_on = |face: [[f64; 3]; 3]| in_plane(face) && face.iter().all(|p| p[0] < 1.5);
+        let cracked = whole.crack(is_on, is_lower, TAGS).expect("crack").0;
+        let moved = |mesh: &TetMesh| mesh.map_points(|[x, y, z]| [x + 1.0, 2.0 * y, z]);
+        let tagged = moved(&cracked).expect("tags");
+        for bare in [
+            cracked.clone().without_tags(&TAGS),
+            cracked.clone().tag_boundary(|_, _| None),
+        ] {
+            let bare = moved(&bare).expect("no tags");
+            assert_eq!(bare.points(), tagged.points());
+            assert_eq!(bare.boundary_facets(), tagged.boundary_facets());
+        }
+        assert_sound(&tagged);
+    }
+    // a slot that a map closes
+    let whole = Brick::new([1.0, 1.0, 1.0], [4, 2, 4]).build().expect("brick");
+    let (mut points, mut tets) = (whole.points().to_vec(), whole.tets().to_vec());
+    tets.retain(|tet| {
+        let [x, _, z] = centroid(&tet.map(|n| whole.points()[n as usize]));
+        x > 0.5 || (z - 0.375).abs() > 0.125
+    });
+    drop_unused_nodes(&mut points, &mut tets, &mut []);
+    let open = TetMesh::new(points, tets, Vec::new()).expect("a slot");
+    let close = |[x, y, z]: [f64; 3]| [x, y, if x < 0.5 && z > 0.3 { z - 0.25 } else { z }];
+    let error = open.map_points(close).expect_err("closed");
+    assert!(matches!(error, MeshError::CoincidentNodes { .. }), "{error}");
+}
+
 /// No subdomain hangs together by what is left around a crack; a crack that is small against its part stays in it.
 #[test]
 fn parts_do_not_straddle_a_crack() {
