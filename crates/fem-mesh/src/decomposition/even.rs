@@ -17,7 +17,8 @@ use crate::vec3::{self, Vec3};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PartCount {
-    /// So many; more where bodies or groups are more, or cracks split them.
+    /// So many of one body; bodies and groups have their shares by numbers of tetrahedra, rounded and one at least, so
+    /// that the sum may be a few less or more. More where cracks split them.
     Exactly(usize),
     /// A number near by for which the parts of a body that fills its box are nearest to cubes; a sixth of it where
     /// quadratic cells are graded so strongly along all axes that many parts would be flat. Rods, more than eight times
@@ -60,9 +61,9 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     };
     let (mut slabs, mut next) = (vec![0; tets], 0);
     let mut whole = vec![false; members.count()];
-    let shares = shares(&members, number, matches!(count, PartCount::Exactly(_)));
     for (group, own) in members.iter().enumerate() {
-        let share = shares[group];
+        let share = (own.len() as f64 / tets as f64 * number as f64).round() as usize;
+        let share = share.clamp(1, own.len());
         let mut cutter = Cutter {
             mesh,
             frame: frame(group),
@@ -103,35 +104,6 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
         }
     }
     Ok(split_at_cracks(mesh, &parts))
-}
-
-/// How many parts each group gets: its share, rounded; if the number is `exact`, one more or less where that is nearest
-/// to the share, until the sum is right. Each has at least one, and not more than tetrahedra.
-fn shares(members: &Lists<u32>, number: usize, exact: bool) -> Vec<usize> {
-    let sizes: Vec<usize> = members.iter().map(<[u32]>::len).collect();
-    let all = members.items().len() as f64;
-    let wanted: Vec<f64> = sizes.iter().map(|&size| size as f64 / all * number as f64).collect();
-    let rounded = wanted.iter().zip(&sizes);
-    let mut shares: Vec<usize> = rounded.map(|(w, &size)| (w.round() as usize).clamp(1, size)).collect();
-    let mut sum: usize = shares.iter().sum();
-    while exact && sum != number {
-        let more = sum < number;
-        let lack = |group: usize| {
-            if more {
-                wanted[group] - shares[group] as f64
-            } else {
-                shares[group] as f64 - wanted[group]
-            }
-        };
-        let may = |group: &usize| if more { shares[*group] < sizes[*group] } else { shares[*group] > 1 };
-        let groups = (0..sizes.len()).rev().filter(may);
-        let Some(group) = groups.max_by(|a, b| lack(*a).total_cmp(&lack(*b))) else {
-            break;
-        };
-        shares[group] = if more { shares[group] + 1 } else { shares[group] - 1 };
-        sum = if more { sum + 1 } else { sum - 1 };
-    }
-    shares
 }
 
 /// Whether cells are graded so strongly along all axes that many are flat.

@@ -304,26 +304,3 @@ fn bodies_are_cut_as_if_alone() {
         }
     }
 }
-
-/// Parts are as many as they shall be, whatever shares of bodies round to.
-#[test]
-fn exactly_so_many() {
-    let row = |bodies: usize, cells: [usize; 3]| {
-        let body = |k: usize| brick(cells).map_points(|[x, y, z]| [x, y + 2.0 * k as f64, z]);
-        let bodies = (0..bodies).map(|k| body(k).expect("moved"));
-        bodies
-            .reduce(|all, next| all.append(&next).expect("sum"))
-            .expect("bodies")
-    };
-    let alike = row(3, [6, 2, 2]);
-    let small = row(2, [3, 1, 1]).append(
-        &brick([12, 4, 4])
-            .map_points(|[x, y, z]| [x, y, z + 2.0])
-            .expect("moved"),
-    );
-    for mesh in [alike, small.expect("sum")] {
-        for count in 1..12 {
-            assert_eq!(sizes(&even(&mesh, count)).len(), count.max(3), "{count}");
-        }
-    }
-}

@@ -235,14 +235,12 @@ fn without_groups_the_entities_count() {
 
 #[test]
 fn sections_may_be_repeated() {
+    let entities = "$EndEntities\n$Entities\n0 0 0 2\n1 0 0 0 1 1 1 1 7";
     let mut text = TEXT.to_owned();
     for (from, to) in [
         ("1\n2 3", "1\n3 7 \"lower\"\n$EndPhysicalNames\n$PhysicalNames\n1\n2 3"),
         ("1 0 2 2\n", "1 0 2 0\n"),
-        (
-            "1 0 0 0 1 1 1 1 7",
-            "$EndEntities\n$Entities\n0 0 0 2\n1 0 0 0 1 1 1 1 7",
-        ),
+        ("1 0 0 0 1 1 1 1 7", entities),
         ("2 6 1 6\n", "1 3 1 3\n"),
         ("3 1 0 3\n5\n", "$EndNodes\n$Nodes\n1 3 4 6\n3 1 0 3\n5\n"),
         ("5 6 1 6\n", "3 4 1 4\n"),
@@ -253,15 +251,11 @@ fn sections_may_be_repeated() {
     }
     let (mesh, names) = parse_gmsh(text.as_bytes()).unwrap();
     assert_eq!(mesh, parse_gmsh(TEXT.as_bytes()).unwrap().0);
-    assert_eq!(
-        (names.surface("foundation").unwrap(), names.volume("lower").unwrap()),
-        (FacetTag(3), 7)
-    );
+    assert_eq!(names.surface("foundation").unwrap(), FacetTag(3));
+    assert_eq!(names.volume("lower").unwrap(), 7);
     let other = text.replacen("0 0 0 2\n", "0 0 0 3\n2 0 0 0 2 2 2 1 9 0\n", 1);
-    assert!(matches!(
-        parse_gmsh(other.as_bytes()),
-        Err(GmshError::SeveralGroups { entity: 2, .. })
-    ));
+    let error = parse_gmsh(other.as_bytes()).unwrap_err();
+    assert!(matches!(error, GmshError::SeveralGroups { entity: 2, .. }));
 }
 
 #[test]
