@@ -207,10 +207,10 @@ fn a_face_is_asked_for_once() {
         let whole = layers(order);
         let is_lower = |tet: usize| middle(&whole, tet)[2] < 0.5;
         let upward = |face: [[f64; 3]; 3]| in_plane(face) && area_vector(&face)[2] > 0.0;
-        let turn = Cell::new(0);
+        let turn = Cell::new(0_usize);
         let at_times = |face| {
             turn.set(turn.get() + 1);
-            in_plane(face) && turn.get() % 3 > 0
+            in_plane(face) && !turn.get().is_multiple_of(3)
         };
         let found = [
             whole.crack(upward, is_lower, TAGS),
