@@ -109,7 +109,7 @@ signorini_fem_mesh::errors! {
         NoKeyword = "the deck begins with data; begin with a keyword, for instance *NODE";
         NotContinued = "the line ends with a comma, but no line continues it; remove the comma";
         Include { path: PathBuf, r#source: std::io::Error } =
-            "cannot read {}: {source}; paths are relative to the file that includes", path.display();
+            "cannot read {}: {source}; paths are relative to the file that includes, or to the deck", path.display();
         IncludeLoop = "the file includes itself, directly or through others; remove one *INCLUDE";
         TooMany { what: &'static str, most: u64, remedy: &'static str } = "more than {most} {what}; {remedy}";
         UnknownKeyword { known: String } = "this keyword is not known; those that are read: {known}";

@@ -63,7 +63,7 @@
 //! | `*ASSEMBLY`, `*INSTANCE` and their ends | `NAME`, `PART` | where parts are, see below |
 //! | `*NODE` | `NSET` | any numbers; nodes that no element and no equation uses are dropped |
 //! | `*ELEMENT` | `TYPE=C3D4`, `C3D10`, `C3D8`, `C3D20`, `C3D6`, `C3D15`, `C3D5`, `C3D13`, `ELSET` | tetrahedra, hexahedra, prisms and pyramids, see below, and as these their variants (`C3D10M`, `C3D8R`, `C3D8I`); `R3D3` and `R3D4` for rigid surfaces; `CPS3`, `CPS4`, `CPS6`, `CPS8` and variants, `T3D2`, `T3D3`, which Gmsh writes, have no stiffness, and the flat ones name the faces on which they lie; other types are refused |
-//! | `*NSET`, `*ELSET` | `NSET` or `ELSET`, `GENERATE`, `INTERNAL`, `INSTANCE` | numbers and sets defined before; cards of one name add up |
+//! | `*NSET`, `*ELSET` | `NSET` or `ELSET`, `GENERATE`, `INTERNAL`, `INSTANCE` | numbers and sets defined before, or by `*NODE` and `*ELEMENT` anywhere; cards of one name add up; of `GENERATE` both ends are members |
 //! | `*SURFACE` | `NAME`, `TYPE=ELEMENT`, `INTERNAL` | faces `S1` to `S6` of elements or sets, on the boundary, or without a number all that are there, or those of triangles; `SPOS`, `SNEG` of rigid facets |
 //! | | `TYPE=NODE` | the faces on the boundary whose corners are all among these nodes and sets; a node on none of them is refused |
 //! | `*MATERIAL` | `NAME` | |
@@ -80,7 +80,7 @@
 //! | `*CONTACT PAIR` | `INTERACTION`, `TYPE`, `SMALL SLIDING`, `ADJUST` | the first (dependent) surface touches the second, whether their meshes match or not; sliding is small; with `ADJUST` gaps up to that length and overlaps are none |
 //! | `*CLEARANCE` | `SLAVE`, `MASTER`, `VALUE` | the gap of a contact pair, in place of the measured one; negative for a press fit; of rigid surfaces only to a half-space |
 //! | `*TIE` | `NAME`, `ADJUST`, `POSITION TOLERANCE` | bonded surfaces, whether their meshes match or not; nodes are not moved, which is reported where they would be; nodes beyond the tolerance, which CalculiX leaves free, are refused |
-//! | `*RIGID BODY` | `ELSET`, `NSET` or `TIE NSET`, `REF NODE`, `ROT NODE` | an obstacle, or nodes of elastic elements that it carries, see below |
+//! | `*RIGID BODY` | `ELSET`, `NSET`, `PIN NSET` or `TIE NSET`, `REF NODE`, `ROT NODE` | an obstacle, or nodes of elastic elements that it carries, see below |
 //! | `*COUPLING` | `CONSTRAINT NAME`, `REF NODE`, `SURFACE` | a node that stands for a surface, as the card behind it says |
 //! | `*DISTRIBUTING` | `COUPLING=CONTINUUM`, `WEIGHTING METHOD=UNIFORM` | forces and moments of the node are spread over the surface by areas (of flat faces), growing linearly from its centroid; it stays elastic |
 //! | `*KINEMATIC` | | the surface has the displacement and the small rotation of the node, whose components 1 to 6 are held, moved, loaded or free |
@@ -90,13 +90,13 @@
 //! | `*TRANSFORM` | `NSET`, `TYPE=R`, `C` | axes of nodes, along which their supports and forces are |
 //! | `*BOUNDARY` | `OP`, `AMPLITUDE`, `TYPE=DISPLACEMENT`, `FIXED` | components 1 to 3, or `ENCASTRE`, `PINNED`, `XSYMM`, `XASYMM` and so on; rotations held at zero are ignored on solids; what is `FIXED` stays where the steps before left it, not read of rigid bodies, couplings and nodes of equations; a displacement before the first step is reached in that |
 //! | `*STEP` | `NAME`, `INC`, `NLGEOM=NO`, `AMPLITUDE=RAMP` or `STEP` | |
-//! | `*STATIC` | `DIRECT`, `SOLVER` | first increment, period, least and largest increment |
+//! | `*STATIC` | `DIRECT`, `SOLVER` | first increment, period, least and largest increment; 0 is the default |
 //! | `*MODEL CHANGE` | `TYPE=CONTACT PAIR`, `ADD`, `REMOVE` | a pair comes or goes with the step: it [starts](signorini_contact::Contact::with_start) and [ends](signorini_contact::Contact::with_end) |
 //! | `*CLOAD` | `OP`, `AMPLITUDE` | forces at nodes; moments, 4 to 6, at the node of a `*DISTRIBUTING` |
 //! | `*DLOAD` | `OP`, `AMPLITUDE` | `P1` to `P6` on faces; `GRAV`, `CENTRIF` (with the square of the angular velocity; integrated exactly, in linear elements CalculiX takes the value at the centroid: 0.9 % on a coarse disc), `BX`, `BY`, `BZ` in elements, without a set in all |
 //! | `*DSLOAD` | `OP`, `AMPLITUDE` | `P` on a surface; `TRVEC`, a traction in a direction |
 //! | `*TEMPERATURE` | `OP`, `AMPLITUDE` | at nodes; linear between the corners of a tetrahedron; an amplitude multiplies the temperature, and its rise above the initial one counts |
-//! | `*END STEP`, `*INCLUDE` | `INPUT` | paths are relative to the file that includes; loops are refused |
+//! | `*END STEP`, `*INCLUDE` | `INPUT` | paths are relative to the file that includes, or else to the deck; loops are refused |
 //!
 //! Skipped and listed as ignored: `*NODE FILE, *EL FILE, *NODE PRINT, *EL PRINT, *CONTACT FILE, *CONTACT PRINT,
 //! *OUTPUT` and the like, `*RESTART, WRITE`, `*CONTROLS`, `SOLVER=` and other settings of solvers, `*CONDUCTIVITY`,

@@ -10,7 +10,8 @@ signorini_fem_mesh::errors! {
         Singular { subdomain: usize, pivot: usize } =
             "subdomain {subdomain}: the stiffness matrix is singular beyond its six rigid motions (pivot {pivot}); a \
             part of it hangs on a single node or edge, its elements are degenerate, or it has three or fewer quadratic \
-            tetrahedra with a Poisson's ratio above 0.4: use another decomposition";
+            tetrahedra with a Poisson's ratio above 0.4, or such with centroids in one plane: use another \
+            decomposition";
         Contrast { subdomain: usize, ratio: f64 } =
             "subdomain {subdomain}: some of its nodes are {ratio:.1e} times as stiff as others, so that rounding hides \
             what is soft: look at the units of its materials and at its smallest elements, or use subdomains of more \

@@ -91,16 +91,19 @@ impl Word {
     }
 }
 
-/// Whether a field begins as numbers do; names do not.
-pub(crate) fn begins_as_number(field: &str) -> bool {
-    field.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c))
+/// Whether a field is written as numbers are; names may begin so.
+pub(crate) fn is_numeric(field: &str) -> bool {
+    field.starts_with(|c: char| !"eEdD".contains(c)) && field.chars().all(is_of_number)
+}
+
+fn is_of_number(c: char) -> bool {
+    c.is_ascii_digit() || "+-.eEdD".contains(c)
 }
 
 /// A finite number, also with the exponent letter D of Fortran.
 fn real(text: &str) -> Option<f64> {
     // words such as "inf" and "nan" are names here
-    let digits = |c: char| c.is_ascii_digit() || "+-.eEdD".contains(c);
-    if !text.chars().all(digits) {
+    if !text.chars().all(is_of_number) {
         return None;
     }
     let value: f64 = text.replace(['d', 'D'], "e").parse().ok()?;

@@ -7,5 +7,5 @@
 mod card;
 mod source;
 
-pub(crate) use card::{Card, LARGEST, Named, begins_as_number, label, name};
+pub(crate) use card::{Card, LARGEST, Named, is_numeric, label, name};
 pub(crate) use source::cards;

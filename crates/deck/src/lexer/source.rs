@@ -5,7 +5,7 @@ use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use super::card::{Card, begins_as_number};
+use super::card::{Card, name};
 use crate::error::{DeckError, Fault, Location, Word};
 
 /// Most included files, how deep they may include each other, and the bytes and lines of all files together:
@@ -14,6 +14,30 @@ const FILES: u64 = 1000;
 const DEPTH: usize = 32;
 const BYTES: u64 = 1 << 31;
 const LINES: u64 = 50_000_000;
+
+/// Parameters without a value.
+const FLAGS: [&str; 20] = [
+    "ADD",
+    "ALLSDTOL",
+    "AUGMENTEDLAGRANGE",
+    "DIRECT",
+    "FIXED",
+    "GENERATE",
+    "INTERNAL",
+    "LAGRANGE",
+    "NLGEOM",
+    "NOTHICKNESS",
+    "PENALTY",
+    "PERTURBATION",
+    "READ",
+    "REMOVE",
+    "ROUGH",
+    "SMALLSLIDING",
+    "STABILIZE",
+    "UNSORTED",
+    "UNSYMM",
+    "WRITE",
+];
 
 /// The cards of a file and of those that it includes.
 pub(crate) fn cards(path: &Path) -> Result<Vec<Card>, DeckError> {
@@ -71,12 +95,11 @@ impl Reader {
                 continue;
             }
             let mut keyword = text.to_owned();
-            // behind a comma too many: parameters do not begin as numbers do
-            let is_data = |line: &str| line.split(',').any(|field| begins_as_number(field.trim()));
             while keyword.ends_with(',') {
-                match lines.next_if(|(_, more)| !more.trim_start().starts_with('*') && !is_data(more)) {
+                match lines.next_if(|(_, more)| has_parameters(more)) {
                     Some((_, more)) => keyword.push_str(more.trim()),
-                    None if lines.peek().is_some_and(|(_, more)| is_data(more)) => keyword.truncate(keyword.len() - 1),
+                    // a comma too many
+                    None if lines.peek().is_some() => keyword.truncate(keyword.len() - 1),
                     None => return Err(Word::new(&location, keyword).fault(Fault::NotContinued)),
                 }
             }
@@ -90,14 +113,23 @@ impl Reader {
         Ok(())
     }
 
+    /// The path of a file that a file includes: beside this, or beside the deck, where CalculiX looks.
+    fn place(&self, including: &Path, written: &str) -> PathBuf {
+        let beside = |file: &Path| file.parent().unwrap_or(Path::new("")).join(written);
+        let own = beside(including);
+        match self.open.first().map(|deck| beside(deck)) {
+            Some(other) if !own.exists() && other.exists() => other,
+            _ => own,
+        }
+    }
+
     fn include(&mut self, card: &Card) -> Result<(), DeckError> {
         card.allow(&["INPUT"])?;
         card.need("INPUT")?;
         let param = card.need_param("INPUT")?;
         // the path as it is written: names of files have cases
         let written = param.value.as_deref().unwrap_or("").trim_matches('"');
-        let folder = card.word.location.file.parent().unwrap_or(Path::new(""));
-        let path = folder.join(written);
+        let path = self.place(&card.word.location.file, written);
         let this = identity(&path);
         if self.open.contains(&this) {
             return Err(param.word.fault(Fault::IncludeLoop));
@@ -123,6 +155,12 @@ impl Reader {
         self.open.pop();
         Ok(())
     }
+}
+
+/// Whether a line goes on with the parameters of the keyword before: with values, or flags that are read.
+fn has_parameters(line: &str) -> bool {
+    let is_flag = |field: &str| field.trim().is_empty() || FLAGS.contains(&&*name(field));
+    !line.trim_start().starts_with('*') && (line.contains('=') || line.split(',').all(is_flag))
 }
 
 /// The same for all ways to write the path of a file.

@@ -9,7 +9,7 @@ use std::borrow::Cow;
 
 use signorini_fem_mesh::vec3::{Vec3, add, cross, dot, norm, scale, sub, unit};
 
-use super::{Faces, MaterialAxes, Member, Model, Names, Section, Set, Side, Target, mesh, property};
+use super::{Faces, MaterialAxes, Member, Model, Names, Section, SetCard, Side, Target, mesh, property};
 use crate::error::{DeckError, Fault, Location, Word};
 use crate::lexer::{Card, LARGEST, Named, label};
 
@@ -253,12 +253,12 @@ impl Assembly {
 /// several, with so many bytes before it.
 fn weight(part: &Model, prefix: usize) -> u64 {
     let named = |name: &str| (NAME + prefix + name.len()) / THING;
-    let sets = part.nsets.iter().chain(part.elsets.iter()).map(|(name, set)| {
-        let members = set.iter().map(|(member, _)| match member {
-            Member::Set(name, _) => named(name),
+    let sets = part.nsets.iter().chain(&part.elsets).map(|card| {
+        let members = card.members.iter().map(|(member, _)| match member {
+            Member::Set(name) => named(name),
             Member::One(_) | Member::Range { .. } => 1,
         });
-        named(name) + members.sum::<usize>()
+        named(&card.name) + members.sum::<usize>()
     });
     let surfaces = part.surfaces.iter().map(|(name, faces)| {
         let faces = faces.iter().map(|faces| match &faces.target {
@@ -295,7 +295,7 @@ fn no_single_nodes(card: &Card) -> Result<(), DeckError> {
     for line in &card.lines {
         let fields = line.fields();
         let nodes: Vec<&str> = match card.key.as_str() {
-            "MPC" => fields[1..].to_vec(),
+            "MPC" => fields,
             // the number of terms stands alone
             _ => fields.chunks(3).filter(|term| term.len() > 1).map(|t| t[0]).collect(),
         };
@@ -380,28 +380,26 @@ impl Scope<'_> {
             ("element", &part.elsets, &mut model.elsets),
         ];
         for (what, sets, all) in pairs {
-            for (name, set) in sets.iter() {
-                let mut members: Set = Vec::with_capacity(set.len());
-                for (member, location) in set {
+            for card in sets {
+                let mut members = Vec::with_capacity(card.members.len());
+                for (member, location) in &card.members {
                     let member = match member {
                         Member::One(n) => Member::One(self.number(*n, what, location)?),
                         Member::Range { from, to, step } => Member::Range {
                             from: self.number(*from, what, location)?,
                             // a range takes what is there
-                            to: self.shifted(*to.min(&self.largest)).min(u64::from(LARGEST)) as u32,
+                            to: self.shifted(self.last([*from, *to, *step])).min(u64::from(LARGEST)) as u32,
                             step: *step,
                         },
-                        Member::Set(name, before) => {
-                            let name = format!("{}{name}", self.used);
-                            // what the assembly names stands elsewhere in the deck
-                            let there = || all.position(&name).map(|other| all.at(other).len());
-                            let before = before.or_else(there);
-                            Member::Set(name, before)
-                        }
+                        Member::Set(name) => Member::Set(format!("{}{name}", self.used)),
                     };
                     members.push((member, location.clone()));
                 }
-                all.entry(format!("{}{name}", self.own)).append(&mut members);
+                all.push(SetCard {
+                    name: format!("{}{}", self.own, card.name),
+                    defines: card.defines,
+                    members,
+                });
             }
         }
         let unsorted = part.unsorted.iter();
@@ -445,6 +443,15 @@ impl Scope<'_> {
             });
         }
         Ok(())
+    }
+
+    /// The last number of a range that parts can have.
+    fn last(&self, [from, to, step]: [u32; 3]) -> u32 {
+        if to <= self.largest {
+            to
+        } else {
+            self.largest - self.largest.saturating_sub(from) % step
+        }
     }
 
     fn shifted(&self, n: u32) -> u64 {

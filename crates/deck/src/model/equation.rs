@@ -4,7 +4,7 @@ use super::Model;
 use super::mesh::target;
 use super::step::Target;
 use crate::error::{DeckError, Word};
-use crate::lexer::Card;
+use crate::lexer::{Card, name};
 
 /// A linear equation, its terms summing to zero.
 #[derive(Debug, Clone)]
@@ -34,29 +34,29 @@ pub(crate) struct Flat {
     pub(crate) nodes: Vec<(Target, Word)>,
 }
 
-/// `*MPC`: the type and nodes; more of them behind a zero.
+/// `*MPC`: the type and nodes, and lines with more of them, where zeros are none.
 pub(super) fn mpc(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     card.allow(&[])?;
     let wanted = "PLANE or STRAIGHT, and nodes or sets of them";
     let mut last: Option<Flat> = None;
     for line in &card.lines {
         let fields = line.fields();
-        let (first, nodes) = fields.split_first().ok_or_else(|| line.expected(wanted))?;
-        let is_line = first.eq_ignore_ascii_case("STRAIGHT");
-        if is_line || first.eq_ignore_ascii_case("PLANE") {
-            let word = Word::new(&line.location, &card.word.text);
-            model.flats.extend(last.replace(Flat {
-                word,
-                is_line,
+        let mut nodes = &fields[..];
+        if let [first, rest @ ..] = nodes
+            && ["STRAIGHT", "PLANE"].contains(&&*name(first))
+        {
+            let flat = Flat {
+                word: Word::new(&line.location, &card.word.text),
+                is_line: name(first) == "STRAIGHT",
                 nodes: Vec::new(),
-            }));
+            };
+            model.flats.extend(last.replace(flat));
+            nodes = rest;
         }
-        let flat = match (&mut last, *first) {
-            (Some(flat), "0") => flat,
-            (Some(flat), _) if flat.word.location == line.location => flat,
-            _ => return Err(line.part(first).expected(wanted)),
+        let Some(flat) = &mut last else {
+            return Err(line.entry(nodes, 0).expected(wanted));
         };
-        for node in nodes {
+        for node in nodes.iter().filter(|node| **node != "0") {
             flat.nodes.push((target(line, node)?, line.part(node)));
         }
     }

@@ -18,12 +18,15 @@ which are ignored and reported";
 /// Requests for output, which ask nothing of the solution.
 const OUTPUT: &str = "NODEFILE NODEPRINT NODEOUTPUT ELFILE ELPRINT ELEMENTOUTPUT CONTACTFILE CONTACTPRINT \
 CONTACTOUTPUT FACEPRINT SECTIONPRINT ENERGYFILE ENERGYPRINT ENERGYOUTPUT OUTPUT FILEFORMAT PREPRINT MONITOR PRINT \
-TIMEPOINTS FILTER";
+TIMEPOINTS FILTER INTEGRATEDOUTPUT";
 
 /// Other keywords that ask nothing of the solution here, and why.
 const IDLE: [(&str, &str); 4] = [
     ("CONTROLS CONTACTCONTROLS SECTIONCONTROLS", SOLVER),
-    ("CONDUCTIVITY SPECIFICHEAT", "temperatures are given here, not computed"),
+    (
+        "CONDUCTIVITY ELECTRICALCONDUCTIVITY GAPCONDUCTANCE GAPHEATGENERATION SPECIFICHEAT",
+        "temperatures are given here, not computed",
+    ),
     ("DAMPING", "steps are static"),
     ("PHYSICALCONSTANTS", "nothing depends on these numbers here"),
 ];
@@ -202,6 +205,7 @@ fn read_card(model: &mut Model, current: &mut Option<Step>, card: &Card) -> Resu
             if step.time.is_none() {
                 return Err(step.word.cannot("the step has no procedure; put *STATIC into it"));
             }
+            step.tell_removed(model);
             model.steps.extend(current.take());
             Ok(())
         }

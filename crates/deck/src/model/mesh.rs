@@ -1,8 +1,8 @@
 //! Nodes, elements, sets and surfaces.
 
-use super::{Element, Faces, Ignored, Kind, Member, Model, Node, Side, Target};
+use super::{Element, Faces, Ignored, Kind, Member, Model, Node, SetCard, Side, Target};
 use crate::error::{DeckError, Fault, Word};
-use crate::lexer::{Card, Named, begins_as_number, label, name};
+use crate::lexer::{Card, Named, is_numeric, label, name};
 use signorini_fem_mesh::mesh::CellShape;
 
 /// Most members of one generated range.
@@ -70,7 +70,11 @@ pub(super) fn nodes(model: &mut Model, card: &Card) -> Result<(), DeckError> {
     if let Some(set) = set {
         let new = model.nodes[first..].iter();
         let members = new.map(|node| (Member::One(node.label), node.location.clone()));
-        model.nsets.entry(set.name).extend(members);
+        model.nsets.push(SetCard {
+            name: set.name,
+            defines: true,
+            members: members.collect(),
+        });
     }
     Ok(())
 }
@@ -130,7 +134,11 @@ pub(super) fn elements(model: &mut Model, card: &Card) -> Result<(), DeckError> 
     if let Some(set) = set {
         let new = model.elements[first..].iter();
         let members = new.map(|element| (Member::One(element.label), element.location.clone()));
-        model.elsets.entry(set.name).extend(members);
+        model.elsets.push(SetCard {
+            name: set.name,
+            defines: true,
+            members: members.collect(),
+        });
     }
     Ok(())
 }
@@ -162,16 +170,16 @@ pub(super) fn set(model: &mut Model, card: &Card, key: &'static str) -> Result<(
         for field in line.fields() {
             let member = match label(field) {
                 Some(number) => Member::One(number),
-                None => {
-                    let name = set_name(line, field)?;
-                    let before = sets.position(&name).map(|other| sets.at(other).len());
-                    Member::Set(name, before)
-                }
+                None => Member::Set(set_name(line, field)?),
             };
             members.push((member, line.location.clone()));
         }
     }
-    sets.entry(set.name).append(&mut members);
+    sets.push(SetCard {
+        name: set.name,
+        defines: false,
+        members,
+    });
     Ok(())
 }
 
@@ -214,7 +222,7 @@ pub(super) fn node_of(value: Named) -> (Target, Word) {
 }
 
 fn set_name(line: &Word, field: &str) -> Result<String, DeckError> {
-    if field.is_empty() || begins_as_number(field) {
+    if field.is_empty() || is_numeric(field) {
         let wanted = "a number from 1 to 2147483647, or the name of a set";
         return Err(line.entry(&[field], 0).expected(wanted));
     }

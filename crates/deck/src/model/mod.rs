@@ -120,12 +120,19 @@ pub(crate) enum Member {
         to: u32,
         step: u32,
     },
-    /// Another set with so many of its entries, those of the cards before; `None` if none is known yet.
-    Set(String, Option<usize>),
+    /// Another set as the cards before made it.
+    Set(String),
 }
 
-/// A set of nodes or elements: its members, each with its place and word.
-pub(crate) type Set = Vec<(Member, Location)>;
+/// What a card says of a set of nodes or elements.
+#[derive(Debug, Clone)]
+pub(crate) struct SetCard {
+    pub(crate) name: String,
+    /// Whether it is *NODE or *ELEMENT, which come before all others.
+    pub(crate) defines: bool,
+    /// Each with its place.
+    pub(crate) members: Vec<(Member, Location)>,
+}
 
 /// A side of an element.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -282,10 +289,12 @@ impl Model {
 pub(crate) struct Model {
     pub(crate) nodes: Vec<Node>,
     pub(crate) elements: Vec<Element>,
-    pub(crate) nsets: Names<Set>,
+    /// What is said of sets of nodes, in the order of the deck.
+    pub(crate) nsets: Vec<SetCard>,
     /// Sets of nodes whose order is to count, and where it says so.
     pub(crate) unsorted: BTreeMap<String, Location>,
-    pub(crate) elsets: Names<Set>,
+    /// The same of elements.
+    pub(crate) elsets: Vec<SetCard>,
     pub(crate) surfaces: Names<Vec<Faces>>,
     pub(crate) materials: Names<Material>,
     pub(crate) orientations: Names<Orientation>,

@@ -33,6 +33,10 @@ impl<T> Names<T> {
         &self.list[position].1
     }
 
+    pub(crate) fn at_mut(&mut self, position: usize) -> &mut T {
+        &mut self.list[position].1
+    }
+
     pub(crate) fn iter(&self) -> impl Iterator<Item = (&str, &T)> {
         self.list.iter().map(|(name, thing)| (name.as_str(), thing))
     }
@@ -61,12 +65,11 @@ impl<T> Names<T> {
 }
 
 impl<T: Default> Names<T> {
-    /// The thing of this name, made if there is none.
-    pub(crate) fn entry(&mut self, name: String) -> &mut T {
-        let position = self.position(&name).unwrap_or(self.list.len());
-        if position == self.list.len() {
-            self.add(name, T::default());
-        }
-        &mut self.list[position].1
+    /// The position of a name, made if there is none.
+    pub(crate) fn place(&mut self, name: &str) -> usize {
+        self.position(name).unwrap_or_else(|| {
+            self.add(name.to_owned(), T::default());
+            self.list.len() - 1
+        })
     }
 }

@@ -148,7 +148,13 @@ pub(super) fn behavior(model: &mut Model, card: &Card) -> Result<(), DeckError> 
     let law = card.value("PRESSURE-OVERCLOSURE")?;
     match law.as_ref().map_or("HARD", |law| &law.name) {
         "LINEAR" => {}
-        "HARD" => return card.lines_at_most(0, "no data: hard contact has no numbers"),
+        "HARD" => {
+            card.lines_at_most(1, "at most a line that is not read: hard contact has no numbers")?;
+            let why = "hard contact has no numbers";
+            let ignored = card.lines.iter().map(|line| Ignored::new(line, why));
+            model.ignored.extend(ignored);
+            return Ok(());
+        }
         "TIED" => {
             interaction.tied = law.map(|law| law.word);
             return card.lines_at_most(1, "one line with the slope of pressure over overclosure");
@@ -193,13 +199,18 @@ pub(super) fn friction(model: &mut Model, card: &Card) -> Result<(), DeckError> 
         let why = "the interaction has a coefficient already; keep one of them";
         return Err(card.word.cannot(why));
     }
-    let slope = "the stick slope, a positive number";
-    if line.optional(&fields, 1, slope)?.is_some() {
+    let slope = "the stick slope, a positive number, or 0 for none";
+    let given = line.optional(&fields, 1, slope)?.is_some_and(|value| value != 0.0);
+    if given {
         interaction.compliance[1] = inverse(line, &fields, 1, slope)?;
     }
     let why = "a number for penalty iterations only: the law is solved exactly here";
     let ignored = card.params.iter().map(|param| Ignored::new(&param.word, why));
     model.ignored.extend(ignored);
+    if given {
+        let why = "that Abaqus has slip rates in this column; it is the stick slope, as in CalculiX";
+        model.ignored.push(Ignored::new(&line.part(fields[1]), why));
+    }
     Ok(())
 }
 
@@ -298,15 +309,18 @@ fn pairs(model: &mut Model, card: &Card, law: &Law) -> Result<(), DeckError> {
 
 /// `*RIGID BODY`.
 pub(super) fn rigid(model: &mut Model, card: &Card) -> Result<(), DeckError> {
-    card.allow(&["ELSET", "NSET", "TIE NSET", "REF NODE", "ROT NODE"])?;
+    card.allow(&["ELSET", "NSET", "TIE NSET", "REF NODE", "ROT NODE", "PIN NSET"])?;
     card.lines_at_most(0, "no data")?;
     let elset = card.value("ELSET")?;
-    let (pins, ties) = (card.value("NSET")?, card.value("TIENSET")?);
-    if let (Some(_), Some(ties)) = (&pins, &ties) {
-        let why = "the body has nodes by NSET already; put all into one set, since both move in the same way here";
-        return Err(ties.word.cannot(why));
+    let mut nset = None;
+    for key in ["NSET", "PINNSET", "TIENSET"] {
+        let Some(named) = card.value(key)? else { continue };
+        if nset.is_some() {
+            let why = "the body has nodes by NSET already; put all into one set, since both move in the same way here";
+            return Err(named.word.cannot(why));
+        }
+        nset = Some(named);
     }
-    let nset = pins.or(ties);
     if elset.is_none() && nset.is_none() {
         return Err(card.word.fault(Fault::MissingParameter("ELSET or NSET")));
     }

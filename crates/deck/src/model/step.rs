@@ -73,6 +73,13 @@ pub(crate) enum DistributedKind {
     Volume(VolumeLaw),
 }
 
+impl DistributedKind {
+    /// Whether it is one of *DSLOAD.
+    fn on_surface(&self) -> bool {
+        matches!(self, Self::Surface | Self::Traction(_))
+    }
+}
+
 /// A load of the volume.
 #[derive(Debug, Clone)]
 pub(crate) enum VolumeLaw {
@@ -159,6 +166,8 @@ pub(crate) struct Step {
     pub(crate) boundary: Conditions<Components>,
     pub(crate) forces: Conditions<Components>,
     pub(crate) distributed: Conditions<DistributedKind>,
+    /// Whether it has *DLOAD, and *DSLOAD.
+    loaded_by: [bool; 2],
     pub(crate) temperatures: Conditions<()>,
     /// Contact pairs that come or go.
     pub(crate) changes: Vec<Change>,
@@ -197,6 +206,7 @@ impl Step {
             boundary: Conditions::default(),
             forces: Conditions::default(),
             distributed: Conditions::default(),
+            loaded_by: [false; 2],
             temperatures: Conditions::default(),
             changes: Vec::new(),
         })
@@ -214,21 +224,25 @@ impl Step {
             let remedy = "a step has one procedure; begin another *STEP";
             return Err(card.word.fault(Fault::Repeated { first, remedy }));
         }
-        let wanted = "first increment, period, least and largest increment: positive numbers";
+        let wanted = "first increment, period, least and largest increment: positive numbers, or 0 for the default";
         card.lines_at_most(1, wanted)?;
         let mut values = [None; 4];
         if let Some(line) = card.lines.first() {
-            let fields = line.at_most(4, wanted)?;
+            let fields = line.at_most(5, wanted)?;
             for (at, value) in values.iter_mut().enumerate() {
-                *value = line.optional(&fields, at, wanted)?;
-                // a largest increment of zero is none
-                if value.is_some_and(|v| v < 0.0) || at < 2 && *value == Some(0.0) {
+                // zero is the default
+                *value = line.optional(&fields, at, wanted)?.filter(|v| *v != 0.0);
+                if value.is_some_and(|v| v < 0.0) {
                     return Err(line.part(fields[at]).expected(wanted));
                 }
             }
+            if let Some(extra) = fields.get(4) {
+                line.optional(&fields, 4, wanted)?;
+                model.ignored.push(Ignored::new(&line.part(extra), SOLVER));
+            }
         }
         let period = values[1].unwrap_or(1.0);
-        let largest = values[3].filter(|&v| v > 0.0).unwrap_or(period);
+        let largest = values[3].unwrap_or(period);
         let increment = values[0].unwrap_or(period).min(largest).min(period);
         let count = (period / increment * (1.0 - ROUNDING)).ceil();
         if count > INCREMENTS {
@@ -252,6 +266,23 @@ impl Step {
         };
         self.time = Some((Word::new(&card.word.location, "*STATIC"), increments));
         Ok(())
+    }
+
+    /// Tells that OP=NEW takes away loads of earlier steps by a keyword that this step does not have.
+    pub(super) fn tell_removed(&self, model: &mut Model) {
+        let Some((word, true)) = &self.distributed.first else {
+            return;
+        };
+        let whys = [
+            "Abaqus keeps the loads of *DLOAD then; as in CalculiX they are removed, too",
+            "Abaqus keeps the loads of *DSLOAD then; as in CalculiX they are removed, too",
+        ];
+        for (on_surface, why) in [false, true].into_iter().zip(whys) {
+            let mut before = model.steps.iter().flat_map(|step| &step.distributed.lines);
+            if !self.loaded_by[usize::from(on_surface)] && before.any(|line| line.kind.on_surface() == on_surface) {
+                model.ignored.push(Ignored::new(word, why));
+            }
+        }
     }
 }
 
@@ -387,6 +418,7 @@ pub(super) fn distributed(model: &Model, step: &mut Step, card: &Card, on_surfac
     card.allow(&["OP", "AMPLITUDE"])?;
     let amplitude = amplitude(model, card)?;
     step.distributed.card(card)?;
+    step.loaded_by[usize::from(on_surface)] = true;
     for line in &card.lines {
         let wanted = if on_surface {
             "a surface, P, and a pressure, or TRVEC, a traction, and its direction"

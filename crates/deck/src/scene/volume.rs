@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use signorini_fem_mesh::LoadDensity;
-use signorini_fem_mesh::vec3::{Vec3, cross, dot, norm, scale, sub, unit};
+use signorini_fem_mesh::vec3::{Vec3, dot, norm, scale, sub, unit};
 
 use super::history::{Histories, Track, Tracks};
 use super::known::Known;
@@ -12,15 +12,16 @@ use crate::error::{DeckError, Word};
 use crate::model::{Given, Target, VolumeLaw};
 use crate::tolerances::TURNED;
 
-/// A point of an axis, and its direction, of length 1.
+/// A point of an axis, and its direction, of length 1; of gravity the origin.
 type Axis = [Vec3; 2];
 
 /// What acts in elements.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Kind {
     Force,
-    Gravity,
-    /// About an axis, by its position.
+    /// Along an axis, by its position.
+    Gravity(usize),
+    /// About an axis.
     Centrifugal(usize),
 }
 
@@ -30,9 +31,8 @@ pub(super) struct Volume {
     reach: f64,
     tracks: Tracks<(Target, Kind, usize)>,
     axes: Vec<Axis>,
-    /// Directions of gravity and axes that stand.
-    gravity: BTreeMap<Target, Vec3>,
-    turns: BTreeMap<Target, usize>,
+    /// Gravity and centrifugal forces that stand.
+    standing: [BTreeMap<Target, usize>; 2],
 }
 
 impl Volume {
@@ -41,21 +41,25 @@ impl Volume {
             reach: points.iter().map(|x| norm(*x)).fold(0.0, f64::max),
             tracks: Tracks::default(),
             axes: Vec::new(),
-            gravity: BTreeMap::new(),
-            turns: BTreeMap::new(),
+            standing: [BTreeMap::new(), BTreeMap::new()],
         }
     }
 
-    /// Whether two axes are one line, in either direction.
-    fn is_same(&self, [point, along]: Axis, [other, direction]: Axis) -> bool {
-        let reach = self.reach.max(norm(point)).max(norm(other));
-        norm(cross(along, direction)) <= TURNED && norm(arm(other, [point, along])) <= TURNED * reach
+    /// The position of an axis: with another point or sense it is another one, as in CalculiX.
+    fn axis(&mut self, [point, along]: Axis) -> usize {
+        let is_same = |[other, direction]: &Axis| {
+            let reach = self.reach.max(norm(point)).max(norm(*other));
+            norm(sub(along, *direction)) <= TURNED && norm(sub(point, *other)) <= TURNED * reach
+        };
+        self.axes.iter().position(is_same).unwrap_or_else(|| {
+            self.axes.push([point, along]);
+            self.axes.len() - 1
+        })
     }
 
     pub(super) fn remove(&mut self, step: usize) {
         self.tracks.remove(step);
-        self.gravity.clear();
-        self.turns.clear();
+        self.standing.iter_mut().for_each(BTreeMap::clear);
     }
 
     /// Notes what a line gives; `when` are the step and its place among all.
@@ -74,9 +78,10 @@ impl Volume {
             }
             VolumeLaw::Gravity(direction) => {
                 let length = norm(*direction);
-                let unit = scale(1.0 / length, *direction);
-                if let Some(before) = self.gravity.insert(target.clone(), unit)
-                    && norm(sub(before, unit)) > TURNED
+                let axis = self.axis([[0.0; 3], unit(*direction)]);
+                if self.standing[0]
+                    .insert(target.clone(), axis)
+                    .is_some_and(|before| before != axis)
                 {
                     return Err(word.cannot(
                         "gravity along another direction stands there, which CalculiX keeps beside this and Abaqus \
@@ -85,26 +90,24 @@ impl Volume {
                 }
                 for (c, d) in direction.iter().enumerate() {
                     let value = given.value * (d / length);
-                    let key = (target.clone(), Kind::Gravity, c);
+                    let key = (target.clone(), Kind::Gravity(axis), c);
                     self.tracks.set(key, when, Given { value, ..given }, word)?;
                 }
                 Ok(())
             }
             VolumeLaw::Centrifugal([point, along]) => {
-                let axis = [*point, unit(*along)];
-                let index = self.axes.iter().position(|known| self.is_same(*known, axis));
-                let index = index.unwrap_or(self.axes.len());
-                if index == self.axes.len() {
-                    self.axes.push(axis);
-                }
-                if let Some(before) = self.turns.insert(target.clone(), index)
-                    && before != index
+                let axis = self.axis([*point, unit(*along)]);
+                if self.standing[1]
+                    .insert(target.clone(), axis)
+                    .is_some_and(|before| before != axis)
                 {
                     return Err(word.cannot(
-                        "centrifugal forces about another axis stand there; give the same axis, or OP=NEW in a later step",
+                        "centrifugal forces about another axis stand there, or about this one by another point or in the \
+                        other sense, beside which CalculiX puts these; give the same point and direction, or OP=NEW in \
+                        a later step",
                     ));
                 }
-                let key = (target.clone(), Kind::Centrifugal(index), 0);
+                let key = (target.clone(), Kind::Centrifugal(axis), 0);
                 self.tracks.set(key, when, given, word)
             }
         }
@@ -141,7 +144,7 @@ impl Volume {
             }
             let densities = match kind {
                 Kind::Force => vec![1.0; elements.len()],
-                Kind::Gravity | Kind::Centrifugal(_) => known.densities(&mut sections, &elements, track)?,
+                Kind::Gravity(_) | Kind::Centrifugal(_) => known.densities(&mut sections, &elements, track)?,
             };
             let pulls_in = |(_, factor): &(f64, f64)| value[0] * factor < 0.0;
             if matches!(kind, Kind::Centrifugal(_)) && histories.at(history).points().iter().any(pulls_in) {
@@ -157,7 +160,7 @@ impl Volume {
                         let (axis, factor) = (self.axes[axis], density * value[0]);
                         LoadDensity::body_field(move |x| scale(factor, arm(x, axis)))
                     }
-                    Kind::Force | Kind::Gravity => LoadDensity::Body(value.map(|v| density * v)),
+                    Kind::Force | Kind::Gravity(_) => LoadDensity::Body(value.map(|v| density * v)),
                 };
                 bodies.push((order, density, history));
                 continue;
@@ -168,7 +171,7 @@ impl Volume {
                         let (axis, factor) = (self.axes[axis], density * value[0]);
                         raw.tet_forces(element, move |x| scale(factor, arm(x, axis)))
                     }
-                    Kind::Force | Kind::Gravity => raw.tet_forces(element, |_| scale(density, value)),
+                    Kind::Force | Kind::Gravity(_) => raw.tet_forces(element, |_| scale(density, value)),
                 };
                 for (node, part) in forces.map_err(|error| track.word.cannot(error.to_string()))? {
                     force(history, order, node, part);

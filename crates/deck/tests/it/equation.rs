@@ -326,6 +326,11 @@ fn planes_stay_planes_and_lines_stay_lines() {
             );
         }
     }
+    // lines after the first have nodes alone; zeros are none
+    let equations = |lines: &str| format!("{:?}", scene(&deck(&bar, lines)).equations());
+    for lines in ["straight, 32, 33\n34, 0, 35\n", "straight,\n32, 33, 34\n0, 35, 0\n"] {
+        assert_eq!(equations(lines), equations(line), "{lines}");
+    }
     // mid-nodes of the edge, too
     let fine = bar.raise_order().expect("quadratic");
     let (u, _) = solved(

@@ -132,6 +132,7 @@ fn what_is_ignored_is_reported() {
     let wanted = [
         "1.,",
         "SLIP TOLERANCE=0.005",
+        "1e5",
         "*PREPRINT",
         "UNSYMM=YES",
         "SOLVER=PARDISO",
@@ -304,4 +305,106 @@ fn sets_take_what_stands_before() {
     let deck = read(&cube(sets)).expect("deck");
     let of = |name: &str| deck.node_set(name).expect("set").to_vec();
     assert_eq!((of("A"), of("B"), of("C")), (vec![0, 1, 2], vec![1, 2], vec![0, 1, 2]));
+}
+
+/// A last number that the increment does not reach belongs to a set, too, as in CalculiX; in an instance only if it is
+/// there.
+#[test]
+fn both_ends_of_a_range_are_members() {
+    let deck = read(&format!(
+        "{TWO}*NSET, NSET=A, GENERATE\n10, 50, 30\n*NSET, NSET=B, GENERATE\n10, 45, 30\n"
+    ))
+    .expect("deck");
+    assert_eq!(deck.node_set("A").expect("A"), [0, 3, 4]);
+    assert_eq!(deck.node_set("B").expect("B"), [0, 3]);
+    let part = format!(
+        "*PART, NAME=P\n{TWO}*NSET, NSET=A, GENERATE\n10, 99, 20\n*NSET, NSET=B, GENERATE\n10, 50, 30\n*END PART\n"
+    );
+    let deck = read(&format!(
+        "{part}*ASSEMBLY\n*INSTANCE, NAME=I, PART=P\n*END INSTANCE\n*END ASSEMBLY\n"
+    ))
+    .expect("deck");
+    assert_eq!(deck.node_set("I.A").expect("A"), [0, 2, 4]);
+    assert_eq!(deck.node_set("I.B").expect("B"), [0, 3, 4]);
+}
+
+/// *NODE and *ELEMENT come before all sets, wherever they stand.
+#[test]
+fn sets_take_all_that_nodes_and_elements_say() {
+    let (nodes, elements) = TWO.split_at(TWO.find("*ELEMENT").expect("elements"));
+    let nodes = nodes.replace("*NODE", "*NODE, NSET=N");
+    let sets = "*NSET, NSET=B\nN\n*ELSET, ELSET=E\nALL\n";
+    let deck = read(&format!(
+        "{nodes}{sets}{elements}*NODE, NSET=N\n60, 0., 0., 2.\n*ELEMENT, TYPE=C3D4, ELSET=ALL\n9, 30, 40, 50, 60\n"
+    ));
+    let deck = deck.expect("deck");
+    assert_eq!(deck.node_set("B").expect("B"), [0, 1, 2, 3, 4, 5]);
+    assert_eq!(deck.element_set("E").expect("E"), [0, 1, 2]);
+}
+
+#[test]
+fn a_comma_too_many_takes_no_data() {
+    let names = "*NSET, NSET=A,\n10\n*NSET, NSET=B,\nA\n*NSET, NSET=C, \ngenerate\n10, 30, 10\n*ELSET, ELSET=E,\n*NSET, NSET=D\n20\n";
+    let deck = read(&format!("{TWO}{names}")).expect("deck");
+    let of = |name: &str| deck.node_set(name).expect("set").to_vec();
+    assert_eq!((of("B"), of("C"), of("D")), (vec![0], vec![0, 1, 2], vec![1]));
+}
+
+#[test]
+fn names_of_sets_may_begin_with_digits() {
+    let deck = read(&format!("{TWO}*NSET, NSET=1ST\n10\n*NSET, NSET=B\n1st, 20\n")).expect("deck");
+    assert_eq!(deck.node_set("B").expect("B"), [0, 1]);
+    let error = read(&format!("{TWO}*NSET, NSET=B\n1.5\n")).expect_err("a number");
+    assert!(error.to_string().contains("a number from 1"), "{error}");
+}
+
+/// As CalculiX opens files: beside the deck. Those beside the file that includes come first.
+#[test]
+fn files_are_included_from_beside_the_deck_too() {
+    let (folder, path) = folder(&[("part.inp", "*INCLUDE, INPUT=sub/one.inp\n"), ("two.inp", TWO)]);
+    std::fs::create_dir(folder.path().join("sub")).expect("folder");
+    std::fs::write(folder.path().join("sub/one.inp"), "*INCLUDE, INPUT=two.inp\n").expect("written");
+    assert_eq!(Deck::read(&path).expect("deck").mesh(), read(TWO).expect("deck").mesh());
+    std::fs::write(folder.path().join("sub/two.inp"), "*NODE\n1\n").expect("written");
+    assert!(Deck::read(&path).is_err());
+}
+
+/// Zeros that mean the default; data that CalculiX reads over.
+#[test]
+fn zeros_are_defaults() {
+    let rest = |friction: &str, time: &str| {
+        format!(
+            "*SURFACE INTERACTION, NAME=I\n*SURFACE BEHAVIOR, PRESSURE-OVERCLOSURE=HARD\n0.\n*FRICTION\n{friction}\n\
+        *CONTACT PAIR, INTERACTION=I\nS1, S2\n*GAP CONDUCTANCE\n1.\n*INTEGRATED OUTPUT\n*BOUNDARY\nN5, 1, 3\n*STEP\n*STATIC\n{time}\n*END STEP\n"
+        )
+    };
+    let scene = |friction, time| {
+        let deck = read(&cube(&rest(friction, time))).expect("deck");
+        (
+            deck.scene().expect("scene"),
+            deck.ignored().iter().map(|i| i.word.clone()).collect::<Vec<_>>(),
+        )
+    };
+    let (plain, told) = scene("0.3", "1., 1.");
+    assert_eq!(told, ["0.", "*GAP CONDUCTANCE", "*INTEGRATED OUTPUT"]);
+    for (friction, time) in [
+        ("0.3, 0.", "0., 1."),
+        ("0.3", "1., 0."),
+        ("0.3", "0., 0., 0., 0."),
+        ("0.3", "1., 1., , , 2."),
+    ] {
+        let (scene, _) = scene(friction, time);
+        assert_eq!(
+            format!("{:?}", scene.analysis()),
+            format!("{:?}", plain.analysis()),
+            "{time}"
+        );
+        assert_eq!(
+            format!("{:?}", scene.contacts()),
+            format!("{:?}", plain.contacts()),
+            "{friction}"
+        );
+    }
+    let (_, told) = scene("0.3, 1e6", "1., 1.");
+    assert!(told.contains(&"1e6".to_owned()), "{told:?}");
 }

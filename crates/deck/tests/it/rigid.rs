@@ -248,3 +248,17 @@ fn a_rigid_punch_is_pressed_by_a_force() {
     });
     assert_eq!(held.displacement(), free.displacement());
 }
+
+/// PIN NSET is NSET.
+#[test]
+fn pinned_nodes_are_nodes_of_a_rigid_body() {
+    let deck = |key: &str| {
+        let body = format!("*NODE\n900, 0.5, 0.5, 1.\n*RIGID BODY, {key}=N6, REF NODE=900\n");
+        let step = "*BOUNDARY\nN5, 1, 3\n*STEP\n*STATIC\n*CLOAD\n900, 1, 1.\n*END STEP\n";
+        crate::write::read(&crate::write::cube(&(body + step))).and_then(|deck| deck.scene())
+    };
+    let [plain, pinned] = ["NSET", "PIN NSET"].map(|key| format!("{:?}", deck(key).expect("scene").couplings()));
+    assert_eq!(plain, pinned);
+    let error = deck("PIN NSET=N5, TIE NSET").expect_err("two").to_string();
+    assert!(error.contains("into one set"), "{error}");
+}

@@ -92,16 +92,67 @@ fn many_pressures_are_those_of_few() {
     assert_same(&few, &many);
 }
 
-/// The same line as the axis in another step, by another point and the other way round, is the same load.
+/// The same point and direction of the axis in another step are the same load; the same line otherwise is none that
+/// CalculiX would know again.
 #[test]
-fn an_axis_is_a_line() {
+fn an_axis_has_a_point_and_a_sense() {
     let bar = bar(1);
-    let next = |spin: &str| {
-        let more = format!("ALL, {SPIN}\n*END STEP\n*STEP\n*STATIC\n*DLOAD\nALL, {spin}\n");
-        scene(&bar, "", &more).loads().to_vec()
+    let steps = |op: &str, spin: &str| {
+        let more = format!("ALL, {SPIN}\n*END STEP\n*STEP\n*STATIC\n*DLOAD{op}\nALL, {spin}\n");
+        let step = format!("*BOUNDARY\nN1, 1, 3\n*STEP\n*STATIC\n*DLOAD\n{more}*END STEP\n");
+        read(&format!("{}{STEEL}{step}", mesh(&bar))).and_then(|deck| deck.scene())
     };
-    let loads = next("CENTRIF, 1.E6, 0.25, -0.5, -3., 0., 0., 1.");
-    assert_eq!(loads.len(), 1);
-    let [one, two] = [1.0, 2.0].map(|t| loads[0].history().value(t));
+    let scene = steps("", "CENTRIF, 1.E6, 0.25, -0.5, 9., 0., 0., -1.").expect("scene");
+    let [load] = scene.loads() else { panic!("one load") };
+    let [one, two] = [1.0, 2.0].map(|t| load.history().value(t));
     assert!((two / one - 0.25).abs() < 1e-15, "{one} {two}");
+    for other in [
+        "CENTRIF, 1.E6, 0.25, -0.5, 9., 0., 0., 2.",
+        "CENTRIF, 1.E6, 0.25, -0.5, -3., 0., 0., -2.",
+    ] {
+        let error = steps("", other).expect_err("another axis").to_string();
+        assert!(error.contains("another axis"), "{error}");
+        assert_eq!(steps(", OP=NEW", other).expect("scene").loads().len(), 2);
+    }
+}
+
+/// Gravity of another direction takes the place of the first, which goes along a straight line.
+#[test]
+fn gravity_that_is_replaced_goes_along_a_line() {
+    let bar = bar(1);
+    let table = "*AMPLITUDE, NAME=A\n0., 0., 1., 1.\n";
+    let other = "*END STEP\n*STEP\n*STATIC\n0.25, 1.\n*DLOAD, OP=NEW, AMPLITUDE=A\nALL, GRAV, 10., 1., 0., 0.\n";
+    let scene = scene(&bar, table, &format!("ALL, GRAV, 10., 0., 0., -1.\n{other}"));
+    let [down, along] = scene.loads() else {
+        panic!("{}", scene.loads().len())
+    };
+    for (time, left, new) in [(1.0, 1.0, 0.0), (1.25, 0.75, 0.25), (1.5, 0.5, 0.5), (2.0, 0.0, 1.0)] {
+        let found = [down, along].map(|load| load.history().value(time));
+        assert!(
+            (found[0] - left).abs() < 1e-12 && (found[1] - new).abs() < 1e-12,
+            "{time}: {found:?}"
+        );
+    }
+}
+
+/// `OP=NEW` of one keyword for distributed loads removes those of the other, which Abaqus keeps: it is told.
+#[test]
+fn removed_loads_of_another_keyword_are_told() {
+    let told = |second: &str| {
+        let first = "*DLOAD\nALL, GRAV, 10., 0., 0., -1.\n*DSLOAD\nS6, P, 1.\n";
+        let steps =
+            format!("*BOUNDARY\nN5, 1, 3\n*STEP\n*STATIC\n{first}*END STEP\n*STEP\n*STATIC\n{second}*END STEP\n");
+        let deck = read(&crate::write::cube(&steps)).expect("deck");
+        deck.ignored().iter().map(ToString::to_string).collect::<Vec<_>>()
+    };
+    let found = told("*DSLOAD, OP=NEW\nS6, P, 2.\n");
+    assert!(
+        matches!(&found[..], [one] if one.contains("OP=NEW") && one.contains("*DLOAD")),
+        "{found:?}"
+    );
+    let found = told("*DLOAD, OP=NEW\nALL, GRAV, 9., 0., 0., -1.\n");
+    assert!(matches!(&found[..], [one] if one.contains("*DSLOAD")), "{found:?}");
+    for second in ["*DSLOAD\nS6, P, 2.\n", "*DLOAD, OP=NEW\n*DSLOAD\nS6, P, 2.\n"] {
+        assert_eq!(told(second), [""; 0], "{second}");
+    }
 }

@@ -17,7 +17,8 @@ use crate::vec3::{self, Vec3};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum PartCount {
-    /// So many; more where bodies or groups are, or cracks split them.
+    /// So many of one body; bodies and groups have their shares by numbers of tetrahedra, rounded and one at least, so
+    /// that the sum may be a few less or more. More where cracks split them.
     Exactly(usize),
     /// A number near by for which the parts of a body that fills its box are nearest to cubes; a sixth of it where
     /// quadratic cells are graded so strongly along all axes that many parts would be flat. Rods, more than eight times
@@ -52,17 +53,8 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     let frame = |group: usize| frames[group].as_ref();
     let centre = |tet: usize| vec3::centroid(&corners(mesh, frame(groups[tet] as usize), tet));
     let centres: Vec<Vec3> = (0..tets).map(centre).collect();
-    let plain = |frame| Cutter {
-        mesh,
-        frame,
-        centres: &centres,
-        shares: &NO_SHARES,
-    };
-    // elsewhere long cells along an axis are not layers
-    let all: Vec<usize> = (0..members.count()).collect();
-    let boxes: Vec<bool> = all.iter().map(|&g| plain(frame(g)).is_box(members.of(g))).collect();
-    let along_axes = all.iter().any(|&g| boxes[g] && frames[g].is_none());
-    let along_axes = if along_axes { shares(mesh, None) } else { NO_GRADING };
+    let lengths = (0..tets).map(|tet| relative_lengths(mesh, frame(groups[tet] as usize), tet));
+    let lengths: Vec<Vec3> = lengths.collect();
     let bulk = match count {
         PartCount::Exactly(_) => Vec::new(),
         PartCount::About(_) => volumes_and_surfaces(mesh, &groups),
@@ -72,20 +64,18 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     for (group, own) in members.iter().enumerate() {
         let share = (own.len() as f64 / tets as f64 * number as f64).round() as usize;
         let share = share.clamp(1, own.len());
-        let oblique = frame(group)
-            .filter(|_| boxes[group])
-            .map(|frame| shares(mesh, Some(frame)));
-        let (grading, shares) = match (&oblique, boxes[group]) {
-            (Some(oblique), _) => oblique,
-            (None, true) => &along_axes,
-            (None, false) => &NO_GRADING,
+        let mut cutter = Cutter {
+            mesh,
+            frame: frame(group),
+            centres: &centres,
+            lengths: &lengths,
+            graded: [false; 3],
         };
-        let layered = shares.iter().any(Option::is_some);
-        let flat = mesh.order() == 2 && layered && grading.iter().all(|ratio| *ratio > STRONGLY);
-        let cutter = Cutter {
-            shares,
-            ..plain(frame(group))
-        };
+        // elsewhere long cells along an axis are not layers
+        let grading = if cutter.is_box(own) { grading(&lengths, own) } else { [1.0; 3] };
+        cutter.graded = grading.map(|ratio| ratio > GRADED);
+        let layered = cutter.graded.contains(&true);
+        let flat = mesh.order() == 2 && grading.iter().all(|ratio| *ratio > STRONGLY);
         let pieces = match count {
             PartCount::Exactly(_) => cutter.pieces(own, share),
             PartCount::About(_) => match cutter.lengths(own, bulk[group]) {
@@ -119,36 +109,29 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
 /// Whether cells are graded so strongly along all axes that many are flat.
 #[doc(hidden)]
 pub fn is_strongly_graded(mesh: &TetMesh) -> bool {
-    shares(mesh, None).0.iter().all(|ratio| *ratio > STRONGLY)
+    let all: Vec<u32> = (0..mesh.tets().len() as u32).collect();
+    let lengths: Vec<Vec3> = all
+        .iter()
+        .map(|&tet| relative_lengths(mesh, None, tet as usize))
+        .collect();
+    grading(&lengths, &all).iter().all(|ratio| *ratio > STRONGLY)
 }
 
-/// How strongly cells are graded along each axis, and what each tetrahedron counts in a cut across it; none where all
-/// count alike.
-type Grading = ([f64; 3], [Option<Vec<f64>>; 3]);
+/// Lengths of a tetrahedron along the axes of a frame, relative to itself: cells that are small all round count alike.
+fn relative_lengths(mesh: &TetMesh, frame: Option<&Frame>, tet: usize) -> Vec3 {
+    let (low, high) = extent(corners(mesh, frame, tet));
+    let lengths = vec3::sub(high, low);
+    lengths.map(|length| length / lengths.iter().product::<f64>().cbrt())
+}
 
-const NO_SHARES: [Option<Vec<f64>>; 3] = [const { None }; 3];
-const NO_GRADING: Grading = ([1.0; 3], NO_SHARES);
-
-/// The grading along the axes of a frame.
-fn shares(mesh: &TetMesh, frame: Option<&Frame>) -> Grading {
-    let lengths = |tet: usize| {
-        let (low, high) = extent(corners(mesh, frame, tet));
-        vec3::sub(high, low)
-    };
-    let all: Vec<Vec3> = (0..mesh.tets().len()).map(lengths).collect();
-    let mut grading = [1.0; 3];
-    let shares = [0, 1, 2].map(|d| {
-        // relative to the tetrahedron itself: cells that are small all round count alike
-        let lengths: Vec<f64> = all.iter().map(|l| l[d] / l.iter().product::<f64>().cbrt()).collect();
-        let mut sorted = lengths.clone();
+/// How strongly these cells are graded along each axis.
+fn grading(lengths: &[Vec3], tets: &[u32]) -> Vec3 {
+    [0, 1, 2].map(|d| {
+        let mut sorted: Vec<f64> = tets.iter().map(|&tet| lengths[tet as usize][d]).collect();
         sorted.sort_unstable_by(f64::total_cmp);
         let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64) as usize];
-        grading[d] = at(0.95) / at(0.05);
-        // between equal numbers and equal lengths
-        let share = |length: f64| length.powf(0.75);
-        (grading[d] > GRADED).then(|| lengths.into_iter().map(share).collect())
-    });
-    (grading, shares)
+        at(0.95) / at(0.05)
+    })
 }
 
 /// Corners of a tetrahedron along the axes of a frame.
@@ -161,7 +144,9 @@ struct Cutter<'a> {
     mesh: &'a TetMesh,
     frame: Option<&'a Frame>,
     centres: &'a [Vec3],
-    shares: &'a [Option<Vec<f64>>; 3],
+    lengths: &'a [Vec3],
+    /// Along which axes cells of different lengths count differently.
+    graded: [bool; 3],
 }
 
 impl Cutter<'_> {
@@ -248,8 +233,11 @@ impl Cutter<'_> {
 
     /// How many of these sorted tetrahedra have a part of all their shares; `None` where all count alike.
     fn middle(&self, tets: &[u32], axis: usize, part: f64) -> Option<usize> {
-        let shares = self.shares[axis].as_ref()?;
-        let share = |tet: &u32| shares[*tet as usize];
+        if !self.graded[axis] {
+            return None;
+        }
+        // between equal numbers and equal lengths
+        let share = |tet: &u32| self.lengths[*tet as usize][axis].powf(0.75);
         let wanted = part * tets.iter().map(share).sum::<f64>();
         let mut sum = 0.0;
         tets.iter().position(|tet| {

@@ -72,23 +72,26 @@ impl<'m> Locator<'m> {
         })
     }
 
-    /// The barycentric coordinates of a point in a tetrahedron, of a curved one by Newton's method.
+    /// The barycentric coordinates of a point in a tetrahedron, of a curved one by Newton's method: outside if this does
+    /// not converge.
     fn coordinates(&self, tet: usize, point: [f64; 3]) -> [f64; 4] {
         let mut l = barycentric(&self.mesh.tet_points(tet), point);
         if self.mesh.order() == 1 {
             return l;
         }
         let nodes = self.mesh.quadratic_points(tet);
+        let mut last = f64::INFINITY;
         for _ in 0..PLACINGS {
             let missing = sub(point, quadrature::at(&nodes, &shape(&l)));
             let [own, others @ ..] = barycentric(&tangents(&nodes, &l), missing);
             let change = [own - 1.0, others[0], others[1], others[2]];
-            if change.iter().all(|c| c.abs() <= PLACED) {
+            last = change.iter().fold(0.0, |most, c| c.abs().max(most));
+            if last <= PLACED {
                 break;
             }
             l = std::array::from_fn(|i| l[i] + change[i]);
         }
-        l
+        if last <= OUTSIDE { l } else { [-1.0; 4] }
     }
 }
 
@@ -143,4 +146,38 @@ pub fn energy_of_difference(
             law.energy_density(&std::array::from_fn(|i| own[i] - strain[i]))
         }
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::RngExt;
+    use rand_pcg::Pcg64Mcg;
+
+    /// Of strongly curved tetrahedra, in which Newton's method also cycles.
+    #[test]
+    fn a_place_that_is_found_is_there() {
+        let mut dice = Pcg64Mcg::new(0x9e37_79b9_7f4a_7c15);
+        let mut draw = |size: f64| [0; 3].map(|_| size * (2.0 * dice.random::<f64>() - 1.0));
+        let corners = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        let (mut meshes, mut found) = (0, 0);
+        for _ in 0..3000 {
+            let mids = EDGES.map(|[a, b]| add(scale(0.5, add(corners[a], corners[b])), draw(0.14)));
+            let points = [&corners[..], &mids].concat();
+            let Ok(mesh) = TetMesh::quadratic(points, vec![[0, 1, 2, 3, 4, 5, 6, 7, 8, 9]], Vec::new()) else {
+                continue;
+            };
+            meshes += 1;
+            let (locator, nodes) = (Locator::new(&mesh), mesh.quadratic_points(0));
+            for _ in 0..100 {
+                let place = add([0.5; 3], draw(1.0));
+                if let Some((_, l)) = locator.locate(place) {
+                    found += 1;
+                    let off = crate::vec3::norm(sub(quadrature::at(&nodes, &shape(&l)), place));
+                    assert!(off < 1e-8, "{off}");
+                }
+            }
+        }
+        assert!(meshes > 300 && found > 300, "{meshes} {found}");
+    }
 }

@@ -107,7 +107,8 @@ pub(super) fn no_coincident(
     mids: &[[u32; 6]],
     keep: impl FnOnce(&mut Vec<(usize, usize)>),
 ) -> Result<(), MeshError> {
-    let mut pairs = close_pairs(points, 0.0);
+    let mut pairs = Vec::new();
+    close_pairs(points, 0.0, |pair| pairs.push(pair));
     if pairs.is_empty() {
         return Ok(());
     }
@@ -132,18 +133,18 @@ pub(super) fn no_coincident(
     }
 }
 
-/// Pairs of nodes that are no farther apart than `distance`, or that coincide, through a hash of grid cells.
-pub(super) fn close_pairs(points: &[Vec3], distance: f64) -> Vec<(usize, usize)> {
+/// Tells pairs of nodes that are no farther apart than `distance`, or that coincide, through a hash of grid cells: the
+/// smaller number first. With a large distance these are too many for a list.
+pub(super) fn close_pairs(points: &[Vec3], distance: f64, mut tell: impl FnMut((usize, usize))) {
     let (low, high) = extent(points.iter().copied());
     let farthest = low.iter().chain(&high).fold(0.0_f64, |far, x| far.max(x.abs()));
     let same = (COINCIDENT * vec3::norm(vec3::sub(high, low))).max(LAST_DIGIT * farthest);
     let tolerance = distance.max(same);
     let cell = 4.0 * tolerance;
     if cell <= 0.0 || !cell.is_finite() {
-        return Vec::new();
+        return;
     }
     let key = |p: Vec3| [0, 1, 2].map(|i| ((p[i] - low[i]) / cell).floor() as i64);
-    let mut pairs = Vec::new();
     // The last node of each cell, and for each node the one before it in its cell.
     let mut last: HashMap<[i64; 3], usize> = HashMap::with_capacity(points.len());
     let mut before = vec![usize::MAX; points.len()];
@@ -156,7 +157,7 @@ pub(super) fn close_pairs(points: &[Vec3], distance: f64) -> Vec<(usize, usize)>
                     let mut other = last.get(&[i, j, k]).copied().unwrap_or(usize::MAX);
                     while other != usize::MAX {
                         if vec3::norm(vec3::sub(points[other], p)) <= tolerance {
-                            pairs.push((other, node));
+                            tell((other, node));
                         }
                         other = before[other];
                     }
@@ -167,7 +168,6 @@ pub(super) fn close_pairs(points: &[Vec3], distance: f64) -> Vec<(usize, usize)>
             before[node] = previous;
         }
     }
-    pairs
 }
 
 /// Smallest box around some points.

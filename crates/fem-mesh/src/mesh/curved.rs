@@ -150,10 +150,21 @@ pub(super) fn check(points: &[Vec3], tets: &[[u32; 4]], mids: &[[u32; 6]]) -> Re
     fault.map_or(Ok(()), Err)
 }
 
-/// Least volume of the tangent tetrahedra at nodes and points of quadrature.
+/// Least volume of the tangent tetrahedra at nodes, quarters of edges, where folds begin, and points of quadrature.
 fn least_volume(points: &[Vec3; 10]) -> f64 {
     let inside = quadrature::tetrahedron().into_iter().map(|(l, _)| l);
-    let all = NODES.into_iter().chain(inside).chain(quadrature::FOUR_POINTS);
+    let quarters = EDGES.into_iter().flat_map(|[a, b]| {
+        [[a, b], [b, a]].map(|[near, far]| {
+            let mut l = [0.0; 4];
+            (l[near], l[far]) = (0.75, 0.25);
+            l
+        })
+    });
+    let all = NODES
+        .into_iter()
+        .chain(quarters)
+        .chain(inside)
+        .chain(quadrature::FOUR_POINTS);
     all.map(|l| tet_volume(&tangents(points, &l)))
         .fold(f64::INFINITY, f64::min)
 }

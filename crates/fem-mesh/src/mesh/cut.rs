@@ -1,6 +1,6 @@
 //! Meshes that are cut open inside.
 
-use crate::tables::DisjointSets;
+use crate::tables::{DisjointSets, distinct};
 use std::collections::BTreeMap;
 
 use super::cells::EDGES;
@@ -45,7 +45,7 @@ impl TetMesh {
     }
 
     /// Cuts a body open along faces inside it that need not lead through: a crack, the tip of which stays joined. It
-    /// has all faces between two tetrahedra of which `is_on(corners)` holds; `is_first(tet)` tells on which side of
+    /// has all faces between two tetrahedra of which `is_on(corners)` holds, asked once each; `is_first(tet)` tells on which side of
     /// them a tetrahedron is. Tags, nodes and copies are as those of [`cut`](Self::cut). A face with all corners at the
     /// tip stays closed. Branches are cracks of their own.
     ///
@@ -75,11 +75,14 @@ impl TetMesh {
         tags: [FacetTag; 2],
     ) -> Result<(Self, Vec<u32>), MeshError> {
         let corners = |tet: usize, face: usize| face_nodes(&self.tets[tet], face).map(|n| self.points[n as usize]);
-        let faces = self.inner_faces(|tet, face, _| is_on(corners(tet, face)));
+        // each is asked for once, and then taken from both sides
+        let once = self.inner_faces(|tet, face, other| tet < other && is_on(corners(tet, face)));
+        let across = |&(tet, face): &(usize, usize)| (tet, self.neighbours[tet][face] as usize);
+        let chosen = distinct(once.iter().map(across));
+        let faces = self.inner_faces(|tet, _, other| chosen.binary_search(&(tet.min(other), tet.max(other))).is_ok());
         let mut sides = vec![None; self.tets.len()];
         faces.iter().for_each(|&(tet, _)| sides[tet] = Some(is_first(tet)));
-        let across = |&(tet, face): &(usize, usize)| (tet, self.neighbours[tet][face] as usize);
-        if let Some((first, second)) = faces.iter().map(across).find(|(a, b)| sides[*a] == sides[*b]) {
+        if let Some(&(first, second)) = chosen.iter().find(|(a, b)| sides[*a] == sides[*b]) {
             return Err(MeshError::CrackSides { first, second });
         }
         self.open(&sides, faces, tags, true)

@@ -4,6 +4,7 @@ use crate::tables::DisjointSets;
 use crate::vec3;
 
 use super::check;
+use super::curved;
 use super::error::MeshError;
 use super::faces::NONE;
 use super::tet_mesh::{Facet, FacetTag, TetMesh};
@@ -50,14 +51,24 @@ impl TetMesh {
     }
 
     /// Moves every node, including mid-nodes, to `map(point)`; connectivity, tags and regions stay. A nonlinear map
-    /// makes curved edges.
+    /// makes curved edges. Nodes that coincide, as those of cracks, may still do so.
     ///
     /// # Errors
     /// [`MeshError`] if the mapped mesh is not valid, for instance inverted by a reflection.
     pub fn map_points(&self, map: impl FnMut([f64; 3]) -> [f64; 3]) -> Result<Self, MeshError> {
-        let points = self.points.iter().copied().map(map).collect();
-        let (tets, mids, facets) = (self.tets.clone(), self.mids.clone(), self.facets.clone());
-        Self::checked(points, tets, mids, facets)?.with_regions(self.regions.clone())
+        let mut moved = self.clone();
+        moved.points = self.points.iter().copied().map(map).collect();
+        check::coordinates(&moved.points)?;
+        check::shapes(&moved.points, &moved.tets)?;
+        curved::check(&moved.points, &moved.tets, &moved.mids)?;
+        check::no_coincident(&moved.points, &moved.tets, &moved.mids, |pairs| {
+            moved.leave_cracks_out(pairs);
+            let mut before = Vec::new();
+            check::close_pairs(&self.points, 0.0, |pair| before.push(pair));
+            before.sort_unstable();
+            pairs.retain(|pair| before.binary_search(pair).is_err());
+        })?;
+        Ok(moved)
     }
 
     /// This mesh and `other`, numbered after it, as separate bodies. Tags and regions stay; node numbers of `other`
@@ -145,11 +156,8 @@ pub fn merge_nodes<const N: usize>(
     if distance.is_nan() || distance < 0.0 {
         return 0;
     }
-    let pairs = check::close_pairs(points, distance);
     let mut sets = DisjointSets::new(points.len());
-    for (a, b) in pairs {
-        sets.join(a, b);
-    }
+    check::close_pairs(points, distance, |(a, b)| sets.join(a, b));
     let first: Vec<u32> = (0..points.len()).map(|n| sets.first(n) as u32).collect();
     // numbers out of range are left for TetMesh::new to report
     let renumber = |node: u32| first.get(node as usize).copied().unwrap_or(node);

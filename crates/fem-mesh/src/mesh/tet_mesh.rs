@@ -127,7 +127,7 @@ impl TetMesh {
     }
 
     /// Drops pairs of coinciding nodes that are meant: with tagged facets that face each other, as those of a crack do.
-    fn leave_cracks_out(&self, pairs: &mut Vec<(usize, usize)>) {
+    pub(super) fn leave_cracks_out(&self, pairs: &mut Vec<(usize, usize)>) {
         let mut normals: HashMap<usize, Vec<Vec3>> =
             pairs.iter().flat_map(|(a, b)| [*a, *b]).map(|n| (n, vec![])).collect();
         for (facet, corners) in self.facets.iter().enumerate() {
@@ -243,8 +243,11 @@ impl TetMesh {
         let place = |&n: &u32| Some((n, *self.points.get(n as usize)?));
         let (nodes, places): (Vec<u32>, Vec<Vec3>) = nodes.iter().filter_map(place).unzip();
         let (low, high) = self.extent();
-        let pairs = check::close_pairs(&places, COINCIDENT * vec3::norm(vec3::sub(high, low)));
-        pairs.into_iter().map(|(a, b)| [nodes[a], nodes[b]]).collect()
+        let mut pairs = Vec::new();
+        check::close_pairs(&places, COINCIDENT * vec3::norm(vec3::sub(high, low)), |(a, b)| {
+            pairs.push([nodes[a], nodes[b]]);
+        });
+        pairs
     }
 
     /// The tetrahedra across the four faces of a tetrahedron, `None` at the boundary. Face number

@@ -3,7 +3,7 @@
 //! A quadratic polynomial is fitted to the strains at four points of each tetrahedron around a corner (its patch). At
 //! corners it is evaluated, at mid-nodes the mean of the two at the ends.
 
-use nalgebra::{Cholesky, Const, SMatrix, SVector};
+use nalgebra::{Cholesky, Const, Matrix3, SMatrix, SVector, Vector3};
 use rayon::prelude::*;
 
 use crate::element::{Piece, over_quadratic};
@@ -25,7 +25,9 @@ pub(super) struct Fit {
     /// Tetrahedra, ascending.
     tets: Vec<u32>,
     centre: Vec3,
-    size: f64,
+    /// To coordinates in which the points have unit moments: however flat cells are, a fit is trusted as if they were
+    /// not.
+    axes: Matrix3<f64>,
     /// Terms in use: fewer where the points do not determine all.
     terms: usize,
     factor: Cholesky<f64, Const<TERMS>>,
@@ -45,7 +47,7 @@ impl Fit {
         found.unwrap_or_else(|| Self {
             tets: tets.to_vec(),
             centre,
-            size: 1.0,
+            axes: Matrix3::identity(),
             terms: 1,
             factor: Cholesky::pack_dirty(SMatrix::identity() * (tets.len() as f64 * 4.0).sqrt()),
         })
@@ -53,12 +55,13 @@ impl Fit {
 
     fn with_terms(mesh: &TetMesh, tets: &[u32], centre: Vec3, terms: usize) -> Option<Self> {
         let places: Vec<Vec3> = tets.iter().flat_map(|&tet| samples(mesh, tet as usize)).collect();
-        let reach = |p: &Vec3| sub(*p, centre).into_iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-        let size = places.iter().map(reach).fold(0.0, f64::max);
+        let arms = places.iter().map(|p| Vector3::from(sub(*p, centre)));
+        let moments = arms.map(|x| x * x.transpose()).sum::<Matrix3<f64>>() / places.len() as f64;
+        let axes = moments.cholesky()?.l().try_inverse()?;
         let mut out = Self {
             tets: tets.to_vec(),
             centre,
-            size,
+            axes,
             terms,
             factor: Cholesky::pack_dirty(SMatrix::identity()),
         };
@@ -74,7 +77,7 @@ impl Fit {
     }
 
     fn polynomial(&self, place: Vec3) -> Terms {
-        let [x, y, z] = sub(place, self.centre).map(|d| d / self.size);
+        let [x, y, z] = (self.axes * Vector3::from(sub(place, self.centre))).into();
         let all = Terms::from([1.0, x, y, z, x * x, y * y, z * z, y * z, x * z, x * y]);
         Terms::from_fn(|k, _| if k < self.terms { all[k] } else { 0.0 })
     }

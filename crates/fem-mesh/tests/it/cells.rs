@@ -2,7 +2,7 @@
 
 use crate::grid;
 use proptest::prelude::*;
-use signorini_fem_mesh::mesh::{Cell, CellShape, Division};
+use signorini_fem_mesh::mesh::{Cell, CellShape, Division, drop_unused_nodes};
 use signorini_fem_mesh::{MeshError, TetMesh};
 
 /// A cell that owns its nodes.
@@ -190,6 +190,23 @@ fn edges_come_before_diagonals() {
         Division::new(&mut points, &[across, cube]),
         Err(MeshError::CellsCross { first: 1, second: 0 })
     ));
+}
+
+/// Hexahedra with nodes on edges only beside those with nodes in faces, too: the common face has one node.
+#[test]
+fn cells_of_20_and_27_nodes_fit() {
+    for small in [0, 1] {
+        let (mut points, mut cells) = cells([2, 1, 1], false, 3, &[5, 1, 7, 3, 3, 8]);
+        cells[small].1.truncate(20);
+        let division = divide(&mut points, &cells);
+        let tets = division.tets.iter().zip(&division.mids);
+        let whole =
+            |(tet, mids): (&[u32; 4], &[u32; 6])| std::array::from_fn(|k| if k < 4 { tet[k] } else { mids[k - 4] });
+        let mut tets: Vec<[u32; 10]> = tets.map(whole).collect();
+        drop_unused_nodes(&mut points, &mut tets, &mut []);
+        let mesh = TetMesh::quadratic(points, tets, Vec::new()).unwrap();
+        assert_eq!(mesh.components().into_iter().max(), Some(0));
+    }
 }
 
 #[test]

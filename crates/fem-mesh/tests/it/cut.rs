@@ -1,5 +1,6 @@
 //! Meshes that are cut open.
 
+use std::cell::Cell;
 use std::collections::BTreeMap;
 
 use rand::RngExt;
@@ -197,6 +198,64 @@ fn cracks_that_are_none_are_refused() {
     assert_eq!(whole.crack(is_one, is_lower, TAGS), Err(MeshError::NoCut));
     let error = whole.crack(in_plane, |_| true, TAGS).expect_err("one side");
     assert!(matches!(error, MeshError::CrackSides { .. }), "{error}");
+}
+
+/// Whatever is said of a face holds for both sides.
+#[test]
+fn a_face_is_asked_for_once() {
+    for order in [1, 2] {
+        let whole = layers(order);
+        let is_lower = |tet: usize| middle(&whole, tet)[2] < 0.5;
+        let upward = |face: [[f64; 3]; 3]| in_plane(face) && area_vector(&face)[2] > 0.0;
+        let turn = Cell::new(0_usize);
+        let at_times = |face| {
+            turn.set(turn.get() + 1);
+            in_plane(face) && !turn.get().is_multiple_of(3)
+        };
+        let found = [
+            whole.crack(upward, is_lower, TAGS),
+            whole.crack(at_times, is_lower, TAGS),
+        ];
+        for (cracked, _) in found.into_iter().flatten() {
+            assert_sound(&cracked);
+        }
+        let faces = whole.tets().len() * 4 - whole.boundary_facets().len();
+        assert_eq!(turn.get(), faces / 2);
+    }
+}
+
+/// A crack without tags moves with its body; what else meets in a map is a fault.
+#[test]
+fn cracks_without_tags_are_moved() {
+    for order in [1, 2] {
+        let whole = layers(order);
+        let is_lower = |tet: usize| middle(&whole, tet)[2] < 0.5;
+        let is_on = |face: [[f64; 3]; 3]| in_plane(face) && face.iter().all(|p| p[0] < 1.5);
+        let cracked = whole.crack(is_on, is_lower, TAGS).expect("crack").0;
+        let moved = |mesh: &TetMesh| mesh.map_points(|[x, y, z]| [x + 1.0, 2.0 * y, z]);
+        let tagged = moved(&cracked).expect("tags");
+        for bare in [
+            cracked.clone().without_tags(&TAGS),
+            cracked.clone().tag_boundary(|_, _| None),
+        ] {
+            let bare = moved(&bare).expect("no tags");
+            assert_eq!(bare.points(), tagged.points());
+            assert_eq!(bare.boundary_facets(), tagged.boundary_facets());
+        }
+        assert_sound(&tagged);
+    }
+    // a slot that a map closes
+    let whole = Brick::new([1.0, 1.0, 1.0], [4, 2, 4]).build().expect("brick");
+    let (mut points, mut tets) = (whole.points().to_vec(), whole.tets().to_vec());
+    tets.retain(|tet| {
+        let [x, _, z] = centroid(&tet.map(|n| whole.points()[n as usize]));
+        x > 0.5 || (z - 0.375).abs() > 0.125
+    });
+    drop_unused_nodes(&mut points, &mut tets, &mut []);
+    let open = TetMesh::new(points, tets, Vec::new()).expect("a slot");
+    let close = |[x, y, z]: [f64; 3]| [x, y, if x < 0.5 && z > 0.3 { z - 0.25 } else { z }];
+    let error = open.map_points(close).expect_err("closed");
+    assert!(matches!(error, MeshError::CoincidentNodes { .. }), "{error}");
 }
 
 /// No subdomain hangs together by what is left around a crack; a crack that is small against its part stays in it.

@@ -284,3 +284,23 @@ fn strong_grading_is_along_all_axes() {
     };
     assert!(!graded([1.0; 3]) && !graded([3.0, 1.0, 1.0]) && graded([3.0; 3]));
 }
+
+/// Where a body is cut does not depend on others.
+#[test]
+fn bodies_are_cut_as_if_alone() {
+    let plain = brick([18, 6, 6]);
+    let flat = plain.map_points(|[x, y, z]| [x, y, 0.05 * z - 1.0]).expect("flat");
+    let graded = plain
+        .map_points(|[x, y, z]| [x * x, y * y, z * z + 2.0])
+        .expect("graded");
+    for (first, second) in [(&plain, &flat), (&graded, &flat)] {
+        for oblique in [false, true] {
+            let both = first.append(second).expect("two");
+            let place = |mesh: &TetMesh| if oblique { mesh.map_points(turned).expect("turned") } else { mesh.clone() };
+            for count in [5, 7] {
+                let (both, alone) = (even(&place(&both), 2 * count), even(&place(first), count));
+                assert!(both[..alone.len()] == alone, "{oblique} {count}");
+            }
+        }
+    }
+}

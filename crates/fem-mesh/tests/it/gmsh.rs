@@ -222,12 +222,40 @@ fn without_groups_the_entities_count() {
         .replace("1 0 0 0 1 1 0 1 3 0\n", "1 0 0 0 1 1 0 0 0\n")
         .replace("1 0 0 0 1 1 1 1 7 1 -1\n", "1 0 0 0 1 1 1 0 0\n")
         .replace("2 0 0 0 2 2 2 1 8 0\n", "2 0 0 0 2 2 2 0 0\n");
-    let mesh = parse_gmsh(text.as_bytes()).unwrap().0;
+    let (mesh, names) = parse_gmsh(text.as_bytes()).unwrap();
     assert_eq!(mesh.regions(), [1, 2]);
+    // the number of a group is none of them
+    let error = names.surface("foundation").unwrap_err();
+    assert!(matches!(&error, GmshError::UnknownName { known, .. } if known.is_empty()));
     assert_eq!(mesh.tags(), [FacetTag(1), FacetTag(2)]);
     // The same with the second surface between the two volumes.
     let inside = text.replace("3 3 1 5\n", "3 1 2 5\n");
     assert_eq!(parse_gmsh(inside.as_bytes()).unwrap().0.tags(), [FacetTag(1)]);
+}
+
+#[test]
+fn sections_may_be_repeated() {
+    let entities = "$EndEntities\n$Entities\n0 0 0 2\n1 0 0 0 1 1 1 1 7";
+    let mut text = TEXT.to_owned();
+    for (from, to) in [
+        ("1\n2 3", "1\n3 7 \"lower\"\n$EndPhysicalNames\n$PhysicalNames\n1\n2 3"),
+        ("1 0 2 2\n", "1 0 2 0\n"),
+        ("1 0 0 0 1 1 1 1 7", entities),
+        ("2 6 1 6\n", "1 3 1 3\n"),
+        ("3 1 0 3\n5\n", "$EndNodes\n$Nodes\n1 3 4 6\n3 1 0 3\n5\n"),
+        ("5 6 1 6\n", "3 4 1 4\n"),
+        ("3 1 4 1\n4", "$EndElements\n$Elements\n2 2 4 6\n3 1 4 1\n4"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        text = text.replacen(from, to, 1);
+    }
+    let (mesh, names) = parse_gmsh(text.as_bytes()).unwrap();
+    assert_eq!(mesh, parse_gmsh(TEXT.as_bytes()).unwrap().0);
+    assert_eq!(names.surface("foundation").unwrap(), FacetTag(3));
+    assert_eq!(names.volume("lower").unwrap(), 7);
+    let other = text.replacen("0 0 0 2\n", "0 0 0 3\n2 0 0 0 2 2 2 1 9 0\n", 1);
+    let error = parse_gmsh(other.as_bytes()).unwrap_err();
+    assert!(matches!(error, GmshError::SeveralGroups { entity: 2, .. }));
 }
 
 #[test]

@@ -59,3 +59,14 @@ fn nodes_far_from_the_origin_coincide() {
         assert_eq!(merged, 16, "{offset}");
     }
 }
+
+/// A distance in another unit makes one node of all, in little memory.
+#[test]
+fn a_distance_in_another_unit_takes_no_memory() {
+    let mesh = Brick::new([1.0; 3], [15; 3]).build().unwrap();
+    let mut tets = mesh.tets().to_vec();
+    let mut merged = 0;
+    let used = allocation_counter::measure(|| merged = merge_nodes(mesh.points(), &mut tets, &mut [], 1e3));
+    assert_eq!(merged + 1, mesh.points().len());
+    assert!(used.bytes_max < 1000 * mesh.points().len() as u64, "{used:?}");
+}

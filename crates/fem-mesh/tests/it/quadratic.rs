@@ -434,6 +434,19 @@ fn faults_of_mid_nodes_name_the_element() {
     );
 }
 
+/// A fold between the nodes of an edge is seen.
+#[test]
+fn a_fold_within_an_edge_is_a_fault() {
+    let mut points = vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    points.extend([[0.5, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.0]]);
+    points.extend([[0.0, -0.15, 0.7], [0.5, 0.0, 0.5], [-0.15, 0.3, 0.3]]);
+    let error = TetMesh::quadratic(points, vec![[0, 1, 2, 3, 4, 5, 6, 7, 8, 9]], Vec::new()).unwrap_err();
+    assert!(
+        matches!(error, MeshError::CurvedInside { least, .. } if least < -0.05),
+        "{error}"
+    );
+}
+
 /// Forces of an eigenstrain are the slope of the energy with it: `E(u) = u K u / 2 - f u + E(0)`, straight or curved,
 /// nearly incompressible or not.
 #[test]

@@ -155,6 +155,34 @@ fn the_index_of_quadratic_elements_is_near_one() {
     }
 }
 
+/// However flat the cells are, and however they lie.
+#[test]
+fn the_index_of_flat_quadratic_elements_is_near_one() {
+    let turned = |[x, y, z]: [f64; 3]| {
+        [
+            0.8 * x - 0.48 * y - 0.36 * z,
+            0.6 * x + 0.64 * y + 0.48 * z,
+            0.8 * z - 0.6 * y,
+        ]
+    };
+    for flat in [1.0, 0.1, 0.01] {
+        let mesh = Brick::new([1.8, 1.8, 1.2 * flat], [6, 6, 4]).build().expect("brick");
+        let mesh = mesh.raise_order().expect("quadratic");
+        let oblique = mesh.map_points(turned).expect("turned");
+        for (mesh, along) in [(mesh, [1.0, 0.0, 0.0]), (oblique, [0.8, 0.6, 0.0])] {
+            let place = |p: &[f64; 3]| (0..3).map(|d| along[d] * p[d]).sum::<f64>();
+            let gradient = |p| along.map(|a: f64| along.map(|b| a * b * place(&p).cos()));
+            let u: Vec<f64> = (mesh.points().iter())
+                .flat_map(|p| along.map(|a| a * place(p).sin()))
+                .collect();
+            let truth = energy_of_error(&mesh, &material(), &u, gradient).expect("error");
+            let estimate = discretisation_error(&mesh, &material(), &u).expect("estimate");
+            let index = (estimate.energy / truth).sqrt();
+            assert!((0.7..1.3).contains(&index), "cells flat by {flat}, {along:?}: {index}");
+        }
+    }
+}
+
 /// Also where a patch has few tetrahedra, as in a body of one element over its thickness.
 #[test]
 fn a_quadratic_displacement_has_no_error() {

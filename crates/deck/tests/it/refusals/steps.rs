@@ -95,7 +95,7 @@ fn loads() {
 fn times() {
     inside("*STATIC\n", "*STATIC", "*STATIC", "one procedure");
     let step = |line: &str| format!("*STEP\n*STATIC\n{line}\n*END STEP\n");
-    behind(&step("0., 1."), "0., 1.", "0.", "positive");
+    behind(&step("-0.1, 1."), "-0.1, 1.", "-0.1", "positive");
     behind(&step("0.1, -1."), "0.1, -1.", "-1.", "positive");
     behind(
         &step("1e-9, 1."),

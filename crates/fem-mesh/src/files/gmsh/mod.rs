@@ -23,7 +23,7 @@ pub use sizes::write_sizes;
 use crate::mesh::{
     Cell, Division, Facet, FacetTag, MeshError, TetMesh, divide_face, drop_unused_nodes, orient_tets, quadratic_tets,
 };
-use crate::tables::{ascending, distinct};
+use crate::tables::ascending;
 use reader::Kind;
 
 errors! {
@@ -84,7 +84,7 @@ impl From<MeshError> for GmshError {
 /// The names that there are, in words.
 fn listed(what: &str, known: &[String]) -> String {
     if known.is_empty() {
-        return format!("no {what} in it has a name, so name one (Physical Surface, Physical Volume)");
+        return format!("no {what} in it has a name by a group, so name one (Physical Surface, Physical Volume)");
     }
     let names: Vec<String> = known.iter().map(|name| format!("{name:?}")).collect();
     format!("the {what}s in it are {}", names.join(", "))
@@ -163,7 +163,11 @@ pub fn parse_gmsh(bytes: &[u8]) -> Result<(TetMesh, GroupNames), GmshError> {
     };
     let of_cells = regions.into_iter().zip(&division.of_cell);
     let regions = of_cells.flat_map(|(region, tets)| tets.clone().map(move |_| region));
-    Ok((mesh.with_regions(regions.collect())?, GroupNames::new(file.names)))
+    let are_groups = [surfaces.are_groups(), volumes.are_groups()];
+    Ok((
+        mesh.with_regions(regions.collect())?,
+        GroupNames::new(&file.names, are_groups),
+    ))
 }
 
 /// The nodes of all elements by their places in the file.
@@ -217,13 +221,10 @@ impl Tags {
         let mut group_of = HashMap::new();
         for &(entity, ref groups) in entities {
             // The sign of a group is an orientation.
-            match distinct(groups.iter().map(|g| g.unsigned_abs()))[..] {
-                [] => {}
-                [group] => {
-                    group_of.insert(entity, group);
-                }
-                _ => {
-                    let groups = groups.clone();
+            for group in groups.iter().map(|g| g.unsigned_abs()) {
+                let before = *group_of.entry(entity).or_insert(group);
+                if before != group {
+                    let groups = vec![before as i32, group as i32];
                     return Err(GmshError::SeveralGroups { what, entity, groups });
                 }
             }

@@ -43,10 +43,12 @@ impl GroupNames {
         self.volumes.iter().map(|(n, region)| (&n[..], *region))
     }
 
-    /// From names as the file lists them; those of points and curves are of no use here.
-    pub(super) fn new(list: Vec<Name>) -> Self {
+    /// From names as the file lists them; those of points and curves are of no use here, nor those of surfaces or
+    /// volumes that are in no groups, since tags and regions are the numbers of these then.
+    pub(super) fn new(list: &[Name], are_groups: [bool; 2]) -> Self {
         let of = |wanted: i32| {
             let own = list.iter().filter(|(dimension, ..)| *dimension == wanted);
+            let own = own.filter(|_| are_groups[(wanted - 2) as usize]);
             distinct(own.map(|(_, group, name)| (name.clone(), group.unsigned_abs())))
         };
         Self {

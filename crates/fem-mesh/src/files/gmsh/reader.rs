@@ -88,14 +88,14 @@ pub(super) fn read(bytes: &[u8]) -> Result<Contents, GmshError> {
     let (mut nodes, mut elements) = (false, false);
     while reader.skip_blanks() {
         match reader.line() {
-            b"$PhysicalNames" => out.names = reader.section("$PhysicalNames", Reader::names)?,
-            b"$Entities" => out.entities = reader.section("$Entities", Reader::entities)?,
+            b"$PhysicalNames" => reader.section("$PhysicalNames", Reader::names, &mut out)?,
+            b"$Entities" => reader.section("$Entities", Reader::entities, &mut out)?,
             b"$Nodes" => {
-                (out.tags, out.points) = reader.section("$Nodes", Reader::nodes)?;
+                reader.section("$Nodes", Reader::nodes, &mut out)?;
                 nodes = true;
             }
             b"$Elements" => {
-                (out.elements, out.nodes) = reader.section("$Elements", Reader::elements)?;
+                reader.section("$Elements", Reader::elements, &mut out)?;
                 elements = true;
             }
             b"$PartitionedEntities" => {
@@ -216,12 +216,16 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A section up to and with its end.
-    fn section<T>(&mut self, name: &'static str, read: fn(&mut Self) -> Result<T, GmshError>) -> Result<T, GmshError> {
+    /// A section up to and with its end; what it has comes behind that of others of its name.
+    fn section(
+        &mut self,
+        name: &'static str,
+        read: fn(&mut Self, &mut Contents) -> Result<(), GmshError>,
+        out: &mut Contents,
+    ) -> Result<(), GmshError> {
         self.section = name;
-        let found = read(self)?;
-        self.end()?;
-        Ok(found)
+        read(self, out)?;
+        self.end()
     }
 
     fn end(&mut self) -> Result<(), GmshError> {
@@ -259,9 +263,8 @@ impl<'a> Reader<'a> {
     }
 
     /// Names of groups: text also in binary files.
-    fn names(&mut self) -> Result<Vec<Name>, GmshError> {
+    fn names(&mut self, out: &mut Contents) -> Result<(), GmshError> {
         let is_binary = std::mem::replace(&mut self.is_binary, false);
-        let mut names = Vec::new();
         for _ in 0..self.count(3)? {
             let (dimension, group) = (self.int()?, self.int()?);
             let quoted = self.line().trim_ascii();
@@ -269,16 +272,16 @@ impl<'a> Reader<'a> {
             let Some(name) = inside else {
                 return self.damaged("a name in quotes is expected");
             };
-            names.push((dimension, group, String::from_utf8_lossy(name).into_owned()));
+            out.names
+                .push((dimension, group, String::from_utf8_lossy(name).into_owned()));
         }
         self.is_binary = is_binary;
-        Ok(names)
+        Ok(())
     }
 
     /// Surfaces, and volumes.
-    fn entities(&mut self) -> Result<[Vec<Entity>; 2], GmshError> {
+    fn entities(&mut self, out: &mut Contents) -> Result<(), GmshError> {
         let counts = [self.count(5)?, self.count(9)?, self.count(9)?, self.count(9)?];
-        let mut out = [Vec::new(), Vec::new()];
         for (dimension, count) in counts.into_iter().enumerate() {
             for _ in 0..count {
                 let entity = self.int()?;
@@ -291,11 +294,11 @@ impl<'a> Reader<'a> {
                     self.ints()?;
                 }
                 if dimension > 1 {
-                    out[dimension - 2].push((entity, groups));
+                    out.entities[dimension - 2].push((entity, groups));
                 }
             }
         }
-        Ok(out)
+        Ok(())
     }
 
     fn ints(&mut self) -> Result<Vec<i32>, GmshError> {
@@ -315,8 +318,7 @@ impl<'a> Reader<'a> {
         Ok(blocks)
     }
 
-    fn nodes(&mut self) -> Result<(Vec<u64>, Vec<[f64; 3]>), GmshError> {
-        let (mut tags, mut points) = (Vec::new(), Vec::new());
+    fn nodes(&mut self, out: &mut Contents) -> Result<(), GmshError> {
         for _ in 0..self.header()? {
             let (_dimension, _entity, parametric) = (self.int()?, self.int()?, self.int()?);
             if parametric != 0 {
@@ -324,17 +326,17 @@ impl<'a> Reader<'a> {
             }
             let count = self.count(4)?;
             for _ in 0..count {
-                tags.push(self.size()?);
+                out.tags.push(self.size()?);
             }
             for _ in 0..count {
-                points.push([self.float()?, self.float()?, self.float()?]);
+                out.points.push([self.float()?, self.float()?, self.float()?]);
             }
         }
-        Ok((tags, points))
+        Ok(())
     }
 
-    fn elements(&mut self) -> Result<(Vec<Element>, Vec<u64>), GmshError> {
-        let (mut elements, mut nodes) = (Vec::new(), Vec::new());
+    fn elements(&mut self, out: &mut Contents) -> Result<(), GmshError> {
+        let Contents { elements, nodes, .. } = out;
         for _ in 0..self.header()? {
             let (_dimension, entity, number) = (self.int()?, self.int()?, self.int()?);
             let Some(&(_, count, kind, order)) = TYPES.iter().find(|t| t.0 == number) else {
@@ -361,7 +363,7 @@ impl<'a> Reader<'a> {
                 });
             }
         }
-        Ok((elements, nodes))
+        Ok(())
     }
 
     /// Skips a section of another kind, up to and with its end.
