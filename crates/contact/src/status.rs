@@ -22,7 +22,8 @@ pub enum StepStatus {
     /// Under the normal forces of this step friction does not hold a body: with consistent slip bounds and normal
     /// forces there is no balance with the loads. The set-up checks only whether some normal forces could hold it.
     NotHeld,
-    /// The solver met its tolerance, and smaller ones, but the certificate is more than that (with an [`Accuracy`](crate::Accuracy) by estimates, above
+    /// The solver met its tolerance, and smaller ones, but the certificate is more than that (with an
+    /// [`Accuracy`](crate::Accuracy) by estimates, above
     /// [`certificate_limit`](crate::report::AccuracyReport::certificate_limit)): mostly the problem is too badly
     /// conditioned for it. The parts of the certificate name the violated condition.
     NotCertified,

@@ -13,9 +13,9 @@ impl Simulation {
     /// and areas, difference formula, and the times of the steps already solved. Loads, motions of supports, materials,
     /// gaps, coefficients of friction (but not to or from zero everywhere), future times, settings and method may
     /// change, as long as rough points have the same directions of slip (a support that begins to move them along
-    /// their surface gives them others); the changed scene then continues from the state. What starts, ends or is locked may have other times
-    /// later on; what has started is held where it was then. To start from the state of a different scene on purpose,
-    /// call [`State::without_origin`]; sizes must match in any case.
+    /// their surface gives them others); the changed scene then continues from the state. What starts, ends or is
+    /// locked may have other times later on; what has started is held where it was then. To start from the state of a
+    /// different scene on purpose, call [`State::without_origin`]; sizes must match in any case.
     ///
     /// # Errors
     /// [`ContactError::Checkpoint`] if the state does not fit; it says which part differs.
