@@ -228,9 +228,9 @@ mod tests {
         let (times, formula) = (vec![0.5, 1.0, 1.125], DifferenceFormula::BACKWARD_EULER);
         let unequal = Analysis::Quasistatic { times, formula };
         let steps = (0..3).map(|step| unequal.increment(step).expect("a step"));
-        let ratios: Vec<f64> = steps.clone().map(|step| Way::new(step, 0, Some(0)).ratio()).collect();
+        let ratios: Vec<f64> = steps.map(|step| Way::new(step, 0, Some(0)).ratio()).collect();
         assert_eq!(ratios, [1.0, 1.0, 0.25]);
-        let mut way = Way::new(steps.last().expect("three"), 1, Some(1));
+        let mut way = Way::new(unequal.increment(2).expect("a step"), 1, Some(1));
         assert_eq!((way.ratio(), way.increment().length), (0.5, Some(0.125)));
         way = Way::new(way.whole, 1, Some(2));
         let first = way.ratio();
