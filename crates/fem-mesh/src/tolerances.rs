@@ -21,9 +21,11 @@ pub(crate) const MID_OFF: f64 = 0.25;
 pub(crate) const CURVED: f64 = 1e-3;
 /// How far outside of a tetrahedron a point may be, in barycentric coordinates, and still count.
 pub(crate) const OUTSIDE: f64 = 1e-9;
-/// Newton steps to the coordinates of a place in a curved tetrahedron, and the change of coordinates that is none.
+/// Newton steps to the coordinates of a place in a curved tetrahedron, the change of coordinates that is none, and that
+/// up to which the method has converged: far from the origin rounding leaves some, where it runs in circles a tenth.
 pub(crate) const PLACINGS: usize = 20;
 pub(crate) const PLACED: f64 = 1e-13;
+pub(crate) const CONVERGED: f64 = 1e-6;
 
 // Materials
 

@@ -53,8 +53,8 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     let frame = |group: usize| frames[group].as_ref();
     let centre = |tet: usize| vec3::centroid(&corners(mesh, frame(groups[tet] as usize), tet));
     let centres: Vec<Vec3> = (0..tets).map(centre).collect();
-    let lengths = (0..tets).map(|tet| relative_lengths(mesh, frame(groups[tet] as usize), tet));
-    let lengths: Vec<Vec3> = lengths.collect();
+    let shares = (0..tets).map(|tet| shares(mesh, frame(groups[tet] as usize), tet));
+    let shares: Vec<Vec3> = shares.collect();
     let bulk = match count {
         PartCount::Exactly(_) => Vec::new(),
         PartCount::About(_) => volumes_and_surfaces(mesh, &groups),
@@ -68,11 +68,11 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
             mesh,
             frame: frame(group),
             centres: &centres,
-            lengths: &lengths,
+            shares: &shares,
             graded: [false; 3],
         };
         // elsewhere long cells along an axis are not layers
-        let grading = if cutter.is_box(own) { grading(&lengths, own) } else { [1.0; 3] };
+        let grading = if cutter.is_box(own) { grading(&shares, own) } else { [1.0; 3] };
         cutter.graded = grading.map(|ratio| ratio > GRADED);
         let layered = cutter.graded.contains(&true);
         let flat = mesh.order() == 2 && grading.iter().all(|ratio| *ratio > STRONGLY);
@@ -110,27 +110,28 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
 #[doc(hidden)]
 pub fn is_strongly_graded(mesh: &TetMesh) -> bool {
     let all: Vec<u32> = (0..mesh.tets().len() as u32).collect();
-    let lengths: Vec<Vec3> = all
-        .iter()
-        .map(|&tet| relative_lengths(mesh, None, tet as usize))
-        .collect();
-    grading(&lengths, &all).iter().all(|ratio| *ratio > STRONGLY)
+    let shares: Vec<Vec3> = all.iter().map(|&tet| shares(mesh, None, tet as usize)).collect();
+    grading(&shares, &all).iter().all(|ratio| *ratio > STRONGLY)
 }
 
-/// Lengths of a tetrahedron along the axes of a frame, relative to itself: cells that are small all round count alike.
-fn relative_lengths(mesh: &TetMesh, frame: Option<&Frame>, tet: usize) -> Vec3 {
+/// Power of the length of a cell with which it counts in a cut across that: between equal numbers and equal lengths.
+const SHARE: f64 = 0.75;
+
+/// What a tetrahedron counts in cuts across the axes of a frame, by its lengths relative to itself: cells that are small
+/// all round count alike.
+fn shares(mesh: &TetMesh, frame: Option<&Frame>, tet: usize) -> Vec3 {
     let (low, high) = extent(corners(mesh, frame, tet));
     let lengths = vec3::sub(high, low);
-    lengths.map(|length| length / lengths.iter().product::<f64>().cbrt())
+    lengths.map(|length| (length / lengths.iter().product::<f64>().cbrt()).powf(SHARE))
 }
 
 /// How strongly these cells are graded along each axis.
-fn grading(lengths: &[Vec3], tets: &[u32]) -> Vec3 {
+fn grading(shares: &[Vec3], tets: &[u32]) -> Vec3 {
     [0, 1, 2].map(|d| {
-        let mut sorted: Vec<f64> = tets.iter().map(|&tet| lengths[tet as usize][d]).collect();
+        let mut sorted: Vec<f64> = tets.iter().map(|&tet| shares[tet as usize][d]).collect();
         sorted.sort_unstable_by(f64::total_cmp);
         let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64) as usize];
-        at(0.95) / at(0.05)
+        (at(0.95) / at(0.05)).powf(SHARE.recip())
     })
 }
 
@@ -144,7 +145,7 @@ struct Cutter<'a> {
     mesh: &'a TetMesh,
     frame: Option<&'a Frame>,
     centres: &'a [Vec3],
-    lengths: &'a [Vec3],
+    shares: &'a [Vec3],
     /// Along which axes cells of different lengths count differently.
     graded: [bool; 3],
 }
@@ -236,8 +237,7 @@ impl Cutter<'_> {
         if !self.graded[axis] {
             return None;
         }
-        // between equal numbers and equal lengths
-        let share = |tet: &u32| self.lengths[*tet as usize][axis].powf(0.75);
+        let share = |tet: &u32| self.shares[*tet as usize][axis];
         let wanted = part * tets.iter().map(share).sum::<f64>();
         let mut sum = 0.0;
         tets.iter().position(|tet| {

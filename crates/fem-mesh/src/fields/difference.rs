@@ -4,7 +4,7 @@ use crate::element::{Piece, integral};
 use crate::material::Materials;
 use crate::mesh::{EDGES, TetMesh, extent, shape, tangents};
 use crate::quadrature;
-use crate::tolerances::{OUTSIDE, PLACED, PLACINGS};
+use crate::tolerances::{CONVERGED, OUTSIDE, PLACED, PLACINGS};
 use crate::vec3::{add, scale, sub, tet_volume};
 
 use super::strain::{FieldError, nodal_vectors};
@@ -85,13 +85,13 @@ impl<'m> Locator<'m> {
             let missing = sub(point, quadrature::at(&nodes, &shape(&l)));
             let [own, others @ ..] = barycentric(&tangents(&nodes, &l), missing);
             let change = [own - 1.0, others[0], others[1], others[2]];
-            last = change.iter().fold(0.0, |most, c| c.abs().max(most));
+            last = change.iter().map(|c| c.abs()).sum();
             if last <= PLACED {
                 break;
             }
             l = std::array::from_fn(|i| l[i] + change[i]);
         }
-        if last <= OUTSIDE { l } else { [-1.0; 4] }
+        if last <= CONVERGED { l } else { [-1.0; 4] }
     }
 }
 

@@ -45,8 +45,8 @@ impl TetMesh {
     }
 
     /// Cuts a body open along faces inside it that need not lead through: a crack, the tip of which stays joined. It
-    /// has all faces between two tetrahedra of which `is_on(corners)` holds, asked once each; `is_first(tet)` tells on
-    /// which side of them a tetrahedron is. Tags, nodes and copies are as those of [`cut`](Self::cut). A face with all
+    /// has all faces between two tetrahedra of which `is_on(corners)` holds, asked once each, as the tetrahedron with the
+    /// smaller number has them; `is_first(tet)` tells on which side of them a tetrahedron is. Tags, nodes and copies are as those of [`cut`](Self::cut). A face with all
     /// corners at the tip stays closed. Branches are cracks of their own.
     ///
     /// Gmsh's plugin `Crack` does the same to a surface inside a volume, with `NewPhysicalGroup` for the other side:
