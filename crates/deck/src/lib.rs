@@ -102,7 +102,8 @@
 //! *OUTPUT` and the like, `*RESTART, WRITE`, `*CONTROLS`, `SOLVER=` and other settings of solvers, `*CONDUCTIVITY`,
 //! `*SPECIFIC HEAT`, `*DAMPING`. Upper and lower case are equivalent,
 //! blanks are ignored (except in quoted names), lines may end as on Windows, a keyword line that ends with a
-//! comma continues in the next one, `**` begins a comment.
+//! comma continues in the next one where that has parameters (values, or flags such as `GENERATE`), `**` begins a
+//! comment.
 //!
 //! # Hexahedra, prisms and pyramids
 //!

@@ -93,7 +93,7 @@ impl Word {
 
 /// Whether a field is written as numbers are; names may begin so.
 pub(crate) fn is_numeric(field: &str) -> bool {
-    field.starts_with(|c: char| !"eEdD".contains(c)) && field.chars().all(is_of_number)
+    real(field).is_some() || field.chars().all(|c| c.is_ascii_digit() || "+-.".contains(c))
 }
 
 fn is_of_number(c: char) -> bool {

@@ -35,7 +35,7 @@ pub(crate) use step::{
 };
 pub(crate) use transform::{Axes, Transform, rectangular};
 
-/// A request of the deck that has no meaning here.
+/// A request of the deck that has no meaning here, or what it means to Abaqus where it is read as CalculiX does.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Ignored {
     /// Where it stands.
