@@ -161,8 +161,10 @@ pub(crate) const NO_WEIGHT: f64 = 1e-13;
 /// from which on they carry the couple: its forces are no larger than the one that it is of.
 pub(crate) const SHORT_LEVER: f64 = 1.0;
 
-/// Depth of a supported node in an obstacle that counts, over its displacement or gap.
+/// Depth of a supported node in an obstacle that counts, over its displacement or gap; what supports may say differently
+/// of the sides of a tie, likewise: data of others have few digits.
 pub(crate) const DEPTH: f64 = 1e-9;
+pub(crate) const PARTED: f64 = 1e-4;
 
 /// How far nodes that a support holds where an earlier step has left them may be off, over their largest displacement:
 /// what solvers with large tolerances leave.

@@ -148,14 +148,16 @@ pub(super) fn check_compliance(points: &[ContactPoint]) -> Result<(), ContactErr
     Ok(())
 }
 
-/// Refuses gaps as given, and what becomes of them at the steps.
+/// Refuses gaps as given, and what becomes of them at the steps at which they act.
 pub(super) fn check_gaps(scene: &Scene, conditions: &[ContactPoint], poses: &[Vec<Pose>]) -> Result<(), ContactError> {
     for c in conditions {
         let place = || format!(" at node {}: the gap", c.node());
         let part = Part::Contact(c.surface);
         expect(c.gap.abs(), LENGTH, part, place)?;
-        if scene.contacts[c.surface].changes_gap() {
-            for pose in &poses[c.surface] {
+        let contact = &scene.contacts[c.surface];
+        if contact.changes_gap() {
+            let poses = poses[c.surface].iter().zip(scene.analysis.times());
+            for (pose, _) in poses.filter(|(_, time)| contact.span.has(**time)) {
                 let gap = c.gap_after(scene, pose)?;
                 expect(gap.abs(), LENGTH, part, place)?;
             }

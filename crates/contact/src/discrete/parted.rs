@@ -7,7 +7,7 @@ use super::points::ContactPoint;
 use super::supports::Supports;
 use crate::error::ContactError;
 use crate::scene::Scene;
-use crate::tolerances::DEPTH;
+use crate::tolerances::PARTED;
 use crate::vec3::dot;
 use signorini_tfeti::ContactConstraint;
 use signorini_tfeti::internal::{FixedDirection, HeldTie, held_ties};
@@ -34,11 +34,12 @@ pub(super) fn check_parted(
         };
         let held = tie.sides.nodes().flat_map(|(node, _)| supports.merged.directions(node));
         let held: Vec<&FixedDirection> = held.collect();
+        let along = |held: &FixedDirection| dot(&held.direction, &direction).abs();
         // couplings say how sides move that are relative; where an earlier step leaves them is not said
-        if constraints[point].relative.is_some() || held.iter().any(|held| scene.has_started(held.support)) {
+        let has_started = |held: &&FixedDirection| along(held) > PARTED && scene.has_started(held.support);
+        if constraints[point].relative.is_some() || held.iter().any(has_started) {
             continue;
         }
-        let along = |held: &FixedDirection| dot(&held.direction, &direction).abs();
         let first_most = held.iter().min_by(|a, b| along(b).total_cmp(&along(a)));
         let support = first_most.map_or(0, |held| held.support);
         for &time in &scene.analysis.times()[scene.stage_steps()] {
@@ -50,7 +51,7 @@ pub(super) fn check_parted(
                 tie.sides.sign() * dot(&scene.contacts[tie.surface].shift(time), &direction),
             ];
             let apart = ways[0] - ways[1];
-            if apart.abs() > rounding + DEPTH * ways[0].abs().max(ways[1].abs()) {
+            if apart.abs() > rounding + PARTED * ways[0].abs().max(ways[1].abs()) {
                 let (contact, node, position) = tie.at();
                 return Err(ContactError::PartedTie {
                     support,

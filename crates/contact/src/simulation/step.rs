@@ -211,7 +211,7 @@ impl Simulation {
         state.motions = motions.map(along).collect();
         let spans = model.scene.has_spans() && model.scene.stage_steps().end < model.plan.steps;
         // what a longer analysis may hold from here on
-        let ends = model.plan.steps > 1 && problem.index + 1 == model.plan.steps;
+        let ends = model.scene.analysis.formula().is_some() && problem.index + 1 == model.plan.steps;
         let is_held = || model.loose_motions().is_ok_and(|motions| motions.is_empty());
         state.displacement = if spans || ends || history && !is_held() {
             model.tfeti.nodal_mean(&recovered.torn)

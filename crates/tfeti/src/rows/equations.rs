@@ -237,12 +237,8 @@ fn lines(
             .chain(columns(at + subdomains, turn))
             .collect::<Vec<_>>()
     };
-    let about = |subdomain: u32| {
-        rigid
-            .iter()
-            .find(|held| held.subdomain == subdomain)
-            .map_or([0.0; 3], |held| held.point)
-    };
+    let points: HashMap<u32, [f64; 3]> = rigid.iter().rev().map(|held| (held.subdomain, held.point)).collect();
+    let about = |subdomain: u32| points.get(&subdomain).copied().unwrap_or_default();
     let mut sets = DisjointSets::new(nodes + subdomains);
     let of_point = |point: &PointRows| contact[point.point].nodes().map(|n| n.0 as usize).collect::<Vec<_>>();
     let places = |e: &FreeEquation| -> Vec<usize> {
