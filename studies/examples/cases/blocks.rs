@@ -177,21 +177,21 @@ fn search(n: usize) -> Result<[Finding; 2], Failure> {
     };
     let simulation = Simulation::new(scene, Settings::default().with_share_translates(false))?;
     let seconds = simulation.search_time().as_secs_f64();
-    let of = |quantity, whole: f64, asked| Finding {
+    let of = |quantity, whole: f64| Finding {
         case: format!("search, {} facets below {}", facets[0], facets[1]),
         quantity,
         value: seconds / whole,
         target: 0.0,
-        asked,
+        // seconds depend on the machine
+        asked: 0.0,
         run,
     };
     Ok([
         of(
             "seconds over those of assembly",
             simulation.tfeti().report().assembly_seconds,
-            1.0,
         ),
-        of("share of the set-up", simulation.setup_time().as_secs_f64(), 0.0),
+        of("share of the set-up", simulation.setup_time().as_secs_f64()),
     ])
 }
 
