@@ -333,7 +333,8 @@ fn by_coupling(model: &Model, recovered: &Recovered, (arm, about): (impl Fn(u32)
     out
 }
 
-/// What springs do, from the multipliers of their rows; several at a node have the parts that their stiffness has.
+/// What springs do, from the multipliers of their rows; several at a node have the parts that their stiffness has, also
+/// of the pull of an inclined one that a support moves the node across.
 fn by_spring(model: &Model, recovered: &Recovered, arm: impl Fn(u32) -> [f64; 3]) -> Vec<SupportReaction> {
     let springs = &model.discrete.springs.by_spring;
     let gluing = model.tfeti.gluing();

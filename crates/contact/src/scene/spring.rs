@@ -12,8 +12,9 @@ use signorini_fem_mesh::{FacetTag, vec3};
 /// Stiffness of a foundation is in N/m³: stress (Pa) over displacement (m). A layer of thickness `t` without lateral
 /// expansion has `E (1 - nu) / ((1 + nu) (1 - 2 nu) t)` along the normal. At a node it acts with a third of the areas
 /// of its facets, in a mesh of order 2 at mid-nodes only. If a support fixes a direction of a node, the spring acts at
-/// right angles to it, an inclined one also by what the support moves the node. Contact nodes may have springs (at
-/// edges); springs much softer or stiffer than the body then cost many products.
+/// right angles to it, an inclined one also by what the support moves the node; of several there the sum of forces is
+/// right, but not what each has of it. Contact nodes may have springs (at edges); springs much softer or stiffer than the
+/// body then cost many products.
 #[derive(Debug, Clone, PartialEq)]
 #[must_use]
 pub struct Spring {
