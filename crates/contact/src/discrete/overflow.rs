@@ -156,8 +156,7 @@ pub(super) fn check_gaps(scene: &Scene, conditions: &[ContactPoint], poses: &[Ve
         expect(c.gap.abs(), LENGTH, part, place)?;
         let contact = &scene.contacts[c.surface];
         if contact.changes_gap() {
-            let poses = poses[c.surface].iter().zip(scene.analysis.times());
-            for (pose, _) in poses.filter(|(_, time)| contact.span.has(**time)) {
+            for (pose, _) in contact.acting(&poses[c.surface], scene.analysis.times()) {
                 let gap = c.gap_after(scene, pose)?;
                 expect(gap.abs(), LENGTH, part, place)?;
             }

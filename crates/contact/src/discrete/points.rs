@@ -461,12 +461,9 @@ fn stays(
         return Ok(true);
     }
     let times = scene.analysis.times();
-    for (pose, time) in x.poses(times).into_iter().zip(times) {
-        // what has ended, or not begun, is nowhere
-        if !(x.span.has(*time) && y.span.has(*time)) {
-            continue;
-        }
-        let difference = other.gap_after(scene, &pose)? - point.gap_after(scene, &pose)?;
+    // what has ended, or not begun, is nowhere
+    for (pose, _) in x.acting(&x.poses(times), times).filter(|(_, time)| y.span.has(*time)) {
+        let difference = other.gap_after(scene, pose)? - point.gap_after(scene, pose)?;
         if order(difference, rounding) != nearer {
             return Ok(false);
         }

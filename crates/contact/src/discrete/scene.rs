@@ -90,9 +90,8 @@ impl DiscreteScene {
         let surfaces: Vec<Surface> = paired.into_iter().map(|p| p.surface).collect();
         for (index, own) in surfaces.iter().enumerate() {
             let own_conditions = &conditions[of_contact(&conditions, index)];
-            let poses = poses[index].iter().zip(times.iter().copied());
-            let acting = poses.filter(|(_, time)| scene.contacts[index].span.has(*time));
-            check_turn(scene, index, own, own_conditions, &acting.collect::<Vec<_>>())?;
+            let acting: Vec<_> = scene.contacts[index].acting(&poses[index], times).collect();
+            check_turn(scene, index, own, own_conditions, &acting)?;
         }
         let (points, stands) = points(scene, &conditions, rounding)?;
         couplings.check_contact(points.iter().chain(&ties), &supports)?;

@@ -44,6 +44,13 @@ impl Contact {
         poses
     }
 
+    /// Those of its [poses](Self::poses) at some times at which it acts, with these.
+    pub(crate) fn acting<'a>(&self, poses: &'a [Pose], times: &'a [f64]) -> impl Iterator<Item = (&'a Pose, f64)> {
+        let span = self.span;
+        let all = poses.iter().zip(times.iter().copied());
+        all.filter(move |(_, time)| span.has(*time))
+    }
+
     /// Times up to the last one at which an obstacle that is displaced and turns changes its way: points of its tables.
     fn kinks(&self, rotation: &Rotation, times: &[f64]) -> Vec<f64> {
         let Some(&last) = times.last().filter(|_| !self.motions.is_empty()) else {

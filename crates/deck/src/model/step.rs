@@ -277,10 +277,10 @@ impl Step {
             "that Abaqus keeps the loads of *DLOAD then; as in CalculiX they are removed, too",
             "that Abaqus keeps the loads of *DSLOAD then; as in CalculiX they are removed, too",
         ];
+        // those that an earlier step has removed are gone
+        let removes = |step: &Step| matches!(step.distributed.first, Some((_, true)));
+        let from = model.steps.iter().rposition(removes).unwrap_or(0);
         for (on_surface, why) in [false, true].into_iter().zip(whys) {
-            // those that an earlier step has removed are gone
-            let removes = |step: &&Step| matches!(step.distributed.first, Some((_, true)));
-            let from = model.steps.iter().rposition(|step| removes(&step)).unwrap_or(0);
             let mut before = model.steps[from..].iter().flat_map(|step| &step.distributed.lines);
             if !self.loaded_by[usize::from(on_surface)] && before.any(|line| line.kind.on_surface() == on_surface) {
                 model.ignored.push(Ignored::new(word, why));
