@@ -55,6 +55,7 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
     let centres: Vec<Vec3> = (0..tets).map(centre).collect();
     let shares = (0..tets).map(|tet| shares(mesh, frame(groups[tet] as usize), tet));
     let shares: Vec<Vec3> = shares.collect();
+    let volumes: Vec<f64> = (0..tets).map(|tet| mesh.volume(tet)).collect();
     let bulk = match count {
         PartCount::Exactly(_) => Vec::new(),
         PartCount::About(_) => volumes_and_surfaces(mesh, &groups),
@@ -69,6 +70,7 @@ pub fn even_parts(mesh: &TetMesh, groups: &[u32], count: PartCount) -> Result<Ve
             frame: frame(group),
             centres: &centres,
             shares: &shares,
+            volumes: &volumes,
             graded: [false; 3],
         };
         // elsewhere long cells along an axis are not layers
@@ -146,6 +148,7 @@ struct Cutter<'a> {
     frame: Option<&'a Frame>,
     centres: &'a [Vec3],
     shares: &'a [Vec3],
+    volumes: &'a [f64],
     /// Along which axes cells of different lengths count differently.
     graded: [bool; 3],
 }
@@ -274,7 +277,7 @@ impl Cutter<'_> {
 
     /// Edges of the box around these tetrahedra, and their volume.
     fn size(&self, tets: &[u32]) -> (Vec3, f64) {
-        let volume = tets.iter().map(|&tet| self.mesh.volume(tet as usize)).sum();
+        let volume = tets.iter().map(|&tet| self.volumes[tet as usize]).sum();
         let (low, high) = extent(
             tets.iter()
                 .flat_map(|&tet| corners(self.mesh, self.frame, tet as usize)),

@@ -11,7 +11,9 @@ use faer::sparse::linalg::cholesky::{
 use faer::sparse::linalg::{SupernodalThreshold, amd};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, Par, Side};
-use std::collections::{BTreeMap, HashMap};
+use rayon::prelude::*;
+use signorini_fem_mesh::internal::Lists;
+use std::collections::HashMap;
 use std::ops::Range;
 use std::sync::Arc;
 
@@ -40,23 +42,68 @@ impl Columns {
     pub(crate) fn gram(
         rows: &[Vec<(usize, f64)>],
         weight: impl Fn(usize) -> f64,
-        stored: impl Fn(usize) -> Option<usize>,
+        stored: impl Fn(usize) -> Option<usize> + Sync,
     ) -> Self {
-        let mut users: HashMap<usize, Vec<(usize, f64)>> = HashMap::new();
-        for (k, row) in rows.iter().enumerate() {
-            row.iter()
-                .for_each(|&(at, v)| users.entry(at).or_default().push((k, v)));
-        }
-        let mut gram = Self::empty(rows.len());
-        for (k, row) in rows.iter().enumerate() {
-            let mut column: BTreeMap<usize, f64> = stored(k).map(|other| (other, 0.0)).into_iter().collect();
-            for &(at, v) in row {
-                for &(other, w) in &users[&at] {
-                    *column.entry(other).or_insert(0.0) += v * weight(at) * w;
+        // unknowns by their first entries
+        let (mut numbers, mut weights) = (HashMap::new(), Vec::new());
+        let entries = rows
+            .iter()
+            .zip(0_u32..)
+            .flat_map(|(row, k)| row.iter().map(move |&(at, v)| (k, at, v)));
+        let entries: Vec<(u32, u32, f64)> = entries
+            .map(|(k, at, v)| {
+                let number = *numbers.entry(at).or_insert(weights.len() as u32);
+                if number as usize == weights.len() {
+                    weights.push(weight(at));
+                }
+                (k, number, v)
+            })
+            .collect();
+        let keys: Vec<u32> = entries.iter().map(|entry| entry.1).collect();
+        let users = Lists::by_key(weights.len(), &keys);
+        let column = |place: &mut Vec<usize>, k: usize, own: &[(u32, u32, f64)]| {
+            let mut column: Vec<(usize, f64)> = Vec::new();
+            let mut add = |other: usize, value: f64| {
+                if place.len() <= other {
+                    place.resize(rows.len(), usize::MAX);
+                }
+                match column.get_mut(place[other]) {
+                    Some((_, sum)) => *sum += value,
+                    None => {
+                        place[other] = column.len();
+                        column.push((other, 0.0 + value));
+                    }
+                }
+            };
+            if let Some(other) = stored(k) {
+                add(other, 0.0);
+            }
+            for &(_, at, v) in own {
+                let factor = v * weights[at as usize];
+                for &user in users.of(at as usize) {
+                    let (other, _, w) = entries[user as usize];
+                    add(other as usize, factor * w);
                 }
             }
-            gram.rows.extend(column.keys());
-            gram.values.extend(column.values());
+            column.iter().for_each(|entry| place[entry.0] = usize::MAX);
+            column.sort_unstable_by_key(|entry| entry.0);
+            column
+        };
+        let mut starts = vec![0];
+        starts.extend(rows.iter().scan(0, |sum, row| {
+            *sum += row.len();
+            Some(*sum)
+        }));
+        let columns: Vec<Vec<(usize, f64)>> = (0..rows.len())
+            .into_par_iter()
+            .map_init(Vec::new, |place, k| {
+                column(place, k, &entries[starts[k]..starts[k + 1]])
+            })
+            .collect();
+        let mut gram = Self::empty(rows.len());
+        for column in columns {
+            gram.rows.extend(column.iter().map(|entry| entry.0));
+            gram.values.extend(column.iter().map(|entry| entry.1));
             gram.pointers.push(gram.rows.len());
         }
         gram

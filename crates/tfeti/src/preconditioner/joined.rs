@@ -28,6 +28,8 @@ pub(super) struct JoinedGroups {
 pub(super) struct JoinedScratch {
     /// `None` for the factor of all rows.
     factor: Option<SparseCholesky>,
+    /// What that holds.
+    held: Vec<(usize, Freedom)>,
     memory: SolveMemory,
     column: Vec<f64>,
 }
@@ -92,6 +94,7 @@ impl JoinedGroups {
     pub(super) fn scratch(&self) -> JoinedScratch {
         JoinedScratch {
             factor: None,
+            held: Vec::new(),
             memory: SolveMemory::new(self.factor.need(1)),
             column: vec![0.0; self.rows.len()],
         }
@@ -99,8 +102,17 @@ impl JoinedGroups {
 
     /// Factors the matrix without the directions that an active set holds.
     pub(super) fn on_active_set(&self, view: &ActiveSetView<'_>, s: &mut JoinedScratch) {
-        let mut matrix = self.matrix.clone();
         let place = |row: usize| self.places.get(&(row as u32)).copied();
+        let mut held = Vec::new();
+        view.for_each(|row, count, freedom| match freedom {
+            Freedom::Free => {}
+            Freedom::Held => held.extend((row..row + count).map(|row| (row, freedom))),
+            Freedom::Along(_) => held.push((row, freedom)),
+        });
+        if held == s.held {
+            return;
+        }
+        let mut matrix = self.matrix.clone();
         let mut hold = |direction: &[(usize, f64)]| {
             let size = direction.iter().map(|d| self.matrix.diagonal(d.0)).fold(0.0, f64::max);
             for &(i, a) in direction {
@@ -111,15 +123,18 @@ impl JoinedGroups {
                 }
             }
         };
-        view.for_each(|row, count, freedom| match freedom {
-            Freedom::Free => {}
-            Freedom::Held => (row..row + count).filter_map(place).for_each(|k| hold(&[(k, 1.0)])),
-            Freedom::Along(tau) => {
-                if let [Some(i), Some(j)] = [place(row), place(row + 1)] {
-                    hold(&[(i, -tau[1]), (j, tau[0])]);
+        for &(row, freedom) in &held {
+            match (freedom, place(row)) {
+                (Freedom::Held, Some(k)) => hold(&[(k, 1.0)]),
+                (Freedom::Along(tau), Some(i)) => {
+                    if let Some(j) = place(row + 1) {
+                        hold(&[(i, -tau[1]), (j, tau[0])]);
+                    }
                 }
+                _ => {}
             }
-        });
+        }
+        s.held = held;
         // adding to the diagonal cannot make the matrix singular
         s.factor = SparseCholesky::new(&self.symbolic, &matrix).ok();
     }

@@ -1,6 +1,6 @@
 //! The stiffness that a single row of `B` feels, with all other unknowns held or with its subdomains free.
 
-use crate::linalg::sparse::SolveMemory;
+use crate::linalg::{self, sparse::SolveMemory};
 use crate::subdomain::inverse::Inverse;
 use crate::system::tfeti::Tfeti;
 use crate::tolerances::{NO_HOLD, SAMPLE, SHORT_ROWS, SOFT_BODY};
@@ -46,46 +46,80 @@ impl Tfeti {
             })
         };
         let compliance: Vec<Option<Compliance<'_>>> = nodes.into_par_iter().enumerate().map(of_class).collect();
-        self.sum_terms(rows, out, |class, first, second| match &compliance[class] {
+        self.sum_terms(rows, out, |class, first, own, terms| match &compliance[class] {
             Some(Compliance::Block(block)) => {
                 let nodes = &dual.map.classes[class].nodes;
                 let place = |dof: usize| {
                     let node = nodes.binary_search(&((dof / 3) as u32));
                     node.ok().map(|node| 3 * node + dof % 3)
                 };
-                let (i, j) = (place(first.1)?, place(second.1)?);
-                Some(first.2 * second.2 * block[i + j * 3 * nodes.len()])
+                let (_, dof, value) = own[first];
+                let column = place(dof);
+                let term = |second: &Entry| {
+                    let (i, j) = (column?, place(second.1)?);
+                    Some(value * second.2 * block[i + j * 3 * nodes.len()])
+                };
+                terms.extend(own.iter().map(|second| term(second).unwrap_or(0.0)));
             }
             Some(Compliance::Sample(ratios)) => {
-                let &(_, dof, value) = first;
+                let (_, dof, value) = own[first];
                 let diagonal = subdomains.bases[class].diagonal[dof];
-                let own = std::ptr::eq(first, second) && diagonal > 0.0;
-                own.then(|| value * value * ratios[dof % 3] / diagonal)
+                let start = terms.len();
+                terms.resize(start + own.len(), 0.0);
+                if diagonal > 0.0 {
+                    terms[start + first] = value * value * ratios[dof % 3] / diagonal;
+                }
             }
-            None => None,
+            None => terms.extend(own.iter().map(|_| 0.0)),
         });
     }
 
-    /// `out[k]` is a sum over all pairs of entries of row `k` in one subdomain; `term` is told its class, which it must
-    /// hold, and both entries.
-    fn sum_terms(&self, rows: Range<usize>, out: &mut [f64], term: impl Fn(usize, &Entry, &Entry) -> Option<f64>) {
+    /// `out[k]` is a sum over all pairs of entries of row `k` in one subdomain; `each` is told its class, which it must
+    /// hold, and the place of the first entry among all there, and adds a term for each of these.
+    fn sum_terms(
+        &self,
+        rows: Range<usize>,
+        out: &mut [f64],
+        each: impl Fn(usize, usize, &[Entry], &mut Vec<f64>) + Sync,
+    ) {
         let subdomains = &self.dual.subdomains;
         let ownership = &subdomains.ownership;
+        let terms_of = |row: usize, terms: &mut Vec<f64>, piece: &mut dyn FnMut(usize, Range<usize>)| {
+            let entries = self.gluing().row(row);
+            let mut by_subdomain: Vec<(usize, (usize, Vec<Entry>))> = Vec::new();
+            for &entry in &entries {
+                linalg::entry(&mut by_subdomain, entry.0, (0, Vec::new())).1.push(entry);
+            }
+            for &(subdomain, ..) in &entries {
+                let (class, start) = (subdomains.class(subdomain), terms.len());
+                let (next, own) = linalg::entry(&mut by_subdomain, subdomain, (0, Vec::new()));
+                each(class, *next, own, terms);
+                *next += 1;
+                piece(class, start..terms.len());
+            }
+        };
+        let sum = |terms: &[f64]| terms.iter().fold(0.0, |sum, term| sum + term);
+        let count = rows.len().min(out.len());
+        if ownership.exchange.ranks() == 1 {
+            let rows = rows.into_par_iter().zip(&mut out[..count]);
+            rows.for_each_init(Vec::new, |terms, (row, target)| {
+                terms.clear();
+                terms_of(row, terms, &mut |_, _| {});
+                *target = sum(terms);
+            });
+            return;
+        }
         let (mut terms, mut ends, mut pieces) = (Vec::new(), Vec::new(), Vec::new());
         for row in rows {
-            let entries = self.gluing().row(row);
-            for first in &entries {
-                let (class, start) = (subdomains.class(first.0), terms.len());
-                let own = entries.iter().filter(|second| second.0 == first.0);
-                terms.extend(own.map(|second| term(class, first, second).unwrap_or(0.0)));
-                pieces.push((ownership.rank_of(class, 0), start..terms.len()));
-            }
+            terms_of(row, &mut terms, &mut |class, range| {
+                pieces.push((ownership.rank_of(class, 0), range))
+            });
             ends.push(terms.len());
         }
         ownership.exchange.complete(&mut terms, &pieces);
         let mut start = 0;
         for (end, target) in ends.into_iter().zip(out) {
-            *target = terms[start..end].iter().fold(0.0, |sum, term| sum + term);
+            *target = sum(&terms[start..end]);
             start = end;
         }
     }
@@ -115,10 +149,25 @@ impl Tfeti {
     ///
     /// `out` has the length of `rows`; rows beyond the last are 0.
     pub fn row_stiffness(&self, rows: Range<usize>, out: &mut [f64]) {
-        self.sum_terms(rows, out, |class, &(_, dof, value), &(_, other, factor)| {
-            let stiffness = &self.dual.subdomains.held(class)?.stiffness;
-            let at = stiffness.find(other, dof)?;
-            Some(value * stiffness.values[at] * factor)
+        self.sum_terms(rows, out, |class, first, own, terms| {
+            let (_, dof, value) = own[first];
+            let Some(base) = self.dual.subdomains.held(class) else {
+                terms.extend(own.iter().map(|_| 0.0));
+                return;
+            };
+            let (rows, values) = base.stiffness.column(dof);
+            // the unknowns of a node follow one another
+            let mut next = 0;
+            terms.extend(own.iter().map(|&(_, other, factor)| {
+                if rows.get(next) != Some(&other) {
+                    match rows.binary_search(&other) {
+                        Ok(at) => next = at,
+                        Err(_) => return 0.0,
+                    }
+                }
+                next += 1;
+                value * values[next - 1] * factor
+            }));
         });
     }
 
