@@ -152,6 +152,7 @@ impl ActiveSetSolver {
             }
             // another start comes before another method
             return match iterate.attempt {
+                _ if iterate.certified => self.stay(task, iterate, report),
                 Attempt::Brief | Attempt::Apart => self.stay(task, iterate, report),
                 Attempt::First if report.status.is_lost() => self.stay(task, iterate, report),
                 _ => self.fall_back(task, iterate, report),
@@ -233,9 +234,10 @@ impl ActiveSetSolver {
                 let dear = costs.is_some_and(|costs| costs.inside(carrying(&iterate.lambda[..contact])) > EASY);
                 let patience = if dear { CIRCLES } else { BEFORE_INSIDE };
                 status = self.active_sets(task, iterate, (EXPLICIT_PRODUCTS, patience), report)?;
-                if is_open(status) {
+                // a second time they would end at the same point
+                if is_open(status) && !iterate.offered {
                     let inside = self.begin_inside(task, iterate, report)?;
-                    let inside = inside.filter(|_| !std::mem::replace(&mut iterate.offered, true));
+                    iterate.offered = inside.is_some();
                     let patience = if inside.is_some() { patience } else { usize::MAX };
                     status = self.active_sets(task, iterate, (EXPLICIT_PRODUCTS, patience), report)?;
                     if is_open(status)
