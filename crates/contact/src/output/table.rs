@@ -78,7 +78,8 @@ impl Table {
     }
 }
 
-fn head(probes: &[u32], result: &StepResult) -> String {
+/// The lines before the rows.
+pub(super) fn head(probes: &[u32], result: &StepResult) -> String {
     let mut text = format!(
         "# forces on the body, moments about the origin; units as in the scene\n# {LEGEND}\n\
          step,time,products,status,certificate,touch,stick,slide"

@@ -60,6 +60,8 @@ mod reactions;
 mod refusals;
 mod relative;
 mod restart;
+#[cfg(feature = "vtu")]
+mod result_tables;
 mod sanity;
 mod seams;
 #[cfg(feature = "serde")]
