@@ -75,6 +75,7 @@ mod springs;
 mod stages;
 mod stages_start;
 mod step_doubling;
+mod summaries;
 mod supports;
 mod tables;
 mod tresca;
