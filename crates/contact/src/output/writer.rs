@@ -13,14 +13,15 @@ use std::path::PathBuf;
 /// |---|---|
 /// | `NAME.pvd` | the bodies: displacement and von Mises stress; of several processes each writes its subdomains |
 /// | `NAME_contact.pvd` | the contact surfaces, each a piece: displacement, contact pressure, friction stress, gap, slip, state |
-/// | `NAME.csv` | one row per step: time, products, status, certificate, numbers of points, contact forces, reactions, couplings, probes |
+/// | `NAME.csv` | one row per step: time, products, status, certificate, numbers of points, contact forces, reactions, couplings, sums of each contact, probes |
 ///
 /// [`with_field`](Self::with_field) and [`with_fields`](Self::with_fields) choose other fields. The series
 /// begin at time 0, undeformed. All files are complete at any moment. If writing fails, the run ends with the error
-/// after the step; existing files stay. The first two lines of the table begin with `#`; columns are `contact_0_fx` to
-/// `contact_0_mz` for each contact surface, support and coupling (force on the body and its moment about the origin;
-/// [`Reactions::contacts`](crate::result::Reactions::contacts)), `coupling_0_ux` to `coupling_0_rz` for motions of
-/// couplings, then `node_7_ux` for probes.
+/// after the step; existing files stay. The first two lines of the table begin with `#` and tell what parts are called;
+/// columns are `contact_0_fx` to `contact_0_mz` for each contact surface, support and coupling (force on the body and
+/// its moment about the origin; [`Reactions::contacts`](crate::result::Reactions::contacts)), `coupling_0_ux` to
+/// `coupling_0_rz` for motions of couplings, `contact_0_area`, `_max_pressure`, `_normal` and `_friction` (force;
+/// [`StepResult::summary_of`]), then `node_7_ux` for probes.
 ///
 /// A resumed run continues its files: files and rows of steps before its first one are kept, later ones are replaced.
 #[derive(Debug)]
@@ -107,9 +108,9 @@ impl ResultWriter {
     }
 
     /// Writes a step; call it in a loop of your own (as an observer, the writer does so itself). A step that could not
-    /// be written can be written again, and one before the last, or of a scene with another mesh or other columns, begins
-    /// anew there, without the rows and pictures from it on. Of several processes each writes the tetrahedra of its subdomains, rank 0 the rest, so every rank needs
-    /// this writer.
+    /// be written can be written again, and one before the last, or of a scene with another mesh or other columns,
+    /// begins anew there, without the rows and pictures from it on. Of several processes each writes the tetrahedra of
+    /// its subdomains, rank 0 the rest, so every rank needs this writer.
     ///
     /// # Errors
     /// [`ContactError::Output`] if a name cannot name a file, a file cannot be written or continued, or a field is not

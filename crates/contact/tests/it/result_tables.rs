@@ -32,3 +32,33 @@ fn a_step_of_another_scene_is_judged_anew() {
     writer.write(&last).expect("files");
     assert_eq!(table().lines().count(), 3 + 2);
 }
+
+/// The head tells what parts are called, in its comments: columns have numbers.
+#[test]
+fn the_head_tells_names() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let lines = |names: &'static str| -> Vec<String> {
+        let scene = scene(2, 1).with_names(move |part| (part == Part::Contact(1)).then(|| names.to_owned()));
+        let mut simulation = Simulation::new(scene, Settings::default()).expect("set-up");
+        let mut writer = ResultWriter::new(folder.path(), "part");
+        writer.write(&simulation.step().expect("step")).expect("files");
+        // what a part is called is no column: other names go on with the table
+        let again = self::simulation(2, 1);
+        let mut again = (again, ResultWriter::new(folder.path(), "part"));
+        again.0.resume(simulation.state().clone()).expect("resume");
+        again.1.write(&again.0.step().expect("step")).expect("goes on");
+        writer.write(&simulation.step().expect("step")).expect("files");
+        let table = read_to_string(folder.path().join("part.csv")).expect("a table");
+        table.lines().map(str::to_owned).collect()
+    };
+    let told = lines("the \"wall\",\r\nof oak");
+    assert_eq!(told.len(), 3 + 2);
+    assert!(
+        told[1].ends_with("2 slip; contact 1 is the \"wall\",  of oak"),
+        "{}",
+        told[1]
+    );
+    let columns: Vec<&str> = told[2].split(',').collect();
+    assert!(columns.contains(&"contact_1_fx") && columns.contains(&"contact_1_max_pressure"));
+    assert!(told[3..].iter().all(|row| row.split(',').count() == columns.len()));
+}
