@@ -184,6 +184,14 @@ impl StepResult {
         stresses.unwrap_or_else(|_| vec![[f64::NAN; 6]; mesh.tets().len()])
     }
 
+    /// Stress at every node, in the same order, Pa: the mean of the tetrahedra around it
+    /// ([`nodal_stresses`](fields::nodal_stresses)); NaN everywhere where the displacement is NaN.
+    pub fn nodal_stress(&self) -> Vec<[f64; 6]> {
+        let mesh = self.scene().mesh();
+        let stresses = fields::nodal_stresses(mesh, &self.materials(), self.displacement().as_flattened());
+        stresses.unwrap_or_else(|_| vec![[f64::NAN; 6]; mesh.points().len()])
+    }
+
     /// Elastic energy, J; NaN if the displacement is.
     pub fn strain_energy(&self) -> f64 {
         let u = self.displacement();
