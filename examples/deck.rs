@@ -11,8 +11,6 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use signorini::contact::Part;
-use signorini::deck::Deck;
 use signorini::prelude::*;
 
 const USAGE: &str = "usage: deck PART.inp [--out FOLDER] [--states FOLDER]";

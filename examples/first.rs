@@ -17,7 +17,9 @@ fn main() -> Result<(), Error> {
 
     let mut simulation = Simulation::new(scene, Settings::default())?;
     while !simulation.is_finished() {
-        println!("{}", simulation.step()?);
+        let result = simulation.step()?;
+        println!("{result}");
+        result.require_converged()?;
     }
     Ok(())
 }

@@ -1,6 +1,5 @@
 //! From a mesh of Gmsh to ParaView: `cargo run --release --example from_mesh`. Lengths in mm, stresses in MPa.
 
-use signorini::fem_mesh::gmsh::read_gmsh;
 use signorini::prelude::*;
 
 fn main() -> Result<(), Error> {

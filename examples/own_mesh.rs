@@ -3,7 +3,6 @@
 //! Half a rubber roller (10 mm radius, `roller.msh`) is pressed on a floor and dragged along it. Lengths in mm,
 //! stresses in MPa.
 
-use signorini::fem_mesh::gmsh::read_gmsh;
 use signorini::prelude::*;
 
 fn main() -> Result<(), Error> {
@@ -24,12 +23,11 @@ pub fn scene(file: &str) -> Result<Scene, Error> {
     let drag = Support::components(top, [true, false, false]);
     // the floor is the half-space below z = 0
     let floor = Contact::half_space(rim, [0.0; 3], [0.0, 0.0, 1.0]);
-    let steps = Analysis::quasistatic(1.0, 10);
     Ok(Scene::new(mesh, materials)
         .with_support(press.with_motion([0.0, 0.0, -0.8], down))
         .with_support(drag.with_motion([0.4, 0.0, 0.0], along))
         .with_contact(floor.with_friction(Friction::coulomb(0.5)))
-        .with_analysis(steps.with_formula(DifferenceFormula::BACKWARD_EULER)))
+        .with_analysis(Analysis::quasistatic(1.0, 10)))
 }
 
 /// Writes a series into a folder.

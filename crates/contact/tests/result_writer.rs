@@ -206,6 +206,10 @@ fn the_table_has_the_numbers_of_the_results() {
         for resultant in reactions.contacts.iter().copied().chain(supports) {
             row.extend(resultant.force.into_iter().chain(resultant.moment));
         }
+        for sum in [0, 1].map(|k| *result.summary_of(k).expect("a contact")) {
+            let friction = sum.friction_force.iter().map(|f| f * f).sum::<f64>().sqrt();
+            row.extend([sum.area, sum.max_pressure, sum.normal_force, friction]);
+        }
         row.extend(result.displacement()[CORNER as usize]);
         expected.push(row);
     }
@@ -227,6 +231,7 @@ fn the_table_has_the_numbers_of_the_results() {
     );
     assert_eq!(head[8], "contact_0_fx");
     assert_eq!(head[8 + 12], "support_0_fx");
+    assert_eq!(head[8 + 18], "contact_0_area");
     assert_eq!(head[head.len() - 1], "node_20_uz");
     let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
     assert_eq!(rows.len(), expected.len());

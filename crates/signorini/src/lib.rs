@@ -55,15 +55,19 @@ pub mod prelude {
     pub use crate::Error;
     #[cfg(feature = "checkpoint")]
     pub use signorini_contact::Every;
-    pub use signorini_contact::result::ContactSummary;
+    pub use signorini_contact::result::{ContactSummary, Reactions, Resultant};
     pub use signorini_contact::{
         Accuracy, Analysis, Certificate, Coefficient, Communicator, Contact, ContactError, ContactPair, ContactState,
-        Coupling, DifferenceFormula, Directions, Equation, Flow, Friction, Load, Method, Observer, Obstacle, Partition,
-        Place, Plan, PointState, Preconditioner, Progress, RunReport, Scene, Settings, Silent, Simulation, SlipBound,
-        Spring, State, StepResult, StepStatus, Support, Warning,
+        Coupling, DifferenceFormula, Directions, Equation, Flow, Friction, Load, Method, Observer, Obstacle, Part,
+        Partition, Place, Plan, PointState, Preconditioner, Progress, RunReport, Scene, Settings, Silent, Simulation,
+        SlipBound, Spring, State, StepFailure, StepResult, StepStatus, Support, Warning,
     };
     #[cfg(feature = "vtu")]
     pub use signorini_contact::{ResultField, ResultWriter};
+    #[cfg(feature = "deck")]
+    pub use signorini_deck::Deck;
+    #[cfg(feature = "gmsh")]
+    pub use signorini_fem_mesh::gmsh::{GroupNames, read_gmsh};
     pub use signorini_fem_mesh::{
         Brick, Eigenstrain, Facet, FacetTag, History, Hooke, LoadDensity, Materials, TetMesh, brick,
     };

@@ -38,7 +38,7 @@ pub(crate) struct ContactPoint {
     pub(crate) centre: [f64; 3],
     /// Normal into the obstacle and two tangents.
     pub(crate) frame: SurfaceFrame,
-    /// A third of the areas of the facets of its side, m².
+    /// Its part of the areas of the facets of its side, m².
     pub(crate) area: f64,
     /// Distance to the obstacle as given, m.
     pub(crate) gap: f64,

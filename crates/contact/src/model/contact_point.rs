@@ -71,7 +71,7 @@ impl ConstrainedPoint {
         &self.contact.frame
     }
 
-    /// A third of the areas of the adjacent facets, m².
+    /// Its part of the [areas](signorini_fem_mesh::Surface::areas) of the facets of its side, m².
     pub fn area(&self) -> f64 {
         self.contact.area
     }

@@ -5,7 +5,7 @@ use crate::result::ContactState;
 use crate::simulation::StepResult;
 use crate::vec3::dot;
 use signorini_fem_mesh::Surface;
-use signorini_fem_mesh::fields::{nodal_average, nodal_stresses, von_mises};
+use signorini_fem_mesh::fields::von_mises;
 use signorini_fem_mesh::output::Field;
 
 /// A field that a [`ResultWriter`](crate::ResultWriter) can write, with its name and unit in the files.
@@ -90,14 +90,7 @@ pub(super) fn body(result: &StepResult, chosen: &[ResultField], rest: bool) -> R
         .iter()
         .any(|f| matches!(f, ResultField::Stress | ResultField::VonMises));
     let stress = if rest || !stressed { vec![[0.0; 6]; tets] } else { result.stress() };
-    let nodal = if stressed {
-        match mesh.order() {
-            2 if !rest => nodal_stresses(mesh, &result.materials(), result.displacement().as_flattened())?,
-            _ => nodal_average(mesh, &stress)?,
-        }
-    } else {
-        Vec::new()
-    };
+    let nodal = if rest || !stressed { vec![[0.0; 6]; nodes] } else { result.nodal_stress() };
     let vectors = |of: fn(&StepResult) -> Vec<[f64; 3]>| if rest { vec![[0.0; 3]; nodes] } else { of(result) };
     let (mut at_nodes, mut in_tets) = (Vec::new(), Vec::new());
     for &field in chosen {

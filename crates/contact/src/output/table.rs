@@ -2,7 +2,9 @@
 
 use super::fields::LEGEND;
 use crate::error::ContactError;
+use crate::part::Part;
 use crate::simulation::StepResult;
+use crate::vec3::norm;
 use signorini_fem_mesh::internal::replace_file;
 use signorini_fem_mesh::output::OutputError;
 use std::fmt::Write as _;
@@ -44,6 +46,10 @@ impl Table {
         };
         let same = table.text.lines().count();
         for (line, expected) in table.text.lines().enumerate() {
+            // comments may tell other names
+            if expected.starts_with('#') {
+                continue;
+            }
             if old.lines().nth(line) != Some(expected) {
                 return Err(wrong(line, &format!("{expected:?}")));
             }
@@ -78,21 +84,32 @@ impl Table {
     }
 }
 
-fn head(probes: &[u32], result: &StepResult) -> String {
+/// The lines before the rows: comments, which also tell names of parts, and the columns.
+pub(super) fn head(probes: &[u32], result: &StepResult) -> String {
+    let scene = result.scene();
+    let contacts = (0..scene.contacts().len()).map(Part::Contact);
+    let supports = (0..scene.supports().len()).map(Part::Support);
+    let couplings = (0..scene.couplings().len()).map(Part::Coupling);
+    let names = scene.names.of(contacts.chain(supports).chain(couplings).collect());
+    let names = names.map_or_else(String::new, |names| format!("; {names}").replace(['\n', '\r'], " "));
     let mut text = format!(
-        "# forces on the body, moments about the origin; units as in the scene\n# {LEGEND}\n\
+        "# forces on the body, moments about the origin; units as in the scene\n# {LEGEND}{names}\n\
          step,time,products,status,certificate,touch,stick,slide"
     );
-    let scene = result.scene();
     let (forces, motion) = (
         ["fx", "fy", "fz", "mx", "my", "mz"],
         ["ux", "uy", "uz", "rx", "ry", "rz"],
     );
     for (what, count, parts) in [
-        ("contact", scene.contacts().len(), forces),
-        ("support", scene.supports().len(), forces),
-        ("coupling", scene.couplings().len(), forces),
-        ("coupling", scene.couplings().len(), motion),
+        ("contact", scene.contacts().len(), &forces[..]),
+        ("support", scene.supports().len(), &forces),
+        ("coupling", scene.couplings().len(), &forces),
+        ("coupling", scene.couplings().len(), &motion),
+        (
+            "contact",
+            scene.contacts().len(),
+            &["area", "max_pressure", "normal", "friction"],
+        ),
     ] {
         for k in 0..count {
             for part in parts {
@@ -127,13 +144,13 @@ fn row(probes: &[u32], result: &StepResult) -> String {
     let motions = result.couplings().into_iter();
     let motions = motions.flat_map(|m| [m.displacement, m.rotation]);
     let u = if probes.is_empty() { Vec::new() } else { result.displacement() };
-    let probed = probes.iter().map(|&node| u[node as usize]);
+    let probed = probes.iter().flat_map(|&node| u[node as usize]);
     let resultants = resultants.flat_map(|r| [r.force, r.moment]);
-    for vector in resultants.chain(motions).chain(probed) {
-        for value in vector {
-            // the shortest digits that give the same bits again
-            let _ = write!(text, ",{value:?}");
-        }
+    let sums = (0..reactions.contacts.len()).filter_map(|k| result.summary_of(k));
+    let sums = sums.flat_map(|s| [s.area, s.max_pressure, s.normal_force, norm(&s.friction_force)]);
+    for value in resultants.chain(motions).flatten().chain(sums).chain(probed) {
+        // the shortest digits that give the same bits again
+        let _ = write!(text, ",{value:?}");
     }
     text.push('\n');
     text

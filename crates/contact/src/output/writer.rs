@@ -1,7 +1,7 @@
 //! The observer that writes what one wants.
 
 use super::fields::{ResultField, body, surfaces};
-use super::table::Table;
+use super::table::{Table, head};
 use crate::error::ContactError;
 use crate::simulation::{Flow, Observer, StepResult};
 use signorini_fem_mesh::output::{OutputError, PvdSeries, SurfaceFields};
@@ -13,14 +13,15 @@ use std::path::PathBuf;
 /// |---|---|
 /// | `NAME.pvd` | the bodies: displacement and von Mises stress; of several processes each writes its subdomains |
 /// | `NAME_contact.pvd` | the contact surfaces, each a piece: displacement, contact pressure, friction stress, gap, slip, state |
-/// | `NAME.csv` | one row per step: time, products, status, certificate, numbers of points, contact forces, reactions, couplings, probes |
+/// | `NAME.csv` | one row per step: time, products, status, certificate, numbers of points, contact forces, reactions, couplings, sums of each contact, probes |
 ///
 /// [`with_field`](Self::with_field) and [`with_fields`](Self::with_fields) choose other fields. The series
 /// begin at time 0, undeformed. All files are complete at any moment. If writing fails, the run ends with the error
-/// after the step; existing files stay. The first two lines of the table begin with `#`; columns are `contact_0_fx` to
-/// `contact_0_mz` for each contact surface, support and coupling (force on the body and its moment about the origin;
-/// [`Reactions::contacts`](crate::result::Reactions::contacts)), `coupling_0_ux` to `coupling_0_rz` for motions of
-/// couplings, then `node_7_ux` for probes.
+/// after the step; existing files stay. The first two lines of the table begin with `#` and tell what parts are called;
+/// columns are `contact_0_fx` to `contact_0_mz` for each contact surface, support and coupling (force on the body and
+/// its moment about the origin; [`Reactions::contacts`](crate::result::Reactions::contacts)), `coupling_0_ux` to
+/// `coupling_0_rz` for motions of couplings, `contact_0_area`, `_max_pressure`, `_normal` and `_friction` (force;
+/// [`StepResult::summary_of`]), then `node_7_ux` for probes.
 ///
 /// A resumed run continues its files: files and rows of steps before its first one are kept, later ones are replaced.
 #[derive(Debug)]
@@ -45,7 +46,11 @@ struct Files {
     owners: Vec<u32>,
     /// The last step written.
     step: usize,
+    of: Of,
 }
+
+/// What files must have been begun for: nodes, tetrahedra and columns of a scene.
+type Of = ([usize; 2], String);
 
 impl ResultWriter {
     /// Files of this name (no folders in it) in a folder, which is created if it does not exist. Nothing is written
@@ -103,19 +108,20 @@ impl ResultWriter {
     }
 
     /// Writes a step; call it in a loop of your own (as an observer, the writer does so itself). A step that could not
-    /// be written can be written again, and one before the last begins anew there, without the rows and pictures from
-    /// it on. Of several processes each writes the tetrahedra of its subdomains, rank 0 the rest, so every rank needs
-    /// this writer.
+    /// be written can be written again, and one before the last, or of a scene with another mesh or other columns,
+    /// begins anew there, without the rows and pictures from it on. Of several processes each writes the tetrahedra of
+    /// its subdomains, rank 0 the rest, so every rank needs this writer.
     ///
     /// # Errors
     /// [`ContactError::Output`] if a name cannot name a file, a file cannot be written or continued, or a field is not
-    /// finite; [`ContactError::Probe`] if a probe is not a node; [`ContactError::ResultTable`] if a resumed run finds
-    /// a different table.
+    /// finite; [`ContactError::Probe`] if a probe is not a node; [`ContactError::ResultTable`] if there is a
+    /// different table to go on with.
     pub fn write(&mut self, result: &StepResult) -> Result<(), ContactError> {
-        let files = self.files.take().filter(|files| files.step < result.step());
-        let mut files = match files {
+        let of = self.of(result);
+        let goes_on = |files: &Files| files.step < result.step() && files.of == of;
+        let mut files = match self.files.take().filter(goes_on) {
             Some(files) => files,
-            None => self.begin(result)?,
+            None => self.begin(result, of)?,
         };
         let last = result.step() + 1 == result.scene().analysis().steps();
         let due = (result.step() + 1)
@@ -132,9 +138,14 @@ impl ResultWriter {
         Ok(())
     }
 
+    fn of(&self, result: &StepResult) -> Of {
+        let mesh = result.scene().mesh();
+        ([mesh.points().len(), mesh.tets().len()], head(&self.probes, result))
+    }
+
     /// Starts the files, or goes on with those of the steps before.
-    fn begin(&self, result: &StepResult) -> Result<Files, ContactError> {
-        let nodes = result.scene().mesh().points().len();
+    fn begin(&self, result: &StepResult, of: Of) -> Result<Files, ContactError> {
+        let nodes = of.0[0];
         if let Some(&node) = self.probes.iter().find(|&&node| node as usize >= nodes) {
             return Err(ContactError::Probe { node, nodes });
         }
@@ -158,6 +169,7 @@ impl ResultWriter {
             table: None,
             owners: Vec::new(),
             step: result.step(),
+            of,
         };
         if plan.ranks > 1 {
             let rank = |p: &u32| result.model.tfeti.rank_of(*p as usize) as u32;

@@ -12,8 +12,8 @@ const TETS: usize = 700;
 /// The same of quadratic tetrahedra: about as many unknowns.
 const QUADRATIC: usize = 120;
 
-/// Most subdomains that a scene without a partition is cut into: their rigid motions are one problem, solved in each
-/// iteration.
+/// Most subdomains that a scene without a partition is cut into: up to so many, one factor serves their rigid motions,
+/// without a second level.
 const MOST: usize = 1000;
 
 /// How the mesh is partitioned into subdomains.

@@ -99,8 +99,8 @@ pub(crate) fn paper_smalse() -> SmalseSettings {
 pub enum InnerAccuracy {
     /// The final tolerance each time, and up to a thousandth of it where changes stall above it.
     Fixed,
-    /// A tenth of the last relative change of the normal multipliers, never looser than 1e-3 and never tighter than
-    /// that.
+    /// A tenth of the last relative change of the normal multipliers, at most 1e-3, until that is as tight as
+    /// [`Fixed`](Self::Fixed), which it stays.
     #[default]
     Adaptive,
 }

@@ -106,8 +106,8 @@ impl Way {
 #[derive(Debug, Default)]
 pub(super) struct Before {
     report: Option<StepReport>,
-    /// Of friction, its dissipation, of obstacles, J.
-    works: [f64; 3],
+    /// Of each summary those of friction, its dissipation, of obstacles, J.
+    works: Vec<[f64; 3]>,
     /// Of each contact point the sum of its tangential differences, m.
     differences: Vec<[f64; 3]>,
     refused: Option<StepStatus>,
@@ -124,13 +124,9 @@ impl Before {
     /// One on whose end the step goes on.
     pub(super) fn enter_between(&mut self, mut result: StepResult) {
         result.report.counters.between += 1;
-        let s = &result.summary;
-        for (sum, work) in self
-            .works
-            .iter_mut()
-            .zip([s.friction_work, s.dissipation, s.obstacle_work])
-        {
-            *sum += work;
+        self.works.resize(result.summaries.len(), [0.0; 3]);
+        for (sum, s) in self.works.iter_mut().zip(&result.summaries) {
+            *sum = add(*sum, [s.friction_work, s.dissipation, s.obstacle_work]);
         }
         let points = &result.recovered.points;
         self.differences.resize(points.len(), [0.0; 3]);
@@ -160,10 +156,9 @@ impl Before {
             report.status = status;
         }
         result.report = report;
-        let s = &mut result.summary;
-        let works = [&mut s.friction_work, &mut s.dissipation, &mut s.obstacle_work];
-        for (work, sum) in works.into_iter().zip(self.works) {
-            *work += sum;
+        for (s, sum) in result.summaries.iter_mut().zip(self.works) {
+            let works = [s.friction_work, s.dissipation, s.obstacle_work];
+            [s.friction_work, s.dissipation, s.obstacle_work] = add(works, sum);
         }
         for (point, sum) in result.recovered.points.iter_mut().zip(self.differences) {
             point.difference = add(point.difference, sum);

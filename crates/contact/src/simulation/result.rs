@@ -27,7 +27,8 @@ pub struct StepResult {
     pub(crate) problem: Arc<StepProblem>,
     pub(crate) report: StepReport,
     pub(crate) recovered: Recovered,
-    pub(crate) summary: ContactSummary,
+    /// Of all contacts, then, of several, of each.
+    pub(crate) summaries: Vec<ContactSummary>,
 }
 
 /// What it sums up; not the megabytes of tables and vectors.
@@ -37,7 +38,7 @@ impl fmt::Debug for StepResult {
             .field("step", &self.step())
             .field("time", &self.time())
             .field("report", &self.report)
-            .field("summary", &self.summary)
+            .field("summary", self.summary())
             .finish_non_exhaustive()
     }
 }
@@ -141,7 +142,15 @@ impl StepResult {
 
     /// Resultants of contact, numbers of points, and work.
     pub fn summary(&self) -> &ContactSummary {
-        &self.summary
+        &self.summaries[0]
+    }
+
+    /// The same of one contact, by its position in [`Scene::contacts`]; `None` if there is no such contact. A point
+    /// that two contacts share counts where its [`PointState::surface`] says.
+    pub fn summary_of(&self, contact: usize) -> Option<&ContactSummary> {
+        let contacts = self.scene().contacts().len();
+        let place = if contacts > 1 { 1 + contact } else { 0 };
+        self.summaries.get(place).filter(|_| contact < contacts)
     }
 
     /// States of the contact points, in the order of the rows.
@@ -173,6 +182,14 @@ impl StepResult {
         let mesh = self.scene().mesh();
         let stresses = fields::stresses(mesh, &self.materials(), self.displacement().as_flattened());
         stresses.unwrap_or_else(|_| vec![[f64::NAN; 6]; mesh.tets().len()])
+    }
+
+    /// Stress at every node, in the same order, Pa: the mean of the tetrahedra around it
+    /// ([`nodal_stresses`](fields::nodal_stresses)); NaN everywhere where the displacement is NaN.
+    pub fn nodal_stress(&self) -> Vec<[f64; 6]> {
+        let mesh = self.scene().mesh();
+        let stresses = fields::nodal_stresses(mesh, &self.materials(), self.displacement().as_flattened());
+        stresses.unwrap_or_else(|_| vec![[f64::NAN; 6]; mesh.points().len()])
     }
 
     /// Elastic energy, J; NaN if the displacement is.
@@ -293,7 +310,7 @@ impl fmt::Display for StepResult {
         // seven digits
         write!(f, "t = {} s: ", self.time() as f32)?;
         if self.model.plan.effects.contact {
-            let ContactSummary { active, slip, .. } = self.summary;
+            let ContactSummary { active, slip, .. } = *self.summary();
             write!(f, "{active} of {} points touch, ", self.points().len())?;
             if self.model.plan.effects.friction != FrictionKind::None {
                 write!(f, "{slip} slide, ")?;

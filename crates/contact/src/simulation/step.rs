@@ -122,7 +122,7 @@ impl Simulation {
             report.slide = slide.filter(|slide| slide.force > least);
         }
         Ok(StepResult {
-            summary: summarise(model, problem, &recovered, &self.iterate.lambda, &state.trace[0])?,
+            summaries: summarise(model, problem, &recovered, &self.iterate.lambda, &state.trace[0])?,
             model: model.clone(),
             caches: self.caches.clone(),
             problem: problem.clone(),

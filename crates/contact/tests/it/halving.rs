@@ -5,7 +5,7 @@ use signorini_qp::ActiveSetSettings;
 use std::sync::{Arc, Mutex};
 
 /// A brick pressed, pulled and released: steps of different effort.
-fn scene(times: &[f64], formula: DifferenceFormula) -> Scene {
+pub(crate) fn scene(times: &[f64], formula: DifferenceFormula) -> Scene {
     let pull = History::table(vec![(0.0, 0.0), (1.0, 0.1), (2.0, 1.0), (3.0, 0.9), (4.0, 1.0)]).expect("table");
     Scene::new(block([3.0, 1.0, 1.0], [6, 2, 2]), steel())
         .with_support(Support::fixed(brick::X_MIN))
@@ -23,10 +23,10 @@ fn scene(times: &[f64], formula: DifferenceFormula) -> Scene {
         })
 }
 
-const WHOLE: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
+pub(crate) const WHOLE: [f64; 4] = [1.0, 2.0, 3.0, 4.0];
 
 /// Few products: hard steps end at the limit.
-fn short_of(products: usize) -> Settings {
+pub(crate) fn short_of(products: usize) -> Settings {
     by(Method::ActiveSet(
         ActiveSetSettings::default().with_max_products(products),
     ))

@@ -60,6 +60,8 @@ mod reactions;
 mod refusals;
 mod relative;
 mod restart;
+#[cfg(feature = "vtu")]
+mod result_tables;
 mod sanity;
 mod seams;
 #[cfg(feature = "serde")]
@@ -73,6 +75,7 @@ mod springs;
 mod stages;
 mod stages_start;
 mod step_doubling;
+mod summaries;
 mod supports;
 mod tables;
 mod tresca;

@@ -14,6 +14,6 @@ mod strain;
 
 pub use difference::energy_of_difference;
 pub use norms::integrate;
-pub use strain::{FieldError, nodal_average, nodal_stresses, strain_energy, strains, stresses, von_mises};
+pub use strain::{FieldError, nodal_average, nodal_stresses, principal, strain_energy, strains, stresses, von_mises};
 
 pub(crate) use strain::{expect_entries, nodal_vectors};

@@ -4,6 +4,7 @@ use crate::element::{Piece, over_quadratic};
 use crate::material::{Hooke, MaterialError, Materials};
 use crate::mesh::{NODES, TetMesh};
 use crate::quadrature::FOUR_POINTS;
+use nalgebra::Matrix3;
 use rayon::prelude::*;
 
 errors! {
@@ -103,6 +104,20 @@ pub fn von_mises(stress: &[f64; 6]) -> f64 {
     let [xx, yy, zz, yz, xz, xy] = *stress;
     let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
     (0.5 * normal + 3.0 * (yz * yz + xz * xz + xy * xy)).sqrt()
+}
+
+/// The principal stresses, the largest first; NaN where the stress is not finite.
+pub fn principal(stress: &[f64; 6]) -> [f64; 3] {
+    // the iteration would not end
+    if !stress.iter().all(|s| s.is_finite()) {
+        return [f64::NAN; 3];
+    }
+    let [xx, yy, zz, yz, xz, xy] = *stress;
+    let mut values: [f64; 3] = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz)
+        .symmetric_eigenvalues()
+        .into();
+    values.sort_by(|a, b| b.total_cmp(a));
+    values
 }
 
 /// Stress at the nodes: the mean of what it is there in the tetrahedra around each, weighted by volume. Where two

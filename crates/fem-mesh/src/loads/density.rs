@@ -18,19 +18,19 @@ type SurfaceField = Function<dyn Fn([f64; 3], [f64; 3]) -> [f64; 3] + Send + Syn
 #[derive(Debug, Clone)]
 #[non_exhaustive]
 pub enum LoadDensity {
-    /// The same force per volume everywhere (F of the paper).
+    /// The same force per volume, N/m³, everywhere (F of the paper).
     Body([f64; 3]),
-    /// Force per volume that depends on the point.
+    /// Force per volume, N/m³, that depends on the point, m.
     BodyField(PointField),
-    /// The same force per volume in a region.
+    /// The same force per volume, N/m³, in a region.
     BodyIn(u32, [f64; 3]),
-    /// Force per volume that depends on the point, in a region.
+    /// Force per volume, N/m³, that depends on the point, m, in a region.
     BodyFieldIn(u32, PointField),
-    /// The same force per area on all facets of a tag (P of the paper).
+    /// The same force per area, Pa, on all facets of a tag (P of the paper).
     Traction(FacetTag, [f64; 3]),
-    /// Force per area at a point with its outward unit normal, on all facets of a tag.
+    /// Force per area, Pa, at a point, m, with its outward unit normal, on all facets of a tag.
     TractionField(FacetTag, SurfaceField),
-    /// Pressure on all facets of a tag: the force per area is -value times the outward normal, so
+    /// Pressure, Pa, on all facets of a tag: the force per area is -value times the outward normal, so
     /// a positive pressure pushes into the body.
     Pressure(FacetTag, f64),
     /// A force, N, spread evenly over all facets of a tag: a uniform traction whose resultant on the discrete facets is
@@ -39,7 +39,7 @@ pub enum LoadDensity {
     /// A moment, N m, without a force: the traction on all facets of a tag grows linearly from their centroid, as the
     /// displacement of a rigid rotation does, and its resultant on the discrete facets is this moment.
     Moment(FacetTag, [f64; 3]),
-    /// Forces at single nodes (global numbers); forces at the same node add up.
+    /// Forces, N, at single nodes (global numbers); forces at the same node add up.
     NodalForces(Vec<(u32, [f64; 3])>),
 }
 

@@ -235,7 +235,8 @@ impl Surface {
         self.nodes.binary_search(&node).ok()
     }
 
-    /// Area of each node, a third of the triangles around it.
+    /// Area of each node, m²: a third of the triangles around it; of curved ones the integral of its linear hat
+    /// function.
     pub fn areas(&self) -> &[f64] {
         &self.areas
     }

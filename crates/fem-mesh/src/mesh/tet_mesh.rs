@@ -199,6 +199,16 @@ impl TetMesh {
         distinct(nodes)
     }
 
+    /// The node nearest to a point, of several the first; `None` where the point is not finite.
+    pub fn nearest_node(&self, point: [f64; 3]) -> Option<u32> {
+        let finite = point.iter().all(|x| x.is_finite());
+        let distance = |p: &[f64; 3]| vec3::norm(vec3::sub(*p, point));
+        let distances = self.points.iter().map(distance).enumerate().filter(|_| finite);
+        distances
+            .min_by(|a, b| a.1.total_cmp(&b.1))
+            .map(|(node, _)| node as u32)
+    }
+
     /// Coordinates of the four corners of a tetrahedron.
     pub fn tet_points(&self, tet: usize) -> [[f64; 3]; 4] {
         self.tets[tet].map(|n| self.points[n as usize])

@@ -2,7 +2,9 @@
 
 use crate::norms::{h1_seminorm_error, l2_error};
 use approx::assert_abs_diff_eq;
-use signorini_fem_mesh::fields::{nodal_average, strains, von_mises};
+use rand::RngExt;
+use rand_pcg::Pcg64Mcg;
+use signorini_fem_mesh::fields::{nodal_average, principal, strains, von_mises};
 use signorini_fem_mesh::{Brick, TetMesh};
 
 fn interpolate(mesh: &TetMesh, u: impl Fn([f64; 3]) -> [f64; 3]) -> Vec<f64> {
@@ -26,6 +28,45 @@ fn von_mises_of_plain_states() {
         12f64.sqrt(),
         epsilon = 1e-14
     );
+}
+
+/// Principal stresses have the invariants of their tensor, also where two agree.
+#[test]
+fn principal_stresses_have_the_invariants() {
+    assert_eq!(principal(&[0.0; 6]), [0.0; 3]);
+    assert!(principal(&[f64::NAN; 6]).iter().all(|p| p.is_nan()));
+    for (stress, exact) in [
+        ([1.0, -3.0, 2.0, 0.0, 0.0, 0.0], [2.0, 1.0, -3.0]),
+        ([0.0, 0.0, 0.0, 2.0, 0.0, 0.0], [2.0, 0.0, -2.0]),
+        ([0.0, 0.0, 0.0, 0.0, -2.0, 0.0], [2.0, 0.0, -2.0]),
+        ([1.0, 1.0, 1.0, 0.0, 0.0, 2.0], [3.0, 1.0, -1.0]),
+    ] {
+        for (found, exact) in principal(&stress).into_iter().zip(exact) {
+            assert_abs_diff_eq!(found, exact, epsilon = 1e-14);
+        }
+    }
+    let mut dice = Pcg64Mcg::new(7);
+    for k in 0..1000 {
+        let mut s = [0; 6].map(|_| 2.0 * dice.random::<f64>() - 1.0);
+        if k % 2 == 0 {
+            // 1 + v vᵀ
+            let [x, y, z, ..] = s;
+            s = [1.0 + x * x, 1.0 + y * y, 1.0 + z * z, y * z, x * z, x * y];
+        }
+        let [xx, yy, zz, yz, xz, xy] = s;
+        let [a, b, c] = principal(&s);
+        assert!(a >= b && b >= c);
+        let second = xx * yy + yy * zz + zz * xx - yz * yz - xz * xz - xy * xy;
+        let third = xx * (yy * zz - yz * yz) - xy * (xy * zz - yz * xz) + xz * (xy * yz - yy * xz);
+        for (own, exact) in [
+            (a + b + c, xx + yy + zz),
+            (a * b + b * c + c * a, second),
+            (a * b * c, third),
+        ] {
+            assert_abs_diff_eq!(own, exact, epsilon = 1e-13);
+        }
+        assert_abs_diff_eq!(von_mises(&[a, b, c, 0.0, 0.0, 0.0]), von_mises(&s), epsilon = 1e-13);
+    }
 }
 
 #[test]

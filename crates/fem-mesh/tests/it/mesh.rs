@@ -33,6 +33,8 @@ fn central_tetrahedra_join_even_vertices() {
     }
     let node = brick.node([2, 1, 2]).expect("a node");
     assert_eq!(mesh.points()[node as usize], [2.0, 1.0, 2.0]);
+    assert_eq!(mesh.nearest_node([2.1, 0.8, 9.0]), Some(node));
+    assert_eq!(mesh.nearest_node([f64::NAN; 3]), None);
     let beyond = |axis| brick.node([0, 1, 2].map(|k| if k == axis { 100 } else { 0 }));
     assert!((0..3).all(|axis| beyond(axis).is_none()));
 }
