@@ -1,8 +1,10 @@
 //! VTU files and PVD time series for ParaView (feature `vtu`).
 //!
 //! Arrays are binary: base64 inside the XML, 64-bit headers, little endian, compressed by zlib. `vtu` writes one
-//! file, `pvd` a series of them that can be continued, also by several processes, each with its piece.
+//! file, `grid` its points and cells, `pvd` a series of files that can be continued, also by several processes, each
+//! with its piece.
 
+mod grid;
 mod pvd;
 mod vtu;
 
