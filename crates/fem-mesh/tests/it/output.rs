@@ -83,11 +83,14 @@ fn surface() {
         3.0,
         epsilon = 1e-13
     );
-    let other = Brick::new([1.0; 3], [1; 3]).build().unwrap();
-    assert!(matches!(
-        write_surfaces_vtu(&path, &other, &[(&surface, &[], &[])]),
-        Err(OutputError::Foreign { what: "surface" })
-    ));
+    // of a smaller mesh, and of a larger one, which has all nodes of the surface
+    for cells in [[1; 3], [7, 2, 2]] {
+        let other = Brick::new([1.0; 3], cells).build().unwrap();
+        assert!(matches!(
+            write_surfaces_vtu(&path, &other, &[(&surface, &[], &[])]),
+            Err(OutputError::Foreign { what: "surface" })
+        ));
+    }
 }
 
 #[test]

@@ -125,9 +125,10 @@ pub(super) fn write_pieces(
         if kinds(point_fields) != kinds(surfaces[0].1) || kinds(cell_fields) != kinds(surfaces[0].2) {
             return Err(OutputError::PieceFields { number });
         }
-        let point = |&n: &u32| mesh.points().get(n as usize).copied();
-        let points: Option<Vec<_>> = nodes.iter().map(point).collect();
-        let points = points.ok_or(OutputError::Foreign { what: "surface" })?;
+        if surface.mesh_nodes() != mesh.points().len() {
+            return Err(OutputError::Foreign { what: "surface" });
+        }
+        let points = nodes.iter().map(|&n| mesh.points()[n as usize]).collect();
         file.piece(
             Grid::of(grids, number, points, triangles.to_vec()),
             point_fields,
