@@ -1,6 +1,6 @@
 //! Points and cells of a piece, encoded once for all files that have them.
 
-use super::vtu::File;
+use super::xml::File;
 
 /// Points and cells, and how they stand in a file.
 #[derive(Debug)]

@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 use crate::tolerances::SAME_TIME;
 
 use super::grid::Grid;
-use super::vtu::{escape, write_cells, write_pieces, write_pvtu};
+use super::vtu::{write_cells, write_pieces, write_pvtu};
+use super::xml::escape;
 use super::{Field, OutputError, SurfaceFields};
 use crate::files::replace::replace;
 use crate::mesh::TetMesh;

@@ -1,16 +1,12 @@
-//! One VTU file. Each array is compressed by all threads; the bytes do not depend on their number.
+//! One VTU file.
 
-use std::io::Read;
 use std::path::Path;
-
-use flate2::Compression;
-use flate2::read::ZlibEncoder;
-use rayon::prelude::*;
 
 use crate::files::replace::replace;
 use crate::mesh::TetMesh;
 
 use super::grid::Grid;
+use super::xml::{File, escape};
 use super::{Field, OutputError, SurfaceFields};
 
 /// Writes the mesh as one piece with fields at its nodes and in its tetrahedra, which are quadratic cells if it has
@@ -170,9 +166,6 @@ fn check(fields: &[Field], count: usize, what: &'static str) -> Result<(), Outpu
     Ok(())
 }
 
-/// A file of unstructured grids: XML with binary arrays.
-pub(super) struct File(pub(super) Vec<u8>);
-
 const HEAD: &str = "<?xml version=\"1.0\"?>\n\
     <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" \
     compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
@@ -239,43 +232,6 @@ impl File {
         self.array("Float64", &name, field.components, &field.values, f64::to_le_bytes);
     }
 
-    pub(super) fn open(&mut self, tag: &str, attributes: &str) {
-        let blank = if attributes.is_empty() { "" } else { " " };
-        self.line(format_args!("<{tag}{blank}{attributes}>"));
-    }
-
-    pub(super) fn close(&mut self, tag: &str) {
-        self.line(format_args!("</{tag}>"));
-    }
-
-    fn line(&mut self, line: std::fmt::Arguments<'_>) {
-        self.0.extend_from_slice(format!("{line}\n").as_bytes());
-    }
-
-    /// Blocks of zlib behind a header: numbers of blocks and of bytes in the first and the last, compressed sizes.
-    pub(super) fn array<T: Copy + Sync, const B: usize>(
-        &mut self,
-        kind: &str,
-        name: &str,
-        components: usize,
-        values: &[T],
-        bytes_of: fn(T) -> [u8; B],
-    ) {
-        let attributes =
-            format!("type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\"");
-        self.open("DataArray", &attributes);
-        let block = |values: &[T]| compressed(values.iter().map(|&v| bytes_of(v)).collect::<Vec<_>>().as_flattened());
-        let blocks: Vec<Vec<u8>> = values.par_chunks(BLOCK / B).map(block).collect();
-        let last = values.chunks(BLOCK / B).last().map_or(0, |last| B * last.len());
-        let sizes = blocks.iter().map(Vec::len);
-        let header = [blocks.len(), BLOCK, last].into_iter().chain(sizes);
-        let header: Vec<u8> = header.flat_map(|n| (n as u64).to_le_bytes()).collect();
-        base64(&header, &mut self.0);
-        base64(&blocks.concat(), &mut self.0);
-        self.0.push(b'\n');
-        self.close("DataArray");
-    }
-
     fn write(mut self, path: &Path) -> Result<(), OutputError> {
         self.close("UnstructuredGrid");
         self.save(path)
@@ -285,34 +241,4 @@ impl File {
         self.close("VTKFile");
         replace(path, &self.0).map_err(|(path, source)| OutputError::Io { path, source })
     }
-}
-
-/// Bytes that are compressed together.
-const BLOCK: usize = 32768;
-
-fn compressed(block: &[u8]) -> Vec<u8> {
-    let mut out = Vec::new();
-    let mut encoder = ZlibEncoder::new(block, Compression::fast());
-    // reading from memory into memory cannot fail
-    let _ = encoder.read_to_end(&mut out);
-    out
-}
-
-fn base64(bytes: &[u8], out: &mut Vec<u8>) {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let four = |[a, b, c]: [u8; 3]| {
-        let bits = u32::from_be_bytes([0, a, b, c]);
-        [18, 12, 6, 0].map(|shift| DIGITS[(bits >> shift) as usize & 63])
-    };
-    let (threes, rest) = bytes.as_chunks();
-    out.extend(threes.iter().flat_map(|&three| four(three)));
-    if !rest.is_empty() {
-        let digits = four([0, 1, 2].map(|k| rest.get(k).copied().unwrap_or(0)));
-        out.extend((0..4).map(|k| if k <= rest.len() { digits[k] } else { b'=' }));
-    }
-}
-
-/// The characters that XML reserves inside an attribute.
-pub(super) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
