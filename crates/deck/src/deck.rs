@@ -58,6 +58,22 @@ impl Deck {
         self.is.scene.clone().ok_or(DeckError::NoSection { path })
     }
 
+    /// How often a step that fails may be halved without being shorter than the least increment of any `*STATIC`, for
+    /// [`Settings::with_step_halving`](signorini_contact::Settings::with_step_halving). At most 5, as CalculiX cuts
+    /// back at most 5 times; 0 if a step is `DIRECT`. Without a least increment it is 1e-5 of the period.
+    ///
+    /// ```no_run
+    /// # use signorini_contact::{ContactError, Settings, Simulation};
+    /// # use signorini_deck::Deck;
+    /// # fn simulation(deck: &Deck) -> Result<Simulation, Box<dyn std::error::Error>> {
+    /// let settings = Settings::default().with_step_halving(deck.step_halving());
+    /// # Ok(Simulation::new(deck.scene()?, settings)?)
+    /// # }
+    /// ```
+    pub fn step_halving(&self) -> u32 {
+        self.is.halvings
+    }
+
     /// What the deck asks for and does not get: output, settings of other solvers, penalty numbers.
     pub fn ignored(&self) -> &[Ignored] {
         &self.ignored

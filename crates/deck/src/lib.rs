@@ -120,8 +120,10 @@
 //!
 //! # What steps mean
 //!
-//! - All increments have the size of the first one (or the largest allowed, if that is smaller) and are not adapted;
-//!   each is a step of backward Euler with its own result. A deck with one increment is static.
+//! - All increments have the size of the first one (or the largest allowed, if that is smaller); each is a step of
+//!   backward Euler with its own result. They do not grow as in CalculiX without `DIRECT`; those that fail are cut back
+//!   to the least one with [`Deck::step_halving`], into halves, which join again. A deck with one increment is static,
+//!   without cut-backs.
 //! - Loads and supports of a step remain in later steps. Without an amplitude a value changes linearly from its
 //!   value at the end of the previous step, or jumps with `AMPLITUDE=STEP`. With an amplitude it is multiplied by that;
 //!   after its step it stays constant, or continues if the amplitude is in total time. With `OP=NEW` what the step does

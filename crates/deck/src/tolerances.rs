@@ -4,6 +4,11 @@
 /// of a surface, over its size.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
+/// The least increment of a step that gives none, over its period, and how often an increment is cut back, as CalculiX
+/// and Abaqus have both.
+pub(crate) const LEAST_INCREMENT: f64 = 1e-5;
+pub(crate) const CUT_BACKS: u32 = 5;
+
 /// Difference of unit vectors, and of places over their distance from the origin, that is rounding of what a deck
 /// writes.
 pub(crate) const TURNED: f64 = 1e-5;

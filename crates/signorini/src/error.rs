@@ -4,14 +4,14 @@ use signorini_contact::ContactError;
 use signorini_fem_mesh as fem;
 
 fem::errors! {
-    /// Any error of the workspace; every crate's own error converts into it, so that `?` works throughout. Each arrives in
-    /// one way: a mesh or a material that a scene passes on is that crate's variant here; what is wrong with a load of a
-    /// scene is one of `Contact`.
+    /// Any error of the workspace; every crate's own error converts into it, so that `?` works throughout. What a scene
+    /// passes on of a mesh or a material is that crate's variant here, what is wrong with one of its loads `Contact`; what
+    /// is wrong with a mesh that is built or read is `Brick`, `Gmsh` or `Deck`.
     ///
-    /// With `{:?}` it prints its sentence and what its sources add, not its fields: a `main` that returns it shows what is
-    /// wrong and what to do about it. Programs match on its variants; where a scene [has
-    /// names](signorini_contact::Scene::with_names), what is said of it is `Contact`, to match on
-    /// [`plain`](ContactError::plain).
+    /// Its sentence tells inner errors, of files for instance, which are therefore fields and no `source()`. With `{:?}`
+    /// it prints that and what sources add, not its fields: a `main` that returns it shows what is wrong and what to do
+    /// about it. Programs match on its variants; where a scene [has names](signorini_contact::Scene::with_names), what is
+    /// said of it is `Contact`, to match on [`plain`](ContactError::plain).
     ///
     /// ```
     /// use signorini::prelude::*;

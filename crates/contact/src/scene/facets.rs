@@ -6,7 +6,7 @@
 
 use super::seen::Seen;
 use crate::error::ContactError;
-use crate::tolerances::{RIM, SAME_NORMAL, SHARP};
+use crate::tolerances::{LARGEST, RIM, SAME_NORMAL, SHARP};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 use signorini_fem_mesh::internal::ascending;
 use signorini_fem_mesh::vec3::{add, area_vector, cross, dot, is_finite, norm, scale, sub, unit};
@@ -82,6 +82,9 @@ impl Facets {
             let corners = triangle.map(|n| points[n as usize]);
             if !corners.iter().all(|c| is_finite(*c)) {
                 return Err(wrong(k, "has a corner that is not finite"));
+            }
+            if corners.as_flattened().iter().any(|x| x.abs() > LARGEST) {
+                return Err(wrong(k, "has a corner beyond 1e70; take other units"));
             }
             let normal = unit(area_vector(&corners));
             if !is_finite(normal) {
@@ -445,6 +448,27 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// Beyond what products of four lengths hold there is no nearest place.
+    #[test]
+    fn corners_too_far_away_are_refused() {
+        let (points, triangles) = cube_triangles();
+        let of = |size: f64| {
+            let corners: Vec<_> = points.iter().map(|p| scale(size / 2.0, *p)).collect();
+            Facets::new(&corners, &triangles)
+        };
+        for size in [1e77, 1e200, f64::INFINITY] {
+            let found = of(size).err();
+            assert!(
+                matches!(found, Some(ContactError::ObstacleFacet { facet: 0, .. })),
+                "{size}: {found:?}"
+            );
+        }
+        let far = of(LARGEST)
+            .expect("a cube")
+            .distance([2.0 * LARGEST, 0.4 * LARGEST, 0.3 * LARGEST], 1.0, None);
+        assert!((far.distance / LARGEST - 1.0).abs() < 1e-12, "{far:?}");
     }
 
     #[test]

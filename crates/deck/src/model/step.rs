@@ -7,7 +7,7 @@ use super::property::Change;
 use super::{Ignored, Model};
 use crate::error::{DeckError, Fault, Word};
 use crate::lexer::{Card, label, name};
-use crate::tolerances::ROUNDING;
+use crate::tolerances::{CUT_BACKS, LEAST_INCREMENT, ROUNDING};
 
 /// Why some settings are ignored.
 pub(super) const SOLVER: &str = "a setting of another solver";
@@ -138,6 +138,8 @@ pub(crate) struct Increments {
     pub(crate) size: f64,
     pub(crate) period: f64,
     pub(crate) count: usize,
+    /// How often one may be halved without being shorter than the least one.
+    pub(crate) halvings: u32,
 }
 
 impl Increments {
@@ -259,10 +261,18 @@ impl Step {
                 "the step needs {count} increments of {increment}; raise INC or the increment"
             )));
         }
+        let least = values[2].unwrap_or(LEAST_INCREMENT * period);
+        let halvings = if card.param("DIRECT").is_some() {
+            0
+        } else {
+            // what is negative becomes 0
+            ((increment / least).log2() + ROUNDING) as u32
+        };
         let increments = Increments {
             size: increment,
             period,
             count: count.max(1.0) as usize,
+            halvings: halvings.min(CUT_BACKS),
         };
         self.time = Some((Word::new(&card.word.location, "*STATIC"), increments));
         Ok(())

@@ -59,6 +59,7 @@ pub(crate) struct Translated {
     pub(crate) support_names: Vec<String>,
     /// What each coupling of the scene is in the deck.
     pub(crate) coupling_names: Vec<String>,
+    pub(crate) halvings: u32,
     pub(crate) ignored: Vec<Ignored>,
 }
 
@@ -151,6 +152,7 @@ pub(crate) fn translate(path: &Path, model: &Model) -> Result<Translated, DeckEr
         surfaces,
         support_names,
         coupling_names,
+        halvings: timeline.halvings(),
         ignored: supports.ignored,
     })
 }

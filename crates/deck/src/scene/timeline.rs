@@ -84,6 +84,12 @@ impl<'a> Timeline<'a> {
         steps.collect()
     }
 
+    /// How often an increment of any step may be halved.
+    pub(super) fn halvings(&self) -> u32 {
+        let increments = self.model.steps.iter().filter_map(|step| step.time.as_ref());
+        increments.map(|(_, increments)| increments.halvings).min().unwrap_or(0)
+    }
+
     /// That of a step, if there is one.
     pub(super) fn span(&self, step: Option<usize>) -> Option<&Span> {
         self.spans.get(step?)

@@ -56,6 +56,34 @@ fn increments_are_times() {
     );
 }
 
+#[test]
+fn least_increments_limit_halvings() {
+    let halvings = |steps: &[(&str, &str)]| {
+        let step = |(card, line): &(&str, &str)| format!("*STEP\n*STATIC{card}\n{line}\n*END STEP\n");
+        let deck = steps.iter().map(step).collect::<String>();
+        read(&cube(&deck)).expect("deck").step_halving()
+    };
+    for (line, expected) in [
+        ("0.4, 1., 0.05", 3),
+        ("0.25, 1., 0.05", 2),
+        // no more than CalculiX cuts back; its least one is 1e-5 of the period
+        ("0.4, 1., 1e-9", 5),
+        ("0.4, 1., 0.", 5),
+        ("0.4, 1.", 5),
+        ("4e-5, 1.", 2),
+        // the increment is the largest one
+        ("0.4, 1., 0.1, 0.2", 1),
+        ("0.4, 1., 0.4", 0),
+        ("0.4, 1., 0.7", 0),
+    ] {
+        assert_eq!(halvings(&[("", line)]), expected, "{line}");
+    }
+    assert_eq!(halvings(&[(", DIRECT", "0.4, 1., 0.05")]), 0);
+    // each step keeps its own least one
+    assert_eq!(halvings(&[("", "0.4, 1., 0.05"), ("", "0.5, 1., 0.2")]), 1);
+    assert_eq!(halvings(&[]), 0);
+}
+
 /// Slopes of a linear law and of stick are the inverse of compliances; a hard one without a stick slope is exact.
 #[test]
 fn slopes_of_contact_are_compliances() {

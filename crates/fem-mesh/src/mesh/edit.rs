@@ -157,7 +157,13 @@ pub fn merge_nodes<const N: usize>(
         return 0;
     }
     let mut sets = DisjointSets::new(points.len());
-    check::close_pairs(points, distance, |(a, b)| sets.join(a, b));
+    let (low, high) = check::extent(points.iter().copied());
+    let is_all = distance >= vec3::norm(vec3::sub(high, low)) && points.iter().all(|p| vec3::is_finite(*p));
+    if is_all {
+        (1..points.len()).for_each(|node| sets.join(0, node));
+    } else {
+        check::close_pairs(points, distance, |(a, b)| sets.join(a, b));
+    }
     let first: Vec<u32> = (0..points.len()).map(|n| sets.first(n) as u32).collect();
     // numbers out of range are left for TetMesh::new to report
     let renumber = |node: u32| first.get(node as usize).copied().unwrap_or(node);

@@ -100,6 +100,8 @@ pub struct Surface {
     frames: Vec<SurfaceFrame>,
     /// Integrals over each triangle in a mesh of order 2.
     integrals: Vec<FacetIntegrals>,
+    /// Nodes of the mesh.
+    mesh_nodes: usize,
 }
 
 /// The share of dual functions in the weights of means (docs/theory.md, section 8).
@@ -180,6 +182,7 @@ impl Surface {
             areas: Vec::new(),
             frames: Vec::new(),
             integrals,
+            mesh_nodes: mesh.points().len(),
         };
         surface.measure(mesh)?;
         Ok(surface)
@@ -223,6 +226,12 @@ impl Surface {
         self.frames = (0..nodes.len()).map(frame).collect::<Result<_, _>>()?;
         self.areas = areas;
         Ok(())
+    }
+
+    /// The number of nodes of its mesh.
+    #[cfg(feature = "vtu")]
+    pub(crate) fn mesh_nodes(&self) -> usize {
+        self.mesh_nodes
     }
 
     /// Global numbers of the nodes, ascending.

@@ -64,9 +64,19 @@ fn nodes_far_from_the_origin_coincide() {
 #[test]
 fn a_distance_in_another_unit_takes_no_memory() {
     let mesh = Brick::new([1.0; 3], [15; 3]).build().unwrap();
-    let mut tets = mesh.tets().to_vec();
-    let mut merged = 0;
-    let used = allocation_counter::measure(|| merged = merge_nodes(mesh.points(), &mut tets, &mut [], 1e3));
-    assert_eq!(merged + 1, mesh.points().len());
-    assert!(used.bytes_max < 1000 * mesh.points().len() as u64, "{used:?}");
+    for distance in [1e3, f64::MAX, f64::INFINITY] {
+        let mut tets = mesh.tets().to_vec();
+        let mut merged = 0;
+        let used = allocation_counter::measure(|| merged = merge_nodes(mesh.points(), &mut tets, &mut [], distance));
+        assert_eq!(merged + 1, mesh.points().len(), "{distance}");
+        assert!(used.bytes_max < 1000 * mesh.points().len() as u64, "{used:?}");
+    }
+    // what is nowhere is not merged, but left for the mesh to report
+    let mut points = mesh.points().to_vec();
+    for nowhere in [f64::NAN, f64::INFINITY] {
+        points[7][1] = nowhere;
+        let mut tets = mesh.tets().to_vec();
+        merge_nodes(&points, &mut tets, &mut [], f64::INFINITY);
+        assert!(tets.as_flattened().contains(&7), "{nowhere}");
+    }
 }

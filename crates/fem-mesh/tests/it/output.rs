@@ -83,11 +83,14 @@ fn surface() {
         3.0,
         epsilon = 1e-13
     );
-    let other = Brick::new([1.0; 3], [1; 3]).build().unwrap();
-    assert!(matches!(
-        write_surfaces_vtu(&path, &other, &[(&surface, &[], &[])]),
-        Err(OutputError::Foreign { what: "surface" })
-    ));
+    // of a smaller mesh, and of a larger one, which has all nodes of the surface
+    for cells in [[1; 3], [7, 2, 2]] {
+        let other = Brick::new([1.0; 3], cells).build().unwrap();
+        assert!(matches!(
+            write_surfaces_vtu(&path, &other, &[(&surface, &[], &[])]),
+            Err(OutputError::Foreign { what: "surface" })
+        ));
+    }
 }
 
 #[test]
@@ -413,4 +416,46 @@ fn meshes_of_order_two_are_quadratic_cells() {
         let field = values(&piece.data.point, "height");
         assert_eq!(field.len(), places.len() / 3);
     }
+}
+
+/// Each file of a series is as it would be alone, also where points and cells are those of the file before, or change.
+#[test]
+fn files_of_a_series_are_as_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let (first, alone) = (mesh(), folder.path().join("alone.vtu"));
+    let moved = Brick::new([3.0, 1.0, 1.0], [6, 2, 2])
+        .perturbed(0.1, 2)
+        .build()
+        .unwrap();
+    let quadratic = first.clone().raise_order().unwrap();
+    let mut series = PvdSeries::create(folder.path(), "block").unwrap();
+    let mut walls = PvdSeries::create(folder.path(), "walls").unwrap();
+    for (step, mesh) in [&first, &first, &moved, &first, &quadratic].into_iter().enumerate() {
+        let (points, cells) = fields(mesh);
+        series.write(step as f64, mesh, &points, &cells).unwrap();
+        write_vtu(&alone, mesh, &points, &cells).unwrap();
+        let written = |name: &str| std::fs::read(folder.path().join(format!("{name}_{step:04}.vtu"))).unwrap();
+        assert_eq!(written("block"), std::fs::read(&alone).unwrap(), "{step}");
+        // one, two, and one more surface
+        let tags = if step == 1 { &[X_MAX, Z_MIN][..] } else { &[Z_MIN] };
+        let surfaces: Vec<Surface> = tags.iter().map(|&t| Surface::new(mesh, &[t]).unwrap()).collect();
+        let pieces: Vec<_> = surfaces.iter().map(|s| (s, &[][..], &[][..])).collect();
+        walls.write_surfaces(step as f64, mesh, &pieces).unwrap();
+        write_surfaces_vtu(&alone, mesh, &pieces).unwrap();
+        assert_eq!(written("walls"), std::fs::read(&alone).unwrap(), "{step}");
+    }
+}
+
+#[test]
+fn files_do_not_depend_on_the_number_of_threads() {
+    let mesh = Brick::new([1.0; 3], [14; 3]).perturbed(0.1, 1).build().unwrap();
+    let (points, cells) = fields(&mesh);
+    let folder = tempfile::tempdir().unwrap();
+    let file = |threads: usize| {
+        let path = folder.path().join(format!("{threads}.vtu"));
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| write_vtu(&path, &mesh, &points, &cells)).unwrap();
+        std::fs::read(path).unwrap()
+    };
+    assert_eq!(file(1), file(3));
 }

@@ -48,11 +48,8 @@ impl SymmetricOperator for DenseOperator {
     }
     fn scratch(&self) -> Self::Scratch {}
     fn apply(&self, x: &[f64], y: &mut [f64], _s: &mut ()) {
-        if self.n == 0 {
-            return;
-        }
-        for (yi, row) in y.iter_mut().zip(self.a.chunks_exact(self.n)) {
-            *yi = vector::dot(row, x);
+        for (i, yi) in y.iter_mut().enumerate() {
+            *yi = vector::dot(&self.a[i * self.n..(i + 1) * self.n], x);
         }
     }
 }
@@ -86,8 +83,8 @@ impl SymmetricOperator for Diagonal {
     }
     fn scratch(&self) -> Self::Scratch {}
     fn apply(&self, x: &[f64], y: &mut [f64], _s: &mut ()) {
-        for ((y, x), d) in y.iter_mut().zip(x).zip(&self.0) {
-            *y = d * x;
+        for (i, yi) in y.iter_mut().enumerate() {
+            *yi = self.0[i] * x[i];
         }
     }
 }

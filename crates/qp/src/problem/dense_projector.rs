@@ -32,6 +32,8 @@ pub struct DenseProjector {
     w: Vec<f64>,
     /// Lower triangle of the factor of `G W Gᵀ`, by rows.
     factor: Vec<f64>,
+    /// Takes the next factor, which takes the place of the last one once it is whole.
+    next: Vec<f64>,
     small: Vec<f64>,
 }
 
@@ -66,6 +68,7 @@ impl DenseProjector {
             g,
             w: Vec::new(),
             factor: vec![0.0; rows * rows],
+            next: vec![0.0; rows * rows],
             small: vec![0.0; rows],
         };
         own.set_weights(&ones)?;
@@ -119,26 +122,26 @@ impl EqualityProjector for DenseProjector {
         if self.w == w {
             return Ok(false);
         }
-        self.w = w.to_vec();
         let n = self.rows;
         for i in 0..n {
             for j in 0..=i {
                 let products = self.row(i).iter().zip(self.row(j)).zip(w);
                 let value: f64 = products.map(|((a, b), w)| a * b * w).sum();
-                let known: f64 = (0..j).map(|k| self.factor[i * n + k] * self.factor[j * n + k]).sum();
+                let known: f64 = (0..j).map(|k| self.next[i * n + k] * self.next[j * n + k]).sum();
                 if i == j {
                     let pivot = value - known;
                     // beside its own square: rows may have different units
                     if pivot <= SINGULAR_PIVOT * value {
-                        self.w.clear();
                         return Err(deficient(i));
                     }
-                    self.factor[i * n + i] = pivot.sqrt();
+                    self.next[i * n + i] = pivot.sqrt();
                 } else {
-                    self.factor[i * n + j] = (value - known) / self.factor[j * n + j];
+                    self.next[i * n + j] = (value - known) / self.next[j * n + j];
                 }
             }
         }
+        self.w = w.to_vec();
+        std::mem::swap(&mut self.factor, &mut self.next);
         Ok(true)
     }
 

@@ -14,6 +14,9 @@ use crate::vector;
 ///
 /// Sums over the entries of vectors are asked of the operator, too: where several processes keep a part of each vector,
 /// it sums over all of them.
+///
+/// # Panics
+/// Products may panic on slices of another length; solvers check them.
 pub trait SymmetricOperator: Sync {
     /// Work memory of one product.
     type Scratch: Send;
@@ -55,6 +58,9 @@ pub trait SymmetricOperator: Sync {
 /// from one time step to the next while `C` stays. `Q = CᵀC` and `P = I - CᵀC` are then the orthogonal
 /// projectors of the paper. [`check_equality_laws`](crate::laws::check_equality_laws) tests that the
 /// rows are orthonormal and that the two products are adjoint. A matrix with zero rows is allowed.
+///
+/// # Panics
+/// Products may panic on slices of another length; solvers check them.
 pub trait Equality: Sync {
     /// Work memory of one product.
     type Scratch: Send;

@@ -15,6 +15,9 @@ use crate::error::QpError;
 ///
 /// The six methods without a default are all that a projector needs. The others are for projectors that know more:
 /// directions along which pairs of components slide, steps in single precision, modes that constraints alone stop.
+///
+/// # Panics
+/// Methods without a `Result` may panic on slices of another length; solvers check them.
 pub trait EqualityProjector {
     /// Length of `x`.
     fn dim(&self) -> usize;

@@ -84,6 +84,9 @@ impl GradientNorms {
 /// Every method works on slices of length [`dim`](ConvexSet::dim). "Feasible" means as returned by
 /// [`project`](ConvexSet::project): a component on a bound has exactly the value of the bound.
 /// [`check_set_laws`](crate::laws::check_set_laws) tests an implementation.
+///
+/// # Panics
+/// Methods may panic on slices of another length; solvers check them.
 pub trait ConvexSet: Sync {
     /// Length of the vectors.
     fn dim(&self) -> usize;

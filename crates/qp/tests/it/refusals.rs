@@ -1,10 +1,11 @@
 //! Wrong input is refused with an error that names it.
 
 use signorini_qp::kprgp::KprgpWorkspace;
+use signorini_qp::problem::Diagonal;
 use signorini_qp::smalse::SmalseWorkspace;
 use signorini_qp::{
-    DenseEquality, DenseOperator, DenseProjector, EqualityProjector, KprgpSettings, MovingSet, ProductSet, QpError,
-    QuadraticCost, Segment, SetError, SmalseSettings, Status, kprgp, smalse,
+    DenseEquality, DenseOperator, DenseProjector, Equality, EqualityProjector, KprgpSettings, MovingSet, ProductSet,
+    QpError, QuadraticCost, Segment, SetError, SmalseSettings, Status, SymmetricOperator, kprgp, smalse,
 };
 
 use crate::common::{pair, run};
@@ -171,4 +172,42 @@ fn wrong_dimensions_and_weights_of_a_projector_are_named() {
     let mut projector = DenseProjector::new(1, 2, vec![1.0; 2]).expect("one row");
     let error = projector.set_weights(&[5.0, -1.0]);
     assert!(matches!(error, Err(QpError::Setting { name: "weight", .. })));
+}
+
+/// A projector whose weights are refused stays what it was.
+#[test]
+fn refused_weights_leave_the_projector_as_it_was() {
+    let g = vec![1.0, 2.0, 0.0, 1.0, 0.0, 3.0, 1.0, 0.5];
+    let mut projector = DenseProjector::new(2, 4, g).expect("two rows");
+    let projected = |projector: &mut DenseProjector| {
+        let mut x = vec![1.0, -2.0, 3.0, 0.5];
+        projector.project(&mut x);
+        projector.project_transpose(&mut x);
+        x
+    };
+    let weights = [1.0, 2.0, 0.0, 1.0];
+    assert!(projector.set_weights(&weights).expect("weights"));
+    let before = projected(&mut projector);
+    for _ in 0..2 {
+        let error = projector.set_weights(&[1.0, 0.0, 0.0, 0.0]);
+        assert!(matches!(error, Err(QpError::CoarseDeficient { .. })), "{error:?}");
+        assert_eq!(projected(&mut projector), before);
+    }
+    assert!(!projector.set_weights(&weights).expect("the same weights"));
+    assert!(projector.set_weights(&[1.0; 4]).expect("weights"));
+}
+
+/// None leaves what is behind the product as it was.
+#[test]
+fn products_into_longer_vectors_panic() {
+    let diagonal = Diagonal::new(vec![2.0; 2]).expect("a diagonal");
+    let equality = DenseEquality::orthonormal(1, 2, &[3.0, 4.0]).expect("a row");
+    let panics = |product: &dyn Fn(&mut [f64])| {
+        let product = std::panic::AssertUnwindSafe(|| product(&mut [7.0; 3]));
+        std::panic::catch_unwind(product).is_err()
+    };
+    let x = [1.0, 2.0];
+    assert!(panics(&|y| pair().apply(&x, y, &mut ())), "operator");
+    assert!(panics(&|y| diagonal.apply(&x, y, &mut ())), "diagonal");
+    assert!(panics(&|y| equality.apply(&x, y, &mut ())), "equality");
 }

@@ -1,10 +1,13 @@
 //! VTU files and PVD time series for ParaView (feature `vtu`).
 //!
 //! Arrays are binary: base64 inside the XML, 64-bit headers, little endian, compressed by zlib. `vtu` writes one
-//! file, `pvd` a series of them that can be continued, also by several processes, each with its piece.
+//! file, `grid` its points and cells, `xml` arrays, `pvd` a series of files that can be continued, also by several
+//! processes, each with its piece.
 
+mod grid;
 mod pvd;
 mod vtu;
+mod xml;
 
 use std::path::PathBuf;
 

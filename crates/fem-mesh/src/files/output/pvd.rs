@@ -8,8 +8,10 @@ use std::path::{Path, PathBuf};
 
 use crate::tolerances::SAME_TIME;
 
-use super::vtu::{escape, write_cells, write_pvtu};
-use super::{Field, OutputError, SurfaceFields, write_surfaces_vtu, write_vtu};
+use super::grid::Grid;
+use super::vtu::{write_cells, write_pieces, write_pvtu};
+use super::xml::escape;
+use super::{Field, OutputError, SurfaceFields};
 use crate::files::replace::replace;
 use crate::mesh::TetMesh;
 
@@ -27,7 +29,8 @@ const FOOT: [&str; 2] = ["  </Collection>", "</VTKFile>"];
 /// The list is written anew after every step. It and the files of the steps are written beside their place, with
 /// `.tmp` at the end of their names, and then take it. They are therefore complete at any moment, also when the
 /// computation stops half way or the disk is full. A step whose writing failed does not count and can be written again;
-/// after [`PvdSeries::write_part`] failed in one process, all open the series again.
+/// after [`PvdSeries::write_part`] failed in one process, all open the series again. Points and cells of the last file
+/// are kept in memory, as they are and encoded, for the next file if it has the same.
 ///
 /// A run that is resumed continues its series with [`PvdSeries::open`] or
 /// [`PvdSeries::open_before`]:
@@ -56,6 +59,8 @@ pub struct PvdSeries {
     times: Vec<f64>,
     /// Whether a step is a list of pieces of several processes.
     lists: Vec<bool>,
+    /// Of the last file.
+    grids: Vec<Grid>,
 }
 
 impl PvdSeries {
@@ -142,13 +147,14 @@ impl PvdSeries {
             name: name.into(),
             times: Vec::new(),
             lists: Vec::new(),
+            grids: Vec::new(),
         })
     }
 
     /// Writes the mesh and its fields at a time, and the list.
     ///
     /// # Errors
-    /// [`OutputError`] as [`write_vtu`], and if the time does not follow the last one.
+    /// [`OutputError`] as [`write_vtu`](super::write_vtu), and if the time does not follow the last one.
     pub fn write(
         &mut self,
         time: f64,
@@ -157,7 +163,8 @@ impl PvdSeries {
         cell_fields: &[Field],
     ) -> Result<(), OutputError> {
         self.check(time)?;
-        write_vtu(self.next_file(), mesh, point_fields, cell_fields)?;
+        let file = (&*self.next_file(), &mut self.grids);
+        write_cells(file, mesh, |_| true, point_fields, cell_fields)?;
         self.list(time, false)
     }
 
@@ -181,8 +188,8 @@ impl PvdSeries {
         }
         let step = self.times.len();
         let name = |rank: u32| format!("{}_{step:04}_{rank}.vtu", self.name);
-        let path = self.folder.join(name(rank));
-        write_cells(&path, mesh, |tet| owners[tet] == rank, point_fields, cell_fields)?;
+        let file = (&*self.folder.join(name(rank)), &mut self.grids);
+        write_cells(file, mesh, |tet| owners[tet] == rank, point_fields, cell_fields)?;
         if rank > 0 {
             self.times.push(time);
             self.lists.push(true);
@@ -195,10 +202,10 @@ impl PvdSeries {
         self.list(time, true)
     }
 
-    /// Writes surfaces and their fields at a time (see [`write_surfaces_vtu`]), and the list.
+    /// Writes surfaces and their fields at a time (see [`write_surfaces_vtu`](super::write_surfaces_vtu)), and the list.
     ///
     /// # Errors
-    /// [`OutputError`] as [`write_surfaces_vtu`], and if the time does not follow the last one.
+    /// [`OutputError`] as [`write_surfaces_vtu`](super::write_surfaces_vtu), and if the time does not follow the last one.
     pub fn write_surfaces(
         &mut self,
         time: f64,
@@ -206,7 +213,7 @@ impl PvdSeries {
         surfaces: &[SurfaceFields<'_>],
     ) -> Result<(), OutputError> {
         self.check(time)?;
-        write_surfaces_vtu(self.next_file(), mesh, surfaces)?;
+        write_pieces((&self.next_file(), &mut self.grids), mesh, surfaces)?;
         self.list(time, false)
     }
 

@@ -1,14 +1,12 @@
 //! One VTU file.
 
-use std::io::Read;
 use std::path::Path;
-
-use flate2::Compression;
-use flate2::read::ZlibEncoder;
 
 use crate::files::replace::replace;
 use crate::mesh::TetMesh;
 
+use super::grid::Grid;
+use super::xml::{File, escape};
 use super::{Field, OutputError, SurfaceFields};
 
 /// Writes the mesh as one piece with fields at its nodes and in its tetrahedra, which are quadratic cells if it has
@@ -22,13 +20,14 @@ pub fn write_vtu(
     point_fields: &[Field],
     cell_fields: &[Field],
 ) -> Result<(), OutputError> {
-    write_cells(path.as_ref(), mesh, |_| true, point_fields, cell_fields)
+    let file = (path.as_ref(), &mut Vec::new());
+    write_cells(file, mesh, |_| true, point_fields, cell_fields)
 }
 
 /// Writes those tetrahedra that are `kept`, if any, as a piece with the nodes that they use. The fields are those of
-/// the mesh.
+/// the mesh, the grids those of the file before.
 pub(super) fn write_cells(
-    path: &Path,
+    (path, grids): (&Path, &mut Vec<Grid>),
     mesh: &TetMesh,
     kept: impl Fn(usize) -> bool,
     point_fields: &[Field],
@@ -41,9 +40,10 @@ pub(super) fn write_cells(
         return Ok(());
     }
     let mut file = File::new();
+    let fields = (point_fields, cell_fields);
     match mesh.order() {
-        1 => file.part(mesh, mesh.tets(), &own, (point_fields, cell_fields)),
-        _ => file.part(mesh, &mesh.quadratic_tets(), &own, (point_fields, cell_fields)),
+        1 => file.part(grids, mesh, mesh.tets(), &own, fields),
+        _ => file.part(grids, mesh, &mesh.quadratic_tets(), &own, fields),
     }
     file.write(path)
 }
@@ -55,17 +55,16 @@ pub(super) fn write_pvtu(
     point_fields: &[Field],
     cell_fields: &[Field],
 ) -> Result<(), OutputError> {
-    let mut file = File(HEAD.replace("UnstructuredGrid", "PUnstructuredGrid"));
-    file.0 = file
-        .0
-        .replace("<PUnstructuredGrid>", "<PUnstructuredGrid GhostLevel=\"0\">");
+    let head = HEAD.replace("UnstructuredGrid", "PUnstructuredGrid");
+    let head = head.replace("<PUnstructuredGrid>", "<PUnstructuredGrid GhostLevel=\"0\">");
+    let mut file = File(head.into());
     let mut arrays = |tag: &str, list: &mut dyn Iterator<Item = (&str, usize)>| {
         file.open(tag, "");
         for (name, components) in list {
-            file.0 += &format!(
-                "<PDataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"{components}\"/>\n",
+            file.line(format_args!(
+                "<PDataArray type=\"Float64\" Name=\"{}\" NumberOfComponents=\"{components}\"/>",
                 escape(name)
-            );
+            ));
         }
         file.close(tag);
     };
@@ -79,7 +78,7 @@ pub(super) fn write_pvtu(
     );
     arrays("PPoints", &mut std::iter::once(("Points", 3)));
     for piece in pieces {
-        file.0 += &format!("<Piece Source=\"{}\"/>\n", escape(piece));
+        file.line(format_args!("<Piece Source=\"{}\"/>", escape(piece)));
     }
     file.close("PUnstructuredGrid");
     file.save(path)
@@ -99,6 +98,15 @@ pub fn write_surfaces_vtu(
     mesh: &TetMesh,
     surfaces: &[SurfaceFields<'_>],
 ) -> Result<(), OutputError> {
+    write_pieces((path.as_ref(), &mut Vec::new()), mesh, surfaces)
+}
+
+/// The same; the grids are those of the file before.
+pub(super) fn write_pieces(
+    (path, grids): (&Path, &mut Vec<Grid>),
+    mesh: &TetMesh,
+    surfaces: &[SurfaceFields<'_>],
+) -> Result<(), OutputError> {
     let mut file = File::new();
     for (number, &(surface, point_fields, cell_fields)) in surfaces.iter().enumerate() {
         let (nodes, triangles) = (surface.nodes(), surface.triangles());
@@ -113,12 +121,17 @@ pub fn write_surfaces_vtu(
         if kinds(point_fields) != kinds(surfaces[0].1) || kinds(cell_fields) != kinds(surfaces[0].2) {
             return Err(OutputError::PieceFields { number });
         }
-        let point = |&n: &u32| mesh.points().get(n as usize).copied();
-        let points: Option<Vec<_>> = nodes.iter().map(point).collect();
-        let points = points.ok_or(OutputError::Foreign { what: "surface" })?;
-        file.piece(&points, triangles, point_fields, cell_fields);
+        if surface.mesh_nodes() != mesh.points().len() {
+            return Err(OutputError::Foreign { what: "surface" });
+        }
+        let points = nodes.iter().map(|&n| mesh.points()[n as usize]).collect();
+        file.piece(
+            Grid::of(grids, number, points, triangles.to_vec()),
+            point_fields,
+            cell_fields,
+        );
     }
-    file.write(path.as_ref())
+    file.write(path)
 }
 
 fn check(fields: &[Field], count: usize, what: &'static str) -> Result<(), OutputError> {
@@ -153,9 +166,6 @@ fn check(fields: &[Field], count: usize, what: &'static str) -> Result<(), Outpu
     Ok(())
 }
 
-/// A file of unstructured grids: XML with binary arrays.
-struct File(String);
-
 const HEAD: &str = "<?xml version=\"1.0\"?>\n\
     <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\" \
     compressor=\"vtkZLibDataCompressor\">\n<UnstructuredGrid>\n";
@@ -168,6 +178,7 @@ impl File {
     /// Some of the cells of a mesh, with the nodes that they use.
     fn part<const N: usize>(
         &mut self,
+        grids: &mut Vec<Grid>,
         mesh: &TetMesh,
         cells: &[[u32; N]],
         own: &[usize],
@@ -191,27 +202,20 @@ impl File {
             };
             fields.iter().map(of).collect()
         };
-        self.piece(
-            &points,
-            &cells,
-            &chosen(point_fields, &nodes),
-            &chosen(cell_fields, own),
-        );
+        let grid = Grid::of(grids, 0, points, cells);
+        if nodes.len() == mesh.points().len() && own.len() == mesh.tets().len() {
+            self.piece(grid, point_fields, cell_fields);
+        } else {
+            self.piece(grid, &chosen(point_fields, &nodes), &chosen(cell_fields, own));
+        }
     }
 
-    /// Cells of `N` nodes, with fields.
-    fn piece<const N: usize>(
-        &mut self,
-        points: &[[f64; 3]],
-        cells: &[[u32; N]],
-        point_fields: &[Field],
-        cell_fields: &[Field],
-    ) {
-        let numbers = |n: u64| n.to_le_bytes();
-        let counts = [points.len(), cells.len()];
+    /// A grid with fields.
+    fn piece(&mut self, grid: &Grid, point_fields: &[Field], cell_fields: &[Field]) {
+        let [points, cells] = grid.counts();
         self.open(
             "Piece",
-            &format!("NumberOfPoints=\"{}\" NumberOfCells=\"{}\"", counts[0], counts[1]),
+            &format!("NumberOfPoints=\"{points}\" NumberOfCells=\"{cells}\""),
         );
         self.open("PointData", "");
         point_fields.iter().for_each(|field| self.field(field));
@@ -219,58 +223,13 @@ impl File {
         self.open("CellData", "");
         cell_fields.iter().for_each(|field| self.field(field));
         self.close("CellData");
-        self.open("Points", "");
-        let coordinates = points.iter().flatten().flat_map(|x| x.to_le_bytes());
-        self.array("Float64", "Points", 3, coordinates.collect());
-        self.close("Points");
-        self.open("Cells", "");
-        let connectivity = cells.iter().flatten().flat_map(|&n| numbers(n.into()));
-        self.array("UInt64", "connectivity", 1, connectivity.collect());
-        let offsets = (1..=cells.len()).flat_map(|n| numbers((N * n) as u64));
-        self.array("UInt64", "offsets", 1, offsets.collect());
-        // triangle, tetrahedron or quadratic tetrahedron, whose nodes VTK has in the same order
-        let kind = match N {
-            3 => 5,
-            4 => 10,
-            _ => 24,
-        };
-        self.array("UInt8", "types", 1, vec![kind; cells.len()]);
-        self.close("Cells");
+        self.0.extend_from_slice(grid.text());
         self.close("Piece");
     }
 
     fn field(&mut self, field: &Field) {
-        let bytes = field.values.iter().flat_map(|x| x.to_le_bytes()).collect();
-        self.array("Float64", &escape(&field.name), field.components, bytes);
-    }
-
-    fn open(&mut self, tag: &str, attributes: &str) {
-        let blank = if attributes.is_empty() { "" } else { " " };
-        self.0 += &format!("<{tag}{blank}{attributes}>\n");
-    }
-
-    fn close(&mut self, tag: &str) {
-        self.0 += &format!("</{tag}>\n");
-    }
-
-    /// Blocks of zlib behind a header: numbers of blocks and of bytes in the first and the last, compressed sizes.
-    fn array(&mut self, kind: &str, name: &str, components: usize, bytes: Vec<u8>) {
-        let attributes =
-            format!("type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"binary\"");
-        self.open("DataArray", &attributes);
-        let last = bytes.chunks(BLOCK).last().map_or(0, <[u8]>::len);
-        let mut header = vec![bytes.len().div_ceil(BLOCK), BLOCK, last];
-        let mut data = Vec::new();
-        for block in bytes.chunks(BLOCK) {
-            let before = data.len();
-            data.extend(compressed(block));
-            header.push(data.len() - before);
-        }
-        let header: Vec<u8> = header.iter().flat_map(|&n| (n as u64).to_le_bytes()).collect();
-        base64(&header, &mut self.0);
-        base64(&data, &mut self.0);
-        self.0.push('\n');
-        self.close("DataArray");
+        let name = escape(&field.name);
+        self.array("Float64", &name, field.components, &field.values, f64::to_le_bytes);
     }
 
     fn write(mut self, path: &Path) -> Result<(), OutputError> {
@@ -280,34 +239,6 @@ impl File {
 
     fn save(mut self, path: &Path) -> Result<(), OutputError> {
         self.close("VTKFile");
-        replace(path, self.0.as_bytes()).map_err(|(path, source)| OutputError::Io { path, source })
+        replace(path, &self.0).map_err(|(path, source)| OutputError::Io { path, source })
     }
-}
-
-/// Bytes that are compressed together.
-const BLOCK: usize = 32768;
-
-fn compressed(block: &[u8]) -> Vec<u8> {
-    let mut out = Vec::new();
-    let mut encoder = ZlibEncoder::new(block, Compression::fast());
-    // reading from memory into memory cannot fail
-    let _ = encoder.read_to_end(&mut out);
-    out
-}
-
-fn base64(bytes: &[u8], out: &mut String) {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for three in bytes.chunks(3) {
-        let mut bits = 0;
-        (0..3).for_each(|k| bits = bits << 8 | usize::from(three.get(k).copied().unwrap_or(0)));
-        for k in 0..4 {
-            let digit = DIGITS[bits >> (18 - 6 * k) & 63];
-            out.push(if k <= three.len() { char::from(digit) } else { '=' });
-        }
-    }
-}
-
-/// The characters that XML reserves inside an attribute.
-pub(super) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;")
 }
