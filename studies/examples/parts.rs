@@ -32,7 +32,8 @@ const EYE: [f64; 3] = [1.0, -1.6, 0.9];
 #[derive(Debug, Clone, PartialEq, Parser)]
 #[command(name = "parts", about = "Real parts on meshes of Gmsh, cut by the library")]
 pub struct PartsOptions {
-    /// Meshes `PART-SIZE.msh`, or folders of such; PART is one of bracket, flange, sphere, punch, plates, tooth.
+    /// Meshes `PART-SIZE.msh`, or folders of such; PART is one of bracket, flange, sphere, punch, plates, tooth,
+    /// hub, lug, dovetail, bearing.
     #[arg(value_name = "MESH", default_value = concat!(env!("CARGO_MANIFEST_DIR"), "/meshes"))]
     pub meshes: Vec<PathBuf>,
     /// Numbers of subdomains; 0 leaves it to the library.
@@ -217,6 +218,10 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
     let floor = |name: &str, coefficient: f64| -> Result<Contact, Failure> {
         Ok(Contact::rigid(surface(name)?).with_friction(Friction::coulomb(coefficient)))
     };
+    let between = |a: &str, b: &str, coefficient: f64| -> Result<Contact, Failure> {
+        Ok(Contact::between(surface(a)?, surface(b)?).with_friction(Friction::coulomb(coefficient)))
+    };
+    let later = History::table(vec![(0.0, 0.0), (1.0, 0.0), (2.0, 1.0)])?;
     let steel = Hooke::isotropic(STEEL[0], STEEL[1])?;
     let made_of = |materials| Scene::new(mesh.clone(), materials);
     let bare = || made_of(Materials::uniform(steel));
@@ -227,6 +232,38 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
             .with_load(push("bolt", [0.0, 0.0, -10e3])?)
             .with_load(push("end", [1500.0, 0.0, 0.0])?.with_history(ramp))
             .with_analysis(steps),
+        // pressed on by 0.02 mm, then pulled along the shaft with 30 kN
+        "hub" => bare()
+            .with_support(Support::fixed(surface("end")?))
+            .with_contact(between("seat", "bore", 0.2)?.with_gap(-0.02).with_gap_history(ramp))
+            .with_load(push("rim", [0.0, 0.0, 30e3])?.with_history(later))
+            .with_analysis(Analysis::quasistatic(2.0, 10)),
+        "lug" => bare()
+            .with_support(Support::fixed(surface("ends")?))
+            .with_contact(between("skin", "bore", 0.2)?)
+            .with_load(push("pull", [20e3, 0.0, 0.0])?.with_history(ramp))
+            .with_analysis(Analysis::quasistatic(1.0, 5)),
+        // pulled, then bent while the pull falls to a half and rises again
+        "dovetail" => {
+            let pull = History::table(vec![(0.0, 0.0), (1.0, 1.0), (2.0, 0.5), (3.0, 1.0)])?;
+            bare()
+                .with_support(Support::fixed(surface("foot")?))
+                .with_contact(between("root", "slot", 0.2)?)
+                .with_load(push("tip", [0.0, 0.0, 20e3])?.with_history(pull))
+                .with_load(push("tip", [2e3, 0.0, 0.0])?.with_history(later))
+                .with_analysis(Analysis::quasistatic(3.0, 9))
+        }
+        // nothing but contact holds the balls and the inner ring
+        "bearing" => {
+            let push = push("bore", [1000.0, 0.0, 0.0])?.with_history(ramp);
+            let mut scene = bare().with_support(Support::fixed(surface("seat")?)).with_load(push);
+            for skin in (0..8).map(|k| format!("skin {k}")) {
+                for groove in ["inside", "outside"] {
+                    scene = scene.with_contact(between(&skin, groove, 0.2)?);
+                }
+            }
+            scene.with_analysis(Analysis::quasistatic(1.0, 3))
+        }
         // the heads of its bolts come down by 0.03 mm, then 1 MPa lifts the cover; all bodies slide on the gasket
         "flange" => {
             let soft = Hooke::isotropic(500.0, 0.4)?;
@@ -236,17 +273,13 @@ fn scene(part: &str, mesh: &TetMesh, names: &GroupNames) -> Result<Scene, Failur
                 (volume("cover")?, steel),
                 (volume("gasket")?, soft),
             ];
-            let between = |a: &str, b: &str| -> Result<Contact, Failure> {
-                Ok(Contact::between(surface(a)?, surface(b)?).with_friction(Friction::coulomb(0.3)))
-            };
-            let heads = between("heads", "outside")?.with_gap(-0.03).with_gap_history(ramp);
-            let lift = History::table(vec![(0.0, 0.0), (1.0, 0.0), (2.0, 1.0)])?;
+            let heads = between("heads", "outside", 0.3)?.with_gap(-0.03).with_gap_history(ramp);
             made_of(Materials::new(table)?)
                 .with_support(Support::fixed(surface("foot")?))
-                .with_contact(between("below", "seat")?)
-                .with_contact(between("above", "inside")?)
+                .with_contact(between("below", "seat", 0.3)?)
+                .with_contact(between("above", "inside", 0.3)?)
                 .with_contact(heads)
-                .with_load(Load::pressure(surface("inside")?, 1.0).with_history(lift))
+                .with_load(Load::pressure(surface("inside")?, 1.0).with_history(later))
                 .with_analysis(Analysis::quasistatic(2.0, 4))
         }
         "sphere" => bare()

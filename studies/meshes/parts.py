@@ -7,6 +7,7 @@ writes FOLDER/PART-SIZE.msh, by default each part at its default size; with edge
 in graded meshes). The groups are named; the study `parts` reads them.
 """
 
+import math
 import sys
 from pathlib import Path
 
@@ -189,7 +190,92 @@ def flange(size):
     gmsh.option.setNumber("Mesh.MeshSizeMin", size / 3)
 
 
-PARTS = {bracket: 1.9, sphere: 0.0625, punch: 1.5, plates: 1.5, tooth: 1.2, flange: 3}
+def faces(label, body, test):
+    """Names the faces of a body for which test(centre, bounding box) holds."""
+    found = []
+    for _, tag in gmsh.model.getBoundary([(3, body)], oriented=False):
+        if test(occ.getCenterOfMass(2, tag), gmsh.model.getBoundingBox(2, tag)):
+            found.append(tag)
+    assert found, f"no face for {label}"
+    gmsh.model.addPhysicalGroup(2, found, name=label)
+
+
+def bodies(**tags):
+    occ.synchronize()
+    for label, tag in tags.items():
+        gmsh.model.addPhysicalGroup(3, [tag], name=label)
+
+
+def ring(inner, outer, low, high):
+    hole = (3, occ.addCylinder(0, 0, low - 1, 0, 0, high - low + 2, inner))
+    return occ.cut([(3, occ.addCylinder(0, 0, low, 0, 0, high - low, outer))], [hole])[0][0][1]
+
+
+def hub(size):
+    """A hub of 90 x 40 that is pressed onto a shaft of 40 x 80."""
+    shaft, own = occ.addCylinder(0, 0, 0, 0, 0, 80, 20), ring(20, 45, 20, 60)
+    bodies(shaft=shaft, hub=own)
+    faces("end", shaft, lambda c, b: b[5] < 0.1)
+    faces("seat", shaft, lambda c, b: b[5] - b[2] > 79)
+    faces("bore", own, lambda c, b: b[3] < 20.1 and b[5] - b[2] > 39)
+    faces("rim", own, lambda c, b: b[3] > 44 and b[5] - b[2] > 39)
+    uniform(size)
+
+
+def lug(size):
+    """A lug of 20 around a pin of 20 across, with a clearance of 0.05 all round."""
+    pin, end = occ.addCylinder(0, 0, -30, 0, 0, 60, 10), occ.addCylinder(0, 0, -10, 0, 0, 20, 25)
+    own = occ.fuse([(3, end)], [(3, occ.addBox(0, -25, -10, 80, 50, 20))])[0]
+    own = occ.cut(own, [(3, occ.addCylinder(0, 0, -11, 0, 0, 22, 10.05))])[0][0][1]
+    bodies(pin=pin, lug=own)
+    faces("ends", pin, lambda c, b: abs(c[2]) > 29.9)
+    faces("skin", pin, lambda c, b: b[5] - b[2] > 59)
+    faces("bore", own, lambda c, b: b[3] < 10.2 and b[5] - b[2] > 19)
+    faces("pull", own, lambda c, b: b[0] > 79)
+    uniform(size)
+
+
+def dovetail(size):
+    """The root of a blade in the slot of a disc, 20 wide."""
+
+    def prism(profile):
+        points = [occ.addPoint(x, 0, z) for x, z in profile]
+        lines = [occ.addLine(points[k], points[(k + 1) % len(points)]) for k in range(len(points))]
+        face = occ.addPlaneSurface([occ.addCurveLoop(lines)])
+        return [tag for dim, tag in occ.extrude([(2, face)], 0, 20, 0) if dim == 3][0]
+
+    half = [(15, -9), (15, -7), (8, 0), (8, 25)]
+    blade = prism(half + [(-x, z) for x, z in reversed(half)])
+    half = [(40, -35), (40, 1), (7, 1), (15, -7), (15, -12)]
+    disc = prism(half + [(-x, z) for x, z in reversed(half)])
+    bodies(blade=blade, disc=disc)
+    oblique = lambda b: b[5] - b[2] > 3 and b[3] - b[0] > 3 and b[4] - b[1] > 19
+    faces("root", blade, lambda c, b: oblique(b))
+    faces("slot", disc, lambda c, b: oblique(b) and c[2] > -9)
+    faces("tip", blade, lambda c, b: b[2] > 24)
+    faces("foot", disc, lambda c, b: b[5] < -34)
+    uniform(size)
+
+
+def bearing(size):
+    """Eight balls of 10 between two rings, in grooves of radius 5.15, without play."""
+    angle = lambda k: 0.25 * math.pi * k + 0.2
+    balls = [occ.addSphere(25 * math.cos(angle(k)), 25 * math.sin(angle(k)), 0, 5) for k in range(8)]
+    inner, outer = ring(14, 22.5, -7, 7), ring(27.5, 36, -7, 7)
+    inner = occ.cut([(3, inner)], [(3, occ.addTorus(0, 0, 0, 25.15, 5.15))])[0][0][1]
+    outer = occ.cut([(3, outer)], [(3, occ.addTorus(0, 0, 0, 24.85, 5.15))])[0][0][1]
+    bodies(inner=inner, outer=outer, **{f"ball {k}": ball for k, ball in enumerate(balls)})
+    for k, ball in enumerate(balls):
+        faces(f"skin {k}", ball, lambda c, b: True)
+    groove = lambda c, b: abs(c[2]) < 5.5 and b[5] < 6.99
+    faces("bore", inner, lambda c, b: b[3] < 14.1)
+    faces("inside", inner, groove)
+    faces("outside", outer, groove)
+    faces("seat", outer, lambda c, b: b[3] > 35 and b[5] - b[2] > 13)
+    uniform(size)
+
+
+PARTS = {bracket: 1.9, sphere: 0.0625, punch: 1.5, plates: 1.5, tooth: 1.2, flange: 3, hub: 2, lug: 1.7, dovetail: 1.3, bearing: 2.5}
 
 
 def write(path, part, size, sizes=None):

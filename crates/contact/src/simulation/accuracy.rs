@@ -81,7 +81,11 @@ impl Simulation {
             if let Some(mut status) = ended {
                 if let Some((largest, iterate, earlier)) = nearest.filter(|_| !status.converged() && !nearer) {
                     let (effort, offered) = (self.iterate.effort, self.iterate.offered);
-                    self.iterate = Iterate { effort, offered, ..iterate };
+                    self.iterate = Iterate {
+                        effort,
+                        offered,
+                        ..iterate
+                    };
                     recovered = earlier;
                     if largest <= certificate.limit {
                         status = StepStatus::Converged;

@@ -234,10 +234,9 @@ impl ActiveSetSolver {
                 let dear = costs.is_some_and(|costs| costs.inside(carrying(&iterate.lambda[..contact])) > EASY);
                 let patience = if dear { CIRCLES } else { BEFORE_INSIDE };
                 status = self.active_sets(task, iterate, (EXPLICIT_PRODUCTS, patience), report)?;
-                // a second time they would end at the same point
-                if is_open(status) && !iterate.offered {
+                if is_open(status) {
                     let inside = self.begin_inside(task, iterate, report)?;
-                    iterate.offered = inside.is_some();
+                    let inside = inside.filter(|_| !std::mem::replace(&mut iterate.offered, true));
                     let patience = if inside.is_some() { patience } else { usize::MAX };
                     status = self.active_sets(task, iterate, (EXPLICIT_PRODUCTS, patience), report)?;
                     if is_open(status)
