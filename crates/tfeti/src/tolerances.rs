@@ -91,10 +91,10 @@ pub(crate) const DEPENDENT: f64 = 0.3;
 /// its inverse.
 pub(crate) const EXPLICIT_WEIGHT: f64 = 1e4;
 /// Most solves with it until `G x = e`, and what may be left of that beside `x`.
-pub(crate) const BALANCES: usize = 24;
+pub(crate) const BALANCES: usize = 12;
 pub(crate) const BALANCED: f64 = 1e-10;
 /// Solves in a row that leave no less, after which the best one is taken.
-pub(crate) const UNBALANCED: usize = 4;
+pub(crate) const UNBALANCED: usize = 2;
 /// Part of a change that is not in those before, below which it tells nothing new.
 pub(crate) const SECANT: f64 = 1e-3;
 /// Pivot of a row in such an `F`, over its largest entry, up to which the row depends on others.

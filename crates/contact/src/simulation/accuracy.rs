@@ -7,7 +7,6 @@ use crate::estimate::Solved;
 use crate::report::{AccuracyReport, AlgebraicError, StepReport, relative};
 use crate::result::{Recovered, contact_violation};
 use crate::settings::Accuracy;
-use crate::solve::Iterate;
 use crate::state::{Controller, Discretisation, certificate_limit};
 use crate::status::StepStatus;
 use crate::tolerances::{CERTIFIED, CONTACT_LIMITS, LEAST_TOLERANCE, NEXT_AIM, NEXT_TOLERANCE, ROUNDS};
@@ -62,47 +61,27 @@ impl Simulation {
         let by_estimates = self.settings.accuracy != Accuracy::Tolerance;
         let mut certificate = ByCertificate::new(self.settings.tolerance);
         let mut before: Option<StepReport> = None;
-        let mut nearest: Option<(f64, Iterate, Recovered)> = None;
         let mut round = 0;
         loop {
             round += 1;
             let tolerance = if by_estimates { self.controller.tolerance() } else { certificate.tolerance };
-            let (mut report, mut recovered) = self.solve_once(tolerance)?;
-            let largest = recovered.certificate.largest();
+            let (mut report, recovered) = self.solve_once(tolerance)?;
             let ended = if by_estimates {
                 self.judge(round, &mut report, &recovered)?
             } else {
+                let largest = recovered.certificate.largest();
                 certificate.judge((round, self.iterate.offered), report.status, largest)
             };
             if let Some(before) = before.take() {
                 report = before.resumed(report);
             }
-            let nearer = nearest.as_ref().is_none_or(|nearest| largest < nearest.0);
-            if let Some(mut status) = ended {
-                if let Some((largest, iterate, earlier)) = nearest.filter(|_| !status.converged() && !nearer) {
-                    let (effort, offered) = (self.iterate.effort, self.iterate.offered);
-                    self.iterate = Iterate {
-                        effort,
-                        offered,
-                        ..iterate
-                    };
-                    recovered = earlier;
-                    if largest <= certificate.limit {
-                        status = StepStatus::Converged;
-                    }
-                }
+            if let Some(status) = ended {
                 report.status = status;
                 return Ok((report, recovered));
             }
             before = Some(report);
             product(&self.model, &self.problem, &recovered.rows, &mut self.iterate);
-            self.iterate.certified = !by_estimates && largest <= certificate.limit;
-            if by_estimates || !nearer {
-                self.spare = recovered;
-            } else {
-                let last = nearest.replace((largest, self.iterate.clone(), recovered));
-                self.spare = last.map(|last| last.2).unwrap_or_default();
-            }
+            self.spare = recovered;
         }
     }
 

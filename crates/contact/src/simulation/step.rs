@@ -162,7 +162,7 @@ impl Simulation {
     pub(super) fn start(&mut self, state: &State, way: &Way, line: bool, attempt: Attempt) {
         let (model, iterate) = (&self.model, &mut self.iterate);
         (iterate.effort, iterate.shortest_step) = (state.effort, state.shortest_step);
-        (iterate.attempt, iterate.offered, iterate.certified) = (attempt, false, false);
+        (iterate.attempt, iterate.offered) = (attempt, false);
         let (lambda, f_lambda) = (&state.lambda, &state.f_lambda);
         let (rows, coarse) = (model.tfeti.dual_dim(), model.tfeti.coarse().rows());
         // before the first step everything is at rest: zero is known, too

@@ -152,7 +152,6 @@ impl ActiveSetSolver {
             }
             // another start comes before another method
             return match iterate.attempt {
-                _ if iterate.certified => self.stay(task, iterate, report),
                 Attempt::Brief | Attempt::Apart => self.stay(task, iterate, report),
                 Attempt::First if report.status.is_lost() => self.stay(task, iterate, report),
                 _ => self.fall_back(task, iterate, report),

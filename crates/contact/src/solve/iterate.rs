@@ -36,8 +36,6 @@ pub(crate) struct Iterate {
     pub(crate) attempt: Attempt,
     /// Whether interior points have found a point in this attempt: once it may be given as the solution.
     pub(crate) offered: bool,
-    /// Whether a round before was certified: what cannot be bettered by active sets stands.
-    pub(crate) certified: bool,
     /// The shortest step of conjugate gradients in the last solve with contact, in the end in this one; 0 if there was
     /// none.
     pub(crate) shortest_step: f64,

@@ -21,7 +21,7 @@ use std::fmt;
 use std::sync::Arc;
 
 /// What a row does to the motions of bodies.
-pub(crate) type Row = Vec<(usize, [f64; 6])>;
+type Row = Vec<(usize, [f64; 6])>;
 
 /// A rigid motion of the bodies that the rows of positive weight do not stop.
 #[derive(Debug, Clone, PartialEq)]
@@ -231,7 +231,12 @@ impl Mobility {
             subdomains,
             joints: Vec::new(),
         };
-        out.joints = joints.iter().map(|row| out.actions(row)).collect();
+        let acts = |row: &Vec<CopyEntry>| {
+            let mut actions = Vec::new();
+            out.act(row, 1.0, &mut actions);
+            actions
+        };
+        out.joints = joints.iter().map(acts).collect();
         out
     }
 
@@ -259,21 +264,20 @@ impl Mobility {
         [x, y, z, a, b, c]
     }
 
-    /// What a row does to the motions of the bodies.
-    pub(crate) fn actions(&self, entries: &[CopyEntry]) -> Row {
-        let mut out = Row::new();
+    /// Adds what a row (entries times `factor`) does to the motions of the bodies.
+    pub(crate) fn act(&self, entries: &[CopyEntry], factor: f64, out: &mut Vec<(usize, [f64; 6])>) {
         for e in entries {
             let s = e.subdomain as usize;
-            let sum = entry(&mut out, self.part_of[s] as usize, [0.0; 6]);
+            let body = self.part_of[s] as usize;
+            let sum = entry(out, body, [0.0; 6]);
             let arm = self.kernel(s).arm(e.local as usize);
             for (mode, sum) in sum.iter_mut().enumerate() {
                 let mut motion = [0.0; 6];
                 motion[mode] = 1.0;
                 let u = displacement(&self.restrict(s, &motion), arm);
-                *sum += dot(e.vector, u);
+                *sum += factor * dot(e.vector, u);
             }
         }
-        out
     }
 
     /// Motions that the rows leave free; each row is the list of its actions on bodies, times the root of its weight.

@@ -1,18 +1,16 @@
 //! The natural coarse space: `G = R^T B^T`, its products and factors of `G W G^T`.
 
 use crate::coarse::matrix::{CoarseMatrix, ModeTable};
-use crate::coarse::mobility::{FreeMotion, Mobility, Row};
+use crate::coarse::mobility::{FreeMotion, Mobility};
 use crate::coarse::products::{RigidTables, Wrench};
 use crate::coarse::weights::RowWeights;
 use crate::dual::boundary::BoundaryMap;
 use crate::error::TfetiError;
-use crate::linalg::entry;
 use crate::linalg::sparse::{MemoryNeed, SolveMemory, Symbolic};
 use crate::linalg::tiles::Digits;
 use crate::rows::gluing::Gluing;
 use crate::subdomain::matrices::Subdomains;
 use crate::tolerances::{MOVING, SUPPORTED};
-use rayon::prelude::*;
 use signorini_qp::internal::LooseMode;
 use std::sync::{Arc, OnceLock};
 
@@ -31,8 +29,6 @@ pub(crate) struct CoarseData {
     /// Of a factor of the whole matrix, made when it is first asked for.
     symbolic: Arc<OnceLock<Symbolic>>,
     pub(crate) mobility: Arc<Mobility>,
-    /// What each nodal row does to the motions of bodies, found when it is first asked for.
-    actions: Arc<OnceLock<Vec<Row>>>,
     /// Whether what is no contact row holds all bodies.
     supports_suffice: bool,
 }
@@ -91,15 +87,11 @@ impl Coarse {
             matrix: Arc::new(matrix),
             symbolic: Arc::new(symbolic),
             mobility: Arc::new(mobility),
-            actions: Arc::default(),
             supports_suffice: false,
         };
         let mut supports = RowWeights::diagonal(vec![1.0; data.map.rows()]);
         supports.diagonal[data.gluing.ranges().contact()].fill(0.0);
         data.supports_suffice = data.free_motions(Some(&supports)).is_empty();
-        if data.supports_suffice {
-            data.actions = Arc::default();
-        }
         Ok(Self(Arc::new(data)))
     }
 
@@ -116,7 +108,6 @@ impl Coarse {
             matrix: data.matrix.clone(),
             symbolic: data.symbolic.clone(),
             mobility: data.mobility.clone(),
-            actions: data.actions.clone(),
             supports_suffice: data.supports_suffice,
         }))
     }
@@ -314,26 +305,23 @@ impl CoarseData {
         }
         let weight = |row: usize| weights.map_or(1.0, |w| w.of(row));
         let lines = weights.map_or(&[][..], |w| &w.lines);
-        let actions = self.actions.get_or_init(|| {
-            let rows = (0..gluing.nodal_rows()).into_par_iter();
-            rows.map(|nodal| self.mobility.actions(gluing.nodal(nodal))).collect()
-        });
-        let times = |nodal: usize, factor: f64| {
-            let row = actions[nodal].iter();
-            row.map(move |(body, action)| (*body, action.map(|a| factor * a)))
-        };
         let plain = (0..gluing.nodal_rows()).filter_map(|nodal| {
             let row = gluing.nodal_row(nodal);
-            let used = weight(row) != 0.0 && !weights.is_some_and(|w| w.in_line(row));
-            used.then(|| times(nodal, weight(row).sqrt()).collect())
+            if weight(row) == 0.0 || weights.is_some_and(|w| w.in_line(row)) {
+                return None;
+            }
+            let mut out = Vec::new();
+            self.mobility.act(gluing.nodal(nodal), weight(row).sqrt(), &mut out);
+            Some(out)
         });
         let combined = lines.iter().filter(|l| l.weight > 0.0).map(|line| {
-            let mut out = Row::new();
-            for (k, part) in line.direction.iter().enumerate() {
-                for (body, action) in times(line.row + k, line.weight.sqrt() * part) {
-                    let sum = entry(&mut out, body, [0.0; 6]);
-                    sum.iter_mut().zip(action).for_each(|(sum, a)| *sum += a);
-                }
+            let mut out = Vec::new();
+            for k in 0..2 {
+                self.mobility.act(
+                    gluing.nodal(line.row + k),
+                    line.weight.sqrt() * line.direction[k],
+                    &mut out,
+                );
             }
             out
         });

@@ -95,7 +95,7 @@ impl PointTables {
         x: &mut [f64],
         each: &impl Fn(usize, &mut f64, f64),
     ) {
-        let (mut start, mut kept) = (Point::default(), Vec::new());
+        let (mut start, mut kept) = (Point::default(), Vec::<[f64; 3]>::new());
         for &end in &self.points {
             let copies = &self.copies[start.copies..end.copies];
             let at = |&[subdomain, arm]: &[u32; 2]| displacement(&motions[subdomain as usize], &arms[arm as usize]);
@@ -116,7 +116,6 @@ impl PointTables {
             for &row in rows {
                 let mut sum = 0.0;
                 for (u, v) in kept.iter().zip(&mut vectors) {
-                    let u: &[f64; 3] = u;
                     sum += v[0] * u[0] + v[1] * u[1] + v[2] * u[2];
                 }
                 each(row as usize, &mut x[row as usize], sum);
