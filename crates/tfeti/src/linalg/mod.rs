@@ -11,6 +11,7 @@
 pub(crate) mod block_rows;
 pub(crate) mod dense;
 pub(crate) mod elimination;
+mod gram;
 pub(crate) mod lanes;
 pub(crate) mod roots;
 pub(crate) mod sparse;
