@@ -28,6 +28,9 @@ struct Point {
     vectors: usize,
 }
 
+/// Copies of a point whose displacements are kept.
+const KEPT: usize = 8;
+
 impl PointTables {
     /// For `all` these nodal rows; `copy` gives subdomain and arm from subdomain and local node.
     pub(crate) fn new(gluing: &Gluing, all: Range<usize>, copy: impl Fn(u32, u32) -> [u32; 2]) -> Self {
@@ -95,7 +98,7 @@ impl PointTables {
         x: &mut [f64],
         each: &impl Fn(usize, &mut f64, f64),
     ) {
-        let (mut start, mut kept) = (Point::default(), Vec::<[f64; 3]>::new());
+        let mut start = Point::default();
         for &end in &self.points {
             let copies = &self.copies[start.copies..end.copies];
             let at = |&[subdomain, arm]: &[u32; 2]| displacement(&motions[subdomain as usize], &arms[arm as usize]);
@@ -110,12 +113,15 @@ impl PointTables {
                 }
                 continue;
             }
-            kept.clear();
-            kept.extend(copies.iter().map(at));
+            let mut kept = [[0.0; 3]; KEPT];
+            for (kept, copy) in kept.iter_mut().zip(copies) {
+                *kept = at(copy);
+            }
             let mut vectors = vectors.iter();
             for &row in rows {
                 let mut sum = 0.0;
-                for (u, v) in kept.iter().zip(&mut vectors) {
+                for (k, (copy, v)) in copies.iter().zip(&mut vectors).enumerate() {
+                    let u = kept.get(k).copied().unwrap_or_else(|| at(copy));
                     sum += v[0] * u[0] + v[1] * u[1] + v[2] * u[2];
                 }
                 each(row as usize, &mut x[row as usize], sum);
